@@ -30,6 +30,7 @@ ROWS_AT_ONCE = Count(
     "Residuals with derivatives beyond which only their sums of products are kept.",
     "tests/benchmarks/scale.py",
 )
+ROWS_AS_TEXT = Count(16_384, "-", "Rows of a table that are in memory as text at the same time.")
 LOOKS_AT_LIMITS = Count(
     6, "-", "Most times a step is computed again because it would break a limit or cross a bound."
 )

@@ -51,17 +51,23 @@ def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarr
         size += len(data)
         if size > constants.ROWS_AT_ONCE:
             products = products + _products(found)
-            found, size = [], 0
+            found = []
     if products.ndim:
-        rows = root(products + _products(found)).T if found else root(products).T
+        rows = root(products).T
         return rows[:, -1], rows[:, :-1]
     return np.concatenate([data for data, _ in found]), np.concatenate([slope for _, slope in found])
 
 
 def _products(blocks: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     """Sums of products (k + 1, k + 1) of derivatives and residuals."""
-    rows = np.concatenate([np.column_stack([slope, data]) for data, slope in blocks])
-    return np.asarray(rows.T @ rows)
+    k = blocks[0][1].shape[1]
+    total = np.zeros((k + 1, k + 1))
+    for data, slope in blocks:
+        total[:k, :k] += slope.T @ slope
+        total[k, :k] += data @ slope
+        total[k, k] += data @ data
+    total[:k, k] = total[k, :k]
+    return total
 
 
 class Kept(NamedTuple):

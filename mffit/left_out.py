@@ -58,7 +58,7 @@ def left_out_errors(
     error = np.empty_like(residual)
     for k in range(int(group.max(initial=-1)) + 1):
         rows = np.flatnonzero(group == k)
-        out, r = slopes[rows], residual[rows]
+        out, r = np.take(slopes.T, rows, axis=1).T, residual[rows]  # by columns, as derivatives are in memory
         error[rows] = r - out @ np.linalg.solve(information - out.T @ out, gradient - out.T @ r)
     return error
 

@@ -120,10 +120,10 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
 
     Returns
     -------
-    (n, k) array, or (k,) for a scalar output
+    (n, k) array, or (k,) for a scalar output; the n derivatives by one number are next to each other in memory
     """
-    shape = np.shape(plain(output))
-    out = np.zeros((*shape, len(wrt)))
+    rows = np.zeros((len(wrt), *np.shape(plain(output))))
+    out = np.moveaxis(rows, 0, -1)
     if not isinstance(output, Traced) or not wrt:
         return out
     column = {id(x): k for k, x in enumerate(wrt)}
@@ -133,9 +133,9 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
         if passed is None:
             continue
         if id(node) in column:
-            out[..., column[id(node)]] = passed
+            rows[column[id(node)]] = passed
         for parent, partial in node.parents:
             key = id(parent)
-            share = passed * partial
+            share = partial if isinstance(passed, float) and passed == 1.0 else passed * partial
             sensitivity[key] = sensitivity[key] + share if key in sensitivity else share
     return out

@@ -19,7 +19,7 @@ from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, c
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
-from mffit.rig import Readings, Simulation, reference_speed
+from mffit.rig import Readings, Simulation, reference_speed, successive
 from tir.derivatives import gradient, plain, traced
 
 
@@ -145,13 +145,14 @@ class FitProblem:
         for rows, readings, by_channel in self.simulation.in_blocks(
             self.points, names, self.sigma, by_sweep=by_sweep
         ):
-            data, slopes = [], []
-            for name, sigma in self.sigma.items():
-                measured, u = self.points.channel(name)[rows], sigma[rows]
+            c, m, which = len(self.sigma), len(rows), successive(rows)
+            data, slopes = np.empty((c, m)), np.empty((len(names), c, m))
+            for k, (name, sigma) in enumerate(self.sigma.items()):
+                measured, u = self.points.channel(name)[which], sigma[which]
                 used = np.isfinite(u) & np.isfinite(measured)
-                data.append(np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0))
-                slopes.append(by_channel[name] / u[:, None] * used[:, None])
-            yield rows, np.concatenate(data), np.concatenate(slopes)
+                data[k] = np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0)
+                np.multiply(by_channel[name].T, used / u, out=slopes[:, k])
+            yield rows, data.ravel(), slopes.reshape(len(names), -1).T
 
     def sweeps(
         self, names: Sequence[str]

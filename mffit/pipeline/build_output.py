@@ -11,6 +11,7 @@ import tomli_w
 
 from mffit import config as configuration
 from mffit.config import Config
+from mffit.csv_tables import write_csv
 from mffit.fit import name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
@@ -45,9 +46,9 @@ def write_build(
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", as_json.build(result))
         as_json.write_information(folder / "information.json", result)
-        points_table(result).to_csv(folder / "points.csv", index=False)
+        write_csv(points_table(result), folder / "points.csv")
         if stretches:
-            stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
+            write_csv(stretch_table(stretches), folder / "stretches.csv")
         (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))
         write_members(result, folder)
         if with_report:

@@ -11,6 +11,7 @@ import pandas as pd
 import tomli_w
 
 from mffit.config import Config, axis_signs, path_curvature, resolved
+from mffit.csv_tables import write_csv
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
 from mffit.points.loading import settled_sweeps
@@ -56,9 +57,7 @@ def _write_campaign(
     not_always = (*(name for name in diagnosis.noise.channels if name != "Fy"), "T", "t")
     sweeps: list[dict[str, Any]] = []
     for name, part in _files(points, not_always):
-        corrected_table(part, diagnosis, axis_signs(config)).to_csv(
-            folder / name, index=False, lineterminator="\n"
-        )
+        write_csv(corrected_table(part, diagnosis, axis_signs(config)), folder / name)
         sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
     content["sweep"] = sweeps

@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from mffit import fleet as combining
+from mffit.csv_tables import write_csv
 from mffit.fit import priors
 from mffit.fleet import Fleet, Hierarchy
 from mffit.output import output_folder
@@ -24,7 +25,7 @@ def write_fleet(found: Fleet, out: Path) -> None:
     known = priors_of_fleet(found)
     read = [row.specimen.folder / combining.INFORMATION for row in found.rows]
     with output_folder(out, by="fleet", protected=read, outdated=WRITTEN) as folder:
-        fleet_table(found).to_csv(folder / "fleet.csv", index=False)
+        write_csv(fleet_table(found), folder / "fleet.csv")
         as_json.write(folder / "fleet.json", as_json.fleet(found))
         if known is not None:
             as_json.write(folder / "priors.json", known)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mffit import config as configuration
+from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
 from mffit.recordings import DiscPath, Sniffed, disc_signs, project_text, sniff
@@ -124,9 +125,7 @@ def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
     pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
     contents = {"tyre.toml": text}
     if sniffed.reading.stretches:
-        contents[STRETCHES] = stretch_table(sniffed.reading.stretches).to_csv(
-            index=False, lineterminator="\n"
-        )
+        contents[STRETCHES] = csv_text(stretch_table(sniffed.reading.stretches))
     must_be_new(folder, pictures)
     written = new_files(folder, contents)
     for name, k in pictures.items():

@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from mffit.comparison import characteristics
+from mffit.csv_tables import write_csv
 from mffit.results import BuildResult
 from tir import Tyre
 
@@ -37,7 +38,7 @@ def write_members(result: BuildResult, out: Path) -> None:
         name = f"{result.config.tyre.name}-{i:0{len(str(len(members)))}d}.tir"
         member.write(folder / name)
         rows.append({"file": name, **numbers(member, turn_slip=result.on_disc)})
-    pd.DataFrame(rows).to_csv(folder / INDEX, index=False)
+    write_csv(pd.DataFrame(rows), folder / INDEX)
 
 
 def numbers(tyre: Tyre, *, turn_slip: bool) -> dict[str, float]:

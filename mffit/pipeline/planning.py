@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 import mffit.planning as search
 from mffit import config as configuration
 from mffit.config import Config
+from mffit.csv_tables import write_csv
 from mffit.errors import InputError
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
@@ -152,9 +153,8 @@ def write_plan(found: Plan, out: Path) -> None:
                 (folder / SHEETS / name).write_text(text(found.config, runs), encoding="utf-8")
         for run in runs:
             if run.points is not None:
-                sheet(found.config, run.points, run.addition.measures).to_csv(
-                    folder / SHEETS / f"{run.name}.csv", index=False
-                )
+                table = sheet(found.config, run.points, run.addition.measures)
+                write_csv(table, folder / SHEETS / f"{run.name}.csv")
         report.write_plan(found, folder)
 
 

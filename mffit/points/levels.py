@@ -8,6 +8,7 @@ between one and two tolerances apart, so that they count as varied.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,17 +43,21 @@ def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
     NaN belongs to no level.
     """
-    scaled = _scaled(values, kind)
-    centres = _centres(scaled)
-    found = _nearest(scaled, centres)
-    far = np.abs(scaled - _at(centres, found)) >= 1.0
-    return np.where(far, NO_LEVEL, found)
+    return _labels(values, kind)[0]
 
 
 def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """As :func:`labels`, with values between levels assigned to the nearest one; ``NO_LEVEL`` for NaN only."""
+    return _labels(values, kind)[1]
+
+
+def _labels(values: np.ndarray, kind: LevelKind) -> tuple[np.ndarray, np.ndarray]:
+    """:func:`labels` and :func:`nearest_labels` (n,)."""
     scaled = _scaled(values, kind)
-    return _nearest(scaled, _centres(scaled))
+    centres = _centres(scaled)
+    near = _nearest(scaled, centres)
+    far = np.abs(scaled - _at(centres, near)) >= 1.0
+    return np.where(far, NO_LEVEL, near), near
 
 
 def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
@@ -97,7 +102,7 @@ def median_of_labels(values: np.ndarray, found: np.ndarray) -> np.ndarray:
 def level_values(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """Median (n,) of the level nearest to each value; NaN stays NaN."""
     values = np.asarray(values, dtype=float)
-    own, near = labels(values, kind), nearest_labels(values, kind)
+    own, near = _labels(values, kind)
     medians = np.array([np.median(values[own == k]) for k in range(near.max(initial=NO_LEVEL) + 1)])
     return _at(medians, near)
 
@@ -115,6 +120,21 @@ def spread(values: np.ndarray, kind: LevelKind) -> bool:
         return False
     away = np.abs(scaled - _at(centres, _nearest(scaled, centres)))
     return bool(np.mean(away[np.isfinite(away)] > constants.HELD_DISTANCE) > constants.MOST_AWAY_FROM_LEVELS)
+
+
+def rows_of_equal(keys: np.ndarray) -> list[np.ndarray]:
+    """Rows (m,) with equal keys (n, k), in the order of the keys.
+
+    The columns are compared one after the other, which for few levels is many times faster than comparing whole rows.
+    """
+    label = np.zeros(len(keys), dtype=int)
+    for column in keys.T:
+        distinct, own = np.unique(column, return_inverse=True)
+        if len(distinct) > 1:
+            label = np.unique(label * len(distinct) + own, return_inverse=True)[1]
+    if not len(keys):
+        return []
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
 
 
 def main_pressure(points: Points) -> np.ndarray:
@@ -148,34 +168,45 @@ def _scaled(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 def _centres(scaled: np.ndarray) -> np.ndarray:
     """Middles (k,) of the levels, rising, more than one tolerance apart."""
-    known = np.sort(scaled[np.isfinite(scaled)])
-    if not len(known):
-        return known
-    density = _within(known, known, 0.5)
+    known = _Counted(*np.unique(scaled[np.isfinite(scaled)], return_counts=True))
+    if not len(known.values):
+        return known.values
+    density = _within(known.values, known, 0.5)
     places, sizes, left = [], [], known
-    while len(left):
-        place = left[np.argmax(_within(left, left, 0.5))]
-        about = left[np.abs(left - place) <= 0.5]
-        place = float(np.median(about))
+    while len(left.values):
+        place = left.values[np.argmax(_within(left.values, left, 0.5))]
+        about = left.part(np.abs(left.values - place) <= 0.5)
+        place = float(np.median(np.repeat(about.values, about.counts)))
         if not _is_flank(place, known, density):
             places.append(place)
-            sizes.append(len(about))
-        left = left[np.abs(left - place) >= 1.0]
+            sizes.append(int(about.counts.sum()))
+        left = left.part(np.abs(left.values - place) >= 1.0)
     # A third of the square root is below the scatter of a count: among few values a single one may be a level.
     fewest = max(np.sqrt(max(sizes)) / 3.0, constants.SMALLEST_LEVEL * max(sizes))
     return np.sort([place for place, size in zip(places, sizes, strict=True) if size >= fewest])
 
 
-def _is_flank(place: float, known: np.ndarray, density: np.ndarray) -> bool:
+class _Counted(NamedTuple):
+    """Distinct values (k,), rising, and how often each occurs; set-points repeat a few values many times."""
+
+    values: np.ndarray
+    counts: np.ndarray
+
+    def part(self, which: np.ndarray) -> _Counted:
+        return _Counted(self.values[which], self.counts[which])
+
+
+def _is_flank(place: float, known: _Counted, density: np.ndarray) -> bool:
     """Whether a place belongs to the slope of a denser one."""
-    about = density[np.abs(known - place) <= 0.5]
+    about = density[np.abs(known.values - place) <= 0.5]
     return bool(_within(np.array([place]), known, 0.5)[0] < constants.LEVEL_FLANK * about.max())
 
 
-def _within(places: np.ndarray, ordered: np.ndarray, distance: float) -> np.ndarray:
-    """How many of the ordered values lie within a distance of each place."""
-    upper = np.searchsorted(ordered, places + distance, side="right")
-    return upper - np.searchsorted(ordered, places - distance, side="left")
+def _within(places: np.ndarray, among: _Counted, distance: float) -> np.ndarray:
+    """How many values lie within a distance of each place."""
+    below = np.concatenate([[0], np.cumsum(among.counts)])
+    upper = below[np.searchsorted(among.values, places + distance, side="right")]
+    return upper - below[np.searchsorted(among.values, places - distance, side="left")]
 
 
 def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:

@@ -134,11 +134,14 @@ class Points(Brief):
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
         return self.direction * self.V
 
-    def select(self, which: np.ndarray, *, with_table: bool = True) -> Points:
-        """The points of a boolean mask (n,) or of an index array (m,), in that order; their table may be left empty."""
-        which = np.asarray(which)
-        if which.dtype == bool:
-            which = np.flatnonzero(which)
+    def select(self, which: np.ndarray | slice, *, with_table: bool = True) -> Points:
+        """The points of a boolean mask (n,), of an index array (m,), in that order, or of a slice; their table may be left empty.
+
+        Those of a slice are not copied.
+        """
+        if not isinstance(which, slice):
+            which = np.asarray(which)
+            which = np.flatnonzero(which) if which.dtype == bool else which
         taken: dict[str, Any] = {name: getattr(self, name)[which] for name in ARRAYS}
         return _sealed(
             taken,
@@ -146,7 +149,9 @@ class Points(Brief):
             files=self.files,
             setups=self.setups,
             campaigns=self.campaigns,
-            table=self.table.iloc[which].reset_index(drop=True) if with_table else _no_table(len(which)),
+            table=self.table.iloc[which].reset_index(drop=True)
+            if with_table
+            else _no_table(len(taken["alpha"])),
         )
 
     def replace(self, **arrays: Any) -> Points:

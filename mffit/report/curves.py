@@ -188,7 +188,5 @@ def _set_points(angle: np.ndarray) -> int:
 
 def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Rows with equal keys, in order of the keys."""
-    if len(keys) == 0:
-        return []
-    unique, inverse = np.unique(np.nan_to_num(keys), axis=0, return_inverse=True)
-    return [(key, np.flatnonzero(inverse.ravel() == i)) for i, key in enumerate(unique)]
+    keys = np.nan_to_num(keys)
+    return [(keys[rows[0]], rows) for rows in levels.rows_of_equal(keys)]

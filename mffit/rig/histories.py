@@ -54,6 +54,13 @@ def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
             begin = int(end)
 
 
+def successive(rows: np.ndarray) -> np.ndarray | slice:
+    """The rows (m,) as a slice if each follows the one before, which saves copies; else as they are."""
+    if len(rows) and rows[-1] - rows[0] == len(rows) - 1 and np.all(np.diff(rows) == 1):
+        return slice(int(rows[0]), int(rows[-1]) + 1)
+    return rows
+
+
 def usual_radius(points: Points) -> float:
     """Path radius [m] declared for most points; very large on a straight path."""
     return 1.0 / max(abs(main_path(points)), 1e-12)

@@ -14,7 +14,7 @@ from mffit.points import Points, concatenate
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig import constants
 from mffit.rig.chain import Chain
-from mffit.rig.histories import History, blocks, of_part, usual_radius
+from mffit.rig.histories import History, blocks, of_part, successive, usual_radius
 from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults, number_of
 from tir import Tyre
@@ -171,15 +171,17 @@ class Simulation(Brief):
         def found(rows: np.ndarray) -> tuple[Readings, Readings]:
             n = len(rows)
             if lags or n <= constants.POINTS_OF_A_BLOCK:
-                every = n == len(points) and np.array_equal(rows, np.arange(n))
-                part = points if every else points.select(rows, with_table=False)
-                return here._linearised(part, names, numbers, channels, history, rows)
+                which = successive(rows)
+                every = isinstance(which, slice) and n == len(points)
+                part = points if every else points.select(which, with_table=False)
+                return here._linearised(part, names, numbers, channels, history, which)
             whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
-            by_number: dict[str, np.ndarray] = {name: np.empty((n, len(names))) for name in channels}
+            by_number: dict[str, np.ndarray] = {name: np.empty((len(names), n)).T for name in channels}
             for i in np.array_split(np.arange(n), -(-n // constants.POINTS_OF_A_BLOCK)):
                 out, slopes = found(rows[i])
                 for name in channels:
-                    whole[name][i], by_number[name][i] = out[name], slopes[name]
+                    to = slice(i[0], i[-1] + 1)
+                    whole[name][to], by_number[name][to] = out[name], slopes[name]
             return Readings(**whole), Readings(**by_number)
 
         return found
@@ -195,7 +197,7 @@ class Simulation(Brief):
         numbers: Mapping[str, float],
         channels: tuple[str, ...],
         history: History,
-        rows: np.ndarray,
+        rows: np.ndarray | slice,
     ) -> tuple[Readings, Readings]:
         """Readings and derivatives by the named numbers at some rows of a test."""
         at, n = traced(numbers), len(points)
@@ -206,7 +208,8 @@ class Simulation(Brief):
         slopes = {}
         for name, x in out.items():
             slope = np.broadcast_to(gradient(x, columns), (n, len(columns)))
-            slopes[name] = slope[:, place]
+            as_it_is = place == list(range(len(columns))) and not any(OF_RUN in name for name in names)
+            slopes[name] = slope if as_it_is else slope.T[place].T
         # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
         for k, name in enumerate(names):
             if OF_RUN in name:

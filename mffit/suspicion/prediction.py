@@ -123,8 +123,8 @@ def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
         by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
         if by_camber:
             keys = np.column_stack([keys, camber[i]])
-        for key in np.unique(keys, axis=0):
-            yield sweep, i[np.all(keys == key, axis=1)], by_camber
+        for rows in levels.rows_of_equal(keys):
+            yield sweep, i[rows], by_camber
 
 
 def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:

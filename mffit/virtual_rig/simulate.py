@@ -13,6 +13,7 @@ import pandas as pd
 import tomli_w
 
 import tir
+from mffit.csv_tables import csv_text
 from mffit.output import output_folder
 from mffit.virtual_rig.campaign import Campaign, run
 from mffit.virtual_rig.loading import load_plan
@@ -80,5 +81,5 @@ def configuration_text(configuration: Mapping[str, Any]) -> str:
 
 def write_table(table: pd.DataFrame, path: Path) -> None:
     """Write a table as CSV, compressed if the name ends in .gz; equal tables make equal files."""
-    text = table.to_csv(index=False, lineterminator="\n").encode()
+    text = csv_text(table).encode()
     path.write_bytes(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)

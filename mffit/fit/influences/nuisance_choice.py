@@ -132,10 +132,11 @@ def _judged(
     group = parts_of_sweeps(first.problem.points)
     model = NearSolution(at_reference(config, first.problem), numbers, ())
     base = predicted_left_out(model, (), group)
+    here = base
     if demanded:
         model = _refitted(model, demanded)
+        here = predicted_left_out(model, (), group)
     enough = len(np.unique(group)) >= FEWEST_SWEEPS_TO_PREDICT
-    here = predicted_left_out(model, (), group)
     needed, left = needed_fall(len(candidates)), list(candidates)
     tried: dict[str, _Prediction] = {}
 
@@ -181,11 +182,12 @@ def _of_runs(
     if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
         return Verdict(nuisance, False, _TOO_FEW), {}
     runs = _linear_runs(model, nuisance)
-    spread = runs.spread()
+    parts = runs.parts()
+    spread = runs.spread(parts)
 
     def predictions(group: np.ndarray) -> list[_Prediction]:
         """Without and with numbers of every run; errors are summed over sweeps."""
-        errors = runs.left_out(group, (np.zeros_like(spread), spread))
+        errors = runs.left_out(parts, group, (np.zeros_like(spread), spread))
         return [_judged_errors(problem, error, sweeps) for error in errors]
 
     without, beside = predictions(halves_of_runs(points))

@@ -6,7 +6,7 @@ remain are those of the shared numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -34,6 +34,13 @@ class Part:
         """The equations of rows with derivatives by shared (m, k) and own (m, j) numbers, and residuals (m,)."""
         return cls(slope.T @ slope, slope.T @ own, own.T @ own, slope.T @ residual, own.T @ residual)
 
+    @classmethod
+    def sum(cls, parts: Iterable[Part], k: int, j: int) -> Part:
+        """The equations of several parts together; zeros without any."""
+        none = cls.of(np.zeros((0, k)), np.zeros((0, j)), np.zeros(0))
+        every = [none, *parts]
+        return cls(*(np.sum([getattr(part, f.name) for part in every], axis=0) for f in fields(cls)))
+
     def inverse(self, spread: np.ndarray) -> np.ndarray:
         """Covariance (..., j, j) of the own numbers for known shared ones; ``spread`` (j,) of their priors may be 0."""
         inside = np.eye(len(spread)) + spread[:, None] * self.own * spread
@@ -60,8 +67,9 @@ class OfRuns(NamedTuple):
     residual: np.ndarray  #: (m,) model less measured
 
     def part(self, which: np.ndarray) -> Part:
-        """The equations of some of the readings."""
-        return Part.of(self.slope[which], self.own[which], self.residual[which])
+        """The equations of some of the readings, by their rows (r,)."""
+        slope, own = (np.take(x.T, which, axis=1).T for x in (self.slope, self.own))  # by columns in memory
+        return Part.of(slope, own, self.residual[which])
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +87,7 @@ class Runs:
     def parts(self) -> Part:
         """The equations of all runs, in the order of :meth:`rows` and of their index within a block."""
         each = [
-            rows.part(self.run[rows.point] == k)
+            rows.part(np.flatnonzero(self.run[rows.point] == k))
             for rows in self.rows()
             for k in np.unique(self.run[rows.point])
         ]
@@ -98,12 +106,11 @@ class Runs:
         inside = inverse + np.swapaxes(through, -1, -2) @ covariance @ through
         return parts.solved(-covariance @ pull, spread), np.diagonal(inside, axis1=-2, axis2=-1)
 
-    def spread(self) -> np.ndarray:
-        """Standard deviation (j,) of the own numbers among the runs, of maximum likelihood.
+    def spread(self, parts: Part) -> np.ndarray:
+        """Standard deviation (j,) of the own numbers among the runs, of maximum likelihood; ``parts`` are :meth:`parts`.
 
         Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
         """
-        parts = self.parts()
         found = np.full(parts.own.shape[-1], float(constants.USUAL_RUN_SCATTER))
         for _ in range(constants.RUN_SCATTER_STEPS):
             values, variances = self.own_numbers(parts, found)
@@ -112,13 +119,12 @@ class Runs:
                 break
         return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
 
-    def left_out(self, group: np.ndarray, spreads: Sequence[np.ndarray]) -> np.ndarray:
+    def left_out(self, parts: Part, group: np.ndarray, spreads: Sequence[np.ndarray]) -> np.ndarray:
         """Errors (s, c, n) of the readings when each group (n,), a run or a piece of one, is predicted from all other readings.
 
         What remains of the run shows its own numbers; those of a whole run that is left out have their expected value. One
         prediction for each of the ``spreads`` (j,).
         """
-        parts = self.parts()
         known = [(spread, *self.common(parts, spread)) for spread in spreads]
         blocks = [(rows.point, self._errors(rows, group[rows.point], known)) for rows in self.rows()]
         channels = len(blocks[0][0]) // len(np.unique(blocks[0][0]))
@@ -133,11 +139,14 @@ class Runs:
     ) -> np.ndarray:
         """Errors (s, m) of the readings of some runs; ``known`` are spread and common equations of all runs."""
         error, run = np.empty((len(known), len(group))), self.run[rows.point]
+        size = rows.slope.shape[1], rows.own.shape[1]
         for k in np.unique(run):
             mine = np.flatnonzero(run == k)
-            all_of_it = rows.part(mine)
-            for piece in np.unique(group[mine]):
-                out, rest = mine[group[mine] == piece], rows.part(mine[group[mine] != piece])
+            pieces = {piece: mine[group[mine] == piece] for piece in np.unique(group[mine]).tolist()}
+            equations = {piece: rows.part(which) for piece, which in pieces.items()}
+            all_of_it = Part.sum(equations.values(), *size)
+            for piece, out in pieces.items():
+                rest = Part.sum((part for other, part in equations.items() if other != piece), *size)
                 for to, (spread, matrix, pull) in zip(error, known, strict=True):
                     whole, left = all_of_it.eliminated(spread), rest.eliminated(spread)
                     shared = -np.linalg.solve(matrix - whole[0] + left[0], pull - whole[1] + left[1])

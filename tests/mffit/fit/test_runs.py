@@ -183,7 +183,7 @@ def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
     prior[:k, :k] = information
     prior[k:, k:] = np.diag(np.tile(spread**-2.0, runs))
     for group in (run, 2 * run + np.tile(np.arange(rows) % 3 == 0, runs)):
-        errors, other = found.left_out(group, (spread, 2.0 * spread))
+        errors, other = found.left_out(found.parts(), group, (spread, 2.0 * spread))
         assert not np.allclose(errors, other)
         for piece in np.unique(group):
             kept = group != piece
@@ -206,7 +206,7 @@ def test_the_scatter_of_numbers_that_were_drawn_is_found():
     residual = np.sum(own * drawn[run], axis=1) + rng.standard_normal(3000)
     rows = of_runs(run, slope, own, residual)
     found = Runs(rows=rows, run=run, information=np.zeros((3, 3)), pull=np.zeros(3))
-    assert found.spread() == pytest.approx([0.03, 0.006], rel=0.2)
+    assert found.spread(found.parts()) == pytest.approx([0.03, 0.006], rel=0.2)
 
 
 def test_the_halves_of_a_run_are_the_two_sides_of_its_angle():
