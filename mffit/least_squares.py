@@ -50,18 +50,18 @@ def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarr
         found.append((data, slope))
         size += len(data)
         if size > constants.ROWS_AT_ONCE:
-            products = products + sum(_products(*block) for block in found)
+            products = products + _products(found)
             found, size = [], 0
     if products.ndim:
-        rows = root(products + sum(_products(*block) for block in found)).T
+        rows = root(products + _products(found)).T if found else root(products).T
         return rows[:, -1], rows[:, :-1]
     return np.concatenate([data for data, _ in found]), np.concatenate([slope for _, slope in found])
 
 
-def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Sums of products (k + 1, k + 1) of derivatives and residuals, the residuals last."""
-    mixed = slope.T @ data
-    return np.block([[slope.T @ slope, mixed[:, None]], [mixed, data @ data]])
+def _products(blocks: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Sums of products (k + 1, k + 1) of derivatives and residuals."""
+    rows = np.concatenate([np.column_stack([slope, data]) for data, slope in blocks])
+    return np.asarray(rows.T @ rows)
 
 
 class Kept(NamedTuple):

@@ -124,9 +124,7 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
     (n, k) array, or (k,) for a scalar output
     """
     shape = np.shape(plain(output))
-    out = np.moveaxis(
-        np.zeros((len(wrt), *shape)), 0, -1
-    )  # in memory number after number, as they are filled
+    out = np.zeros((*shape, len(wrt)))
     if not isinstance(output, Traced) or not wrt:
         return out
     column = {x.place: k for k, x in enumerate(wrt)}

@@ -145,15 +145,13 @@ class FitProblem:
         for rows, readings, by_channel in self.simulation.in_blocks(
             self.points, names, self.sigma, by_sweep=by_sweep
         ):
-            m, count = len(rows), len(self.sigma)
-            data, slopes = np.empty(count * m), np.empty((len(names), count * m)).T
-            for k, (name, sigma) in enumerate(self.sigma.items()):
-                measured, u, own = self.points.channel(name)[rows], sigma[rows], slice(k * m, (k + 1) * m)
+            data, slopes = [], []
+            for name, sigma in self.sigma.items():
+                measured, u = self.points.channel(name)[rows], sigma[rows]
                 used = np.isfinite(u) & np.isfinite(measured)
-                data[own] = np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0)
-                np.divide(by_channel[name], u[:, None], out=slopes[own])
-                slopes[own][~used] = 0.0
-            yield rows, data, slopes
+                data.append(np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0))
+                slopes.append(by_channel[name] / u[:, None] * used[:, None])
+            yield rows, np.concatenate(data), np.concatenate(slopes)
 
     def sweeps(
         self, names: Sequence[str]

@@ -204,13 +204,9 @@ class Simulation(Brief):
         columns = list(at.values())
         place = [list(at).index(name.partition(OF_RUN)[0]) for name in names]
         slopes = {}
-        every = place == list(range(len(columns)))
         for name, x in out.items():
-            slope = gradient(x, columns)
-            if every and len(slope) == n and slope.ndim == 2:
-                slopes[name] = slope
-            else:
-                slopes[name] = np.broadcast_to(slope, (n, len(columns)))[:, place]
+            slope = np.broadcast_to(gradient(x, columns), (n, len(columns)))
+            slopes[name] = slope[:, place]
         # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
         for k, name in enumerate(names):
             if OF_RUN in name:
