@@ -13,6 +13,7 @@ array([4.])
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
@@ -45,10 +46,10 @@ COMPARISONS = {np.less, np.less_equal, np.greater, np.greater_equal, np.equal, n
 class Traced(np.lib.mixins.NDArrayOperatorsMixin):
     """A number, or an array with one per operating condition, that records how it was computed."""
 
-    __slots__ = ("parents", "tape", "value")
+    __slots__ = ("parents", "place", "tape", "value")
 
     def __init__(self, value: Any, tape: list[Traced], parents: tuple[tuple[Traced, Any], ...] = ()) -> None:
-        self.value, self.tape, self.parents = value, tape, parents
+        self.value, self.tape, self.parents, self.place = value, tape, parents, len(tape)
         tape.append(self)
 
     @property
@@ -126,16 +127,20 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
     out = np.moveaxis(rows, 0, -1)
     if not isinstance(output, Traced) or not wrt:
         return out
-    column = {id(x): k for k, x in enumerate(wrt)}
-    sensitivity: dict[int, Any] = {id(output): 1.0}
-    for node in reversed(output.tape):
-        passed = sensitivity.pop(id(node), None)
-        if passed is None:
-            continue
-        if id(node) in column:
-            rows[column[id(node)]] = passed
-        for parent, partial in node.parents:
-            key = id(parent)
+    column = {x.place: k for k, x in enumerate(wrt)}
+    sensitivity: dict[int, Any] = {output.place: 1.0}
+    latest = [-output.place]  # a heap: only numbers that the output depends on, each after all that use it
+    while latest:
+        place = -heappop(latest)
+        passed = sensitivity.pop(place)
+        if place in column:
+            rows[column[place]] = passed
+        for parent, partial in output.tape[place].parents:
+            key = parent.place
             share = partial if isinstance(passed, float) and passed == 1.0 else passed * partial
-            sensitivity[key] = sensitivity[key] + share if key in sensitivity else share
+            if key in sensitivity:
+                sensitivity[key] = sensitivity[key] + share
+            else:
+                sensitivity[key] = share
+                heappush(latest, -key)
     return out

@@ -1,8 +1,10 @@
-"""The joint polish: all free coefficients and rig errors together, fitted to all points."""
+"""The joint polish: all free coefficients and rig errors together, fitted to all points; and fits that are as good as it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,48 +16,77 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.profile import follow
-from mffit.least_squares import Solution, minimum, solve
+from mffit.least_squares import FreeNumber, Solution, minimum, solve
 from mffit.rig_errors import error_of
 
 Intervals = Mapping[str, tuple[float, float]]
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
-    """The joint fit with its errors.
+    """The joint fit with its errors, those of the quadratic form around it.
 
-    Weights are balanced between the channels and reduced for outliers; a bent valley of equally good fits is followed,
-    and other ends that are as good belong to the intervals.
-    ``stated`` is near the solution, with weights as stated.
+    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated.
     """
     problem, scale = _approached(stated, plan).reweighted()
-    problem, solution = _solved(problem, plan)
-    decided = _within_their_priors(_errors(solution), plan)
-    valley = follow(problem, plan.numbers(problem), solution, decided)
+    problem, solution = _solved(problem, plan.numbers(problem))
+    return _fitted(problem, solution, plan.numbers(problem), plan, scale)
+
+
+def with_equally_good(fitted: Fitted) -> Fitted:
+    """The fit with errors that cover what is as good: a bent valley is followed, and other ends are searched.
+
+    It is the better one where the valley or another end holds a better fit.
+    """
+    problem, numbers = fitted.problem, fitted.problem.starting_here(fitted.numbers)
+    solution = solve(problem.free([n.name for n in numbers]), numbers, max_steps=0)
+    decided = _within_their_priors(_errors(solution), numbers)
+    valley = follow(problem, numbers, solution, decided)
     if valley is not None and valley.better:
-        problem, solution = _solved(problem.with_values(valley.better), plan)
-    ends = other_ends(problem, plan.numbers(problem), solution)
+        problem, solution = _solved(problem.with_values(valley.better), numbers)
+    ends = other_ends(problem, problem.starting_here(numbers), solution)
     if ends.better:
-        problem, solution = _solved(problem.with_values(ends.better), plan)
-    posterior = joint(problem, solution, {**plan.held, **plan.held_rig}).without(plan.held_rig)
+        problem, solution = _solved(problem.with_values(ends.better), numbers)
+    if problem is not fitted.problem:
+        moved = _fitted(problem, solution, numbers, fitted, fitted.scale)
+        fitted = replace(moved, stages=fitted.stages, attempts=fitted.attempts)
     intervals = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
-    stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in posterior.stderr.items()}
+    stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in fitted.stderr.items()}
+    return replace(
+        fitted,
+        intervals=intervals,
+        stderr=stderr,
+        rig={name: (v, stderr[name]) for name, (v, _) in fitted.rig.items()},
+        regularised=fitted.regularised
+        | (_with_prior(numbers).keys() - _within_their_priors(stderr, numbers)),
+    )
+
+
+def _fitted(
+    problem: FitProblem,
+    solution: Solution,
+    numbers: Sequence[FreeNumber],
+    given: FitPlan | Fitted,
+    scale: Mapping[str, float],
+) -> Fitted:
+    """The record of a solution, at which ``problem`` is; ``given`` says what was held."""
+    posterior = joint(problem, solution, {**given.held, **given.held_rig}).without(given.held_rig)
+    stderr = posterior.stderr
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
         stderr=stderr,
-        intervals=intervals,
+        intervals={},
         problem=problem,
-        numbers=tuple(plan.numbers(problem)),
-        held=plan.held,
-        held_rig=plan.held_rig,
+        numbers=tuple(problem.starting_here(numbers)),
+        held=given.held,
+        held_rig=given.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
-        regularised=frozenset(name for name in solution.names if name in plan.scatter)
-        - _within_their_priors(stderr, plan),
+        regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
         scale=scale,
         cost=solution.cost,
-        hand=plan.hand,
+        hand=given.hand,
     )
 
 
@@ -93,8 +124,8 @@ def _strides(n: int) -> Iterator[int]:
         yield stride
 
 
-def _solved(problem: FitProblem, plan: FitPlan) -> tuple[FitProblem, Solution]:
-    numbers = plan.numbers(problem)
+def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProblem, Solution]:
+    numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
     return problem.with_values(solution.values), solution
 
@@ -104,7 +135,12 @@ def _errors(solution: Solution) -> dict[str, float]:
     return dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)).tolist(), strict=True))
 
 
-def _within_their_priors(errors: Mapping[str, float], plan: FitPlan) -> frozenset[str]:
+def _with_prior(numbers: Sequence[FreeNumber]) -> dict[str, float]:
+    """Standard deviation of the prior of every coefficient that has one."""
+    return {n.name: n.spread for n in numbers if error_of(n.name) is None and math.isfinite(n.spread)}
+
+
+def _within_their_priors(errors: Mapping[str, float], numbers: Sequence[FreeNumber]) -> frozenset[str]:
     """Coefficients that the points determine better than their priors do."""
-    share, prior = constants.FITTED_SHARE_OF_PRIOR, plan.scatter
-    return frozenset(name for name, u in errors.items() if name in prior and u < share * prior[name])
+    share = constants.FITTED_SHARE_OF_PRIOR
+    return frozenset(name for name, spread in _with_prior(numbers).items() if errors[name] < share * spread)

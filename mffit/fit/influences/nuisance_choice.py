@@ -271,21 +271,36 @@ def _named(key: str) -> str:
     return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
 
 
-def predicted_left_out(model: NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
-    """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
-    problem = model.problem
+def predicted_left_out(
+    model: NearSolution,
+    more: Iterable[Nuisance],
+    group: np.ndarray,
+    moved: Mapping[str, float] | None = None,
+) -> _Prediction:
+    """Left-out parts of sweeps as the model predicts them, to first order with further influences.
+
+    ``moved`` are values at which other numbers are held instead of their current ones, to first order too.
+    """
+    problem, moved = model.problem, moved or {}
     added = (number for nuisance in more for number in nuisance.free(problem.points, {}))
     numbers = [*problem.starting_here(model.numbers), *added]
     x = np.array([number.start for number in numbers])
-    names = [number.name for number in numbers]
+    names, k = [number.name for number in numbers], len(numbers)
     problem = problem.with_values(dict(zip(names, x.tolist(), strict=True)))
-    sweeps = problem.sweeps(names)
-    r, J = condensed(itertools.chain((block[1:] for block in sweeps()), [problem.radii_rows(names)]))
+    move = np.array([value - problem.value(name) for name, value in moved.items()])
+    sweeps = problem.sweeps([*names, *moved])
+
+    def there(data: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return data + slope[:, k:] @ move, slope[:, :k]
+
+    radii = there(*problem.radii_rows([*names, *moved]))
+    r, J = condensed(itertools.chain((there(*block[1:]) for block in sweeps()), [radii]))
     precision, away = _priors(numbers, x)
     information, gradient = J.T @ J + np.diag(precision), J.T @ r + away
     error = np.empty((len(problem.sigma), len(group)))
-    for rows, data, slope in sweeps():
+    for rows, *block in sweeps():
         own = np.tile(np.unique(group[rows], return_inverse=True)[1], len(problem.sigma))
+        data, slope = there(*block)
         found = left_out_errors(slope, data, information, gradient, own)
         error[:, rows] = found.reshape(len(problem.sigma), -1)
     return _judged_errors(problem, error, group)

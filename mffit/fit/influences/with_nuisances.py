@@ -15,7 +15,7 @@ from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, c
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import with_runaways_put_back
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import polish
+from mffit.fit.polish import polish, with_equally_good
 from mffit.fit.problem import FitProblem
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
@@ -74,7 +74,7 @@ def fit_with_nuisances(
         # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
         others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
         plain = _polished(config, problem, known, choice, others, fitted)
-        return NuisanceFit(_doubted(plain, full), full, choice, refit, known)
+        return NuisanceFit(plain, full, choice, refit, known)
 
     first: list[NuisanceFit] = []
 
@@ -88,6 +88,13 @@ def fit_with_nuisances(
 
     fitted = fit_staged(problem, start, plan, progress, explained=explained)
     return first[0] if first else extended(fitted)
+
+
+def with_equally_good_fits(found: NuisanceFit) -> NuisanceFit:
+    """The fits, each with errors that cover fits as good as it, and the plain one with its distance from the full one."""
+    full = with_equally_good(found.full)
+    plain = _doubted(with_equally_good(found.plain), full) if found.at_temperature else full
+    return replace(found, plain=plain, full=full)
 
 
 def _polished(
