@@ -365,3 +365,13 @@ RUNS_ALONG = Real(
 GROWN_UNCERTAINTY = Real(
     1.5, "-", "Growth of a coefficient's uncertainty by temperature terms from which the order is criticised."
 )
+
+# Relaxation lengths from steps
+MOST_KEPT_NOISE = Real(
+    0.98,
+    "-",
+    "Largest share of the noise that the next sample keeps: beyond it, offset and gain of a run of steps are lost in it.",
+)
+LARGEST_CARCASS_TERM = Real(
+    3.0, "-", "Size of PCFX1-3 and PCFY1-3 beyond which a carcass would be softer than none at tested loads."
+)
