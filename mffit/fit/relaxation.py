@@ -2,15 +2,16 @@
 
 A property file of FITTYP 62 holds sigma_y as K_ya / C_y with C_y = LATERAL_STIFFNESS (1 + PCFY1 dfz + PCFY2 dfz^2)(1 + PCFY3 dpi)
 (A9), and sigma_x as K_xk / C_x likewise, with LONGITUDINAL_STIFFNESS and PCFX1-3 (A8). The force of the fitted tyre follows the
-angle or the slip over this length; its offset and gain are free in every run of steps, so that only the delay counts.
+angle or the slip over this length; its offset, gain and ripple per turn are free in every run of steps, so that only the delay
+counts.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
+from mffit.points.lag import rolled_distance
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -175,7 +177,7 @@ def _of_direction(
         *(["steps were run at one pressure"] if pressures < 2 else []),
     ]
     names = [name for name in names if name not in held]
-    beside = _fitted(direction, names, values, clear, posterior)
+    beside = _fitted(direction, names, held, values, clear, posterior)
     at = {**values, **beside.values}
     written = tuple(
         StepLength(run.file, run.load, run.pressure, run.length, run.stiffness, _length(direction, run, at))
@@ -188,31 +190,34 @@ def _of_direction(
 
 def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> StepLength:
     """The relaxation length at which the fitted tyre, lagging, follows the readings best."""
-    read = samples.channel(direction.force)
-    used = np.isfinite(read)
-    sigma, move = float(simulation.values["UNLOADED_RADIUS"]), math.inf
-    simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
-    keeps = 0.0
-    for _ in range(constants.REFIT_STEPS):
-        model, slope = _response(direction, samples, simulation, sigma)
-        design = np.column_stack([np.ones(int(np.sum(used))), model[used], slope[used]])
-        white, target = _whitened(design, keeps), _whitened(read[used], keeps)
-        offset, gain = np.linalg.lstsq(white[:, :2], target, rcond=None)[0]
-        left = read[used] - design[:, :2] @ [offset, gain]
-        residual, design = _whitened(left, keeps), white * [1.0, 1.0, gain]
-        move = float(np.linalg.lstsq(design, residual, rcond=None)[0][2])
-        sigma = float(np.clip(sigma + move, 0.5 * sigma, 2.0 * sigma))
-        if abs(move) < constants.REFIT_TOLERANCE * sigma:
-            break
-        keeps = _kept(left)
-    variance = float(residual @ residual) / max(len(residual) - 3, 1) * _correlation(residual)
-    u = math.sqrt(variance * float(np.linalg.pinv(design.T @ design)[2, 2]))
-    u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
+    samples = samples.select(np.isfinite(samples.channel(direction.force)))
     load, pressure = float(np.mean(samples.Fz)), float(np.mean(samples.p))
     state = Tyre.from_values(simulation.values).state(
         load, 0.0, float(np.mean(samples.gamma)), phi_t=float(samples.phi_t[0]), p=pressure,
         turn_slip=simulation.turn_slip,
     )  # fmt: skip
+    simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
+    radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
+    means = _Means.over(samples, constants.MEAN_OF_STEPS * radius)
+    read = means.of(samples.channel(direction.force))
+    beside = means.of(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
+    sigma, move, keeps = radius, math.inf, 0.0
+    for _ in range(constants.REFIT_STEPS):
+        model, slope = map(means.of, _response(direction, samples, simulation, sigma))
+        design = np.column_stack([beside, model])
+        known, *_ = np.linalg.lstsq(_whitened(design, keeps), _whitened(read, keeps), rcond=None)
+        left = read - design @ known
+        residual = _whitened(left, keeps)
+        design = _whitened(np.column_stack([design, known[-1] * slope]), keeps)
+        move = float(np.linalg.lstsq(design, residual, rcond=None)[0][-1])
+        sigma = float(np.clip(sigma + move, 0.5 * sigma, 2.0 * sigma))
+        if abs(move) < constants.REFIT_TOLERANCE * sigma:
+            break
+        keeps = _kept(left)
+    freedom = max(len(residual) - design.shape[1], 1)
+    variance = float(residual @ residual) / freedom * _correlation(residual)
+    u = math.sqrt(variance * float(np.linalg.pinv(design.T @ design)[-1, -1]))
+    u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
         samples.files[int(samples.file[0])],
@@ -221,6 +226,32 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         Quantity(sigma, u, "m"),
         Quantity(C, u / sigma * C, "N/m"),
     )
+
+
+class _Means(NamedTuple):
+    """Means over short distances: what they leave of a fast sampling says nothing about a slow process."""
+
+    label: np.ndarray  #: (n,) of the mean to which a sample belongs
+    count: np.ndarray  #: (m,) samples of each mean
+
+    @classmethod
+    def over(cls, samples: Points, way: float) -> _Means:
+        """Means over a distance [m], or the samples themselves where these are farther apart."""
+        rolled = rolled_distance(samples.time, samples.V)
+        _, label, count = np.unique(np.floor(rolled / way), return_inverse=True, return_counts=True)
+        return cls(label, count)
+
+    def of(self, x: np.ndarray) -> np.ndarray:
+        """Means (m,) or (m, k) of a series (n,) or (n, k)."""
+        sums = np.zeros((len(self.count), *x.shape[1:]))
+        np.add.at(sums, self.label, x)
+        return sums / self.count.reshape(-1, *[1] * (x.ndim - 1))
+
+
+def _turned(samples: Points, Re: float) -> np.ndarray:
+    """Angle (n,) by which the wheel has turned [rad]: a tyre that is not round moves the force once per turn."""
+    speed = np.where(np.isfinite(samples.omega), samples.omega, (1.0 + samples.kappa) * samples.V / Re)
+    return rolled_distance(samples.time, speed)
 
 
 def _response(
@@ -272,6 +303,7 @@ def _length(direction: Direction, run: StepLength, values: Mapping[str, Any]) ->
 def _fitted(
     direction: Direction,
     names: Sequence[str],
+    held: Collection[str],
     values: Mapping[str, Any],
     runs: Sequence[StepLength],
     posterior: Posterior,
@@ -281,28 +313,31 @@ def _fitted(
         return BesideNumbers()
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
-    nominal = direction.names[0]
-    start = {**dict.fromkeys(names, 0.0), nominal: float(np.median(measured))}
-    bounds = {
-        **dict.fromkeys(names, (-constants.LARGEST_CARCASS_TERM, constants.LARGEST_CARCASS_TERM)),
-        nominal: (0.1 * measured.min(), 10.0 * measured.max()),
-    }
-    numbers = [FreeNumber(name, start[name], *bounds[name]) for name in names]
+    nominal, *terms = direction.names
+    most = float(constants.LARGEST_CARCASS_TERM)
+    numbers = {name: FreeNumber(name, 0.0, -most, most) for name in terms}
+    for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
+        if name not in names:  # not shown by these runs, and yet not exactly as in the file
+            numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)
+    middle = float(np.median(measured))
+    numbers = {nominal: FreeNumber(nominal, middle, 0.1 * middle, 10.0 * middle), **numbers}
+    free = [number for name, number in numbers.items() if name not in held]
 
-    def of(free: Mapping[str, Any]) -> Any:
-        return _stiffness(direction, {**values, **free}, load, pressure)
+    def of(at: Mapping[str, Any]) -> Any:
+        return _stiffness(direction, {**values, **at}, load, pressure)
 
-    end = solve(of_model(of, names, measured, u), numbers, tolerance=1e-9)
+    end = solve(of_model(of, [number.name for number in free], measured, u), free, tolerance=1e-9)
+    own = [end.names.index(name) for name in names]
     freedom = len(runs) - len(names)
     scale = max(1.0, float(end.data @ end.data) / freedom) if freedom > 0 else 1.0
     fitted = tuple(name for name in posterior.names if name in BY_NAME)
-    free = traced({name: float(values[name]) for name in fitted})
-    K = direction.slip_stiffness(*upright({**values, **free}, load, pressure))
-    relative = gradient(K, list(free.values())) / np.reshape(plain(K), (-1, 1)) if fitted else 0.0
-    by_stiffness = end.covariance @ end.jacobian.T / u
+    at = traced({name: float(values[name]) for name in fitted})
+    K = direction.slip_stiffness(*upright({**values, **at}, load, pressure))
+    relative = gradient(K, list(at.values())) / np.reshape(plain(K), (-1, 1)) if fitted else 0.0
+    by_stiffness = (end.covariance @ end.jacobian.T / u)[own]
     return BesideNumbers(
-        values=dict(end.values),
-        covariance=scale * end.covariance,
+        values={name: end.values[name] for name in names},
+        covariance=scale * end.covariance[np.ix_(own, own)],
         leans_on=fitted,
         slope=by_stiffness @ (measured[:, None] * relative) if fitted else np.zeros((len(names), 0)),
     )

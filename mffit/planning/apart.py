@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.fit import FitResult
-from mffit.fit.constants import USUAL_MISFIT_OF_RADIUS
+from mffit.fit.constants import CARCASS_TERM_SPREAD, USUAL_MISFIT_OF_RADIUS
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.planning import constants
@@ -118,7 +118,9 @@ class _OfSteps:
             [u for _, u in self.made + new],
         )
         weighted = rows / np.reshape(u, (-1, 1))
-        prior: np.ndarray = np.diag(np.array(constants.PLAN_UNKNOWN_CARCASS) ** -2.0)
+        prior: np.ndarray = np.diag(
+            np.array([constants.PLAN_UNKNOWN_CARCASS, *CARCASS_TERM_SPREAD[:2]]) ** -2.0
+        )
         return prior + weighted.T @ weighted
 
     def u_of_step(self, load: float) -> float:

@@ -56,11 +56,8 @@ PLAN_POINT_TIME = Real(
     "s",
     "Time over which a finished point is averaged at least; single samples scatter accordingly more.",
 )
-PLAN_UNKNOWN_CARCASS = Series(
-    (0.3, 0.3, 0.2),
-    "-",
-    "Relative standard deviation of a carcass stiffness of a tyre without steps: at nominal load, its slope and "
-    "curvature over dfz.",
+PLAN_UNKNOWN_CARCASS = Real(
+    0.3, "-", "Relative standard deviation of a carcass stiffness at nominal load of a tyre without steps."
 )
 PLAN_UNKNOWN_STIFFNESS = Real(
     0.3, "-", "Relative standard deviation of a vertical stiffness that was not measured."

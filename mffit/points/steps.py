@@ -107,7 +107,7 @@ def _is_step(
 
 def _samples(sweep: Sweep, name: str, phi_t: float, begin: int, end: int) -> Points:
     rows = slice(begin, end)
-    names = ("p", "V", "T", "kappa", "Fx", "Fy", "direction", "line")
+    names = ("p", "V", "T", "kappa", "Fx", "Fy", "omega", "direction", "line")
     return make_points(
         sweep.alpha[rows],
         sweep.gamma[rows],
