@@ -232,20 +232,20 @@ class _Means(NamedTuple):
     """Means over short distances: what they leave of a fast sampling says nothing about a slow process."""
 
     label: np.ndarray  #: (n,) of the mean to which a sample belongs
-    count: np.ndarray  #: (m,) samples of each mean
+    size: np.ndarray  #: (m,) number of samples of each mean
 
     @classmethod
     def over(cls, samples: Points, way: float) -> _Means:
         """Means over a distance [m], or the samples themselves where these are farther apart."""
         rolled = rolled_distance(samples.time, samples.V)
-        _, label, count = np.unique(np.floor(rolled / way), return_inverse=True, return_counts=True)
-        return cls(label, count)
+        _, label, size = np.unique(np.floor(rolled / way), return_inverse=True, return_counts=True)
+        return cls(label, size)
 
     def of(self, x: np.ndarray) -> np.ndarray:
         """Means (m,) or (m, k) of a series (n,) or (n, k)."""
-        sums = np.zeros((len(self.count), *x.shape[1:]))
+        sums = np.zeros((len(self.size), *x.shape[1:]))
         np.add.at(sums, self.label, x)
-        return sums / self.count.reshape(-1, *[1] * (x.ndim - 1))
+        return sums / self.size.reshape(-1, *[1] * (x.ndim - 1))
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:
