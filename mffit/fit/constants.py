@@ -365,3 +365,23 @@ RUNS_ALONG = Real(
 GROWN_UNCERTAINTY = Real(
     1.5, "-", "Growth of a coefficient's uncertainty by temperature terms from which the order is criticised."
 )
+
+# Relaxation lengths from steps
+MOST_KEPT_NOISE = Real(
+    0.995,
+    "-",
+    "Largest share of the noise that the next sample keeps: beyond it, offset and gain of a run of steps are lost in it.",
+)
+MEAN_OF_STEPS = Real(
+    0.15,
+    "-",
+    "Distance over which samples of a run of steps are averaged, over the unloaded radius: half the shortest relaxation lengths.",
+)
+CARCASS_TERM_SPREAD = Series(
+    (0.2, 0.1, 0.3),
+    "-",
+    "Standard deviations of PCFX1-3 and PCFY1-3 that no run shows: public files have 0.1 to 0.2, -0.02 to -0.05, and 0.1 to 0.4.",
+)
+LARGEST_CARCASS_TERM = Real(
+    3.0, "-", "Size of PCFX1-3 and PCFY1-3 beyond which a carcass would be softer than none at tested loads."
+)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import Any
 
@@ -34,7 +34,7 @@ class Beside:
     """What determines coefficients beside the least squares of the points."""
 
     radii: Vertical  #: from loaded radius and wheel speed
-    steps: Points | None = None  #: samples of steps of the sideslip angle
+    steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by the setting that steps
     sister: Sister | None = None
     campaigns: Sequence[FittedCampaign] = ()
 
@@ -47,7 +47,7 @@ class Delivered:
     coefficients: dict[str, Coefficient]
     files: Files
     lent: Lent | None  #: what a sister tyre gave
-    relaxation: Relaxation
+    relaxation: tuple[Relaxation, ...]  #: one per direction
     joined: tuple[Joined, ...]  #: what other campaigns gave
     posterior: Posterior  #: of all of them
     beside: tuple[BesideNumbers, ...]  #: what was fitted to readings of its own
@@ -70,8 +70,9 @@ def deliver(
     for name, q in rolling.found.items():
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
     lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
-    known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
-    own = (beside.radii.beside, rolling.beside, lag.beside)
+    lags = {name: q for direction in lag for name, q in direction.found.items()}
+    known = known.having({name: q.value for name, q in lags.items()}, "fitted")
+    own = (beside.radii.beside, rolling.beside, *(direction.beside for direction in lag))
     posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
     lent = None if beside.sister is None else lend(beside.sister, known, posterior)
     borrowed = {} if lent is None else dict(lent.found)
@@ -83,7 +84,7 @@ def deliver(
         known = known.having(joined[-1].values, "campaign")
         borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
         posterior = joined[-1].posterior
-    found = {**rolling.found, **beside.radii.found, **lag.found, **borrowed}
+    found = {**rolling.found, **beside.radii.found, **lags, **borrowed}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))

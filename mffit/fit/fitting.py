@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
-from mffit.fit.relaxation import relaxation_sentence
+from mffit.fit.relaxation import relaxation_sentences
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model
@@ -52,7 +53,7 @@ def fit(
     measured: Any,
     base: Tyre | None = None,
     progress: Progress = silent,
-    steps: Points | None = None,
+    steps: Mapping[str, Points] = MappingProxyType({}),
     campaigns: Sequence[FittedCampaign] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
@@ -65,7 +66,7 @@ def fit(
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : property file with the values that are not fitted, if there is one
     progress : called with a sentence before each step
-    steps : samples of steps of the sideslip angle, if there are any
+    steps : samples of steps of the sideslip angle and of slip, by the setting that steps
     campaigns : others of the same tyre, whose coefficients are taken where these points determine none
 
     Raises
@@ -123,12 +124,12 @@ def fit(
         model=readings,
         posterior=made.posterior,
         stages=fitted.stages,
-        coverage=(*plan.cover, made.relaxation.coverage),
+        coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, made.known.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
-            *filter(None, [relaxation_sentence(made.relaxation)]),
+            *relaxation_sentences(made.relaxation),
             *map(campaign_sentence, made.joined),
             *([] if made.lent is None else [sister_sentence(made.lent)]),
             *unmodelled_sentences(found),

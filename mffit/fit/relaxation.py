@@ -1,17 +1,17 @@
-"""Lateral stiffness of the carcass from steps of the sideslip angle: the relaxation length is cornering stiffness over it.
+"""Stiffnesses of the carcass from steps of the sideslip angle and of slip: the relaxation lengths are slip stiffness over them.
 
 A property file of FITTYP 62 holds sigma_y as K_ya / C_y with C_y = LATERAL_STIFFNESS (1 + PCFY1 dfz + PCFY2 dfz^2)(1 + PCFY3 dpi)
-(A9). The side force of the fitted tyre follows the sideslip angle over sigma_y; its offset and gain are free in every run of
-steps, so that only the delay counts.
+(A9), and sigma_x as K_xk / C_x likewise, with LONGITUDINAL_STIFFNESS and PCFX1-3 (A8). The force of the fitted tyre follows the
+angle or the slip over this length; its offset, gain and ripple per turn are free in every run of steps, so that only the delay
+counts.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
-from types import SimpleNamespace
-from typing import Any
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,28 +19,85 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
-from mffit.fit.upright import sideways
+from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
+from mffit.points.lag import rolled_distance
+from mffit.points.steps import STEPPED
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
+from mffit.rig.lag import lagged
+from mffit.rig.simulation import LAG
+from mffit.rig_errors.record import RADIANS
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
-from tir.equations import normalise
+from tir.equations import stiffness
 from tir.equations.forces import carcass_stiffness
 from tir.parameters import BY_NAME
 
-LAG = "relaxation_m"
-NAMES = ("LATERAL_STIFFNESS", "PCFY1", "PCFY2", "PCFY3")
-BOUNDS = {"PCFY1": (-3.0, 3.0), "PCFY2": (-3.0, 3.0), "PCFY3": (-3.0, 3.0)}
-RUN = (
-    "no recording steps the sideslip angle fast enough: roll at about 1 m/s, at two or three loads, step it 0, 1, 0, -1, 0 deg "
-    "within a fraction of a second, hold each angle for 6 s, and record at 20 Hz"
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """A relaxation length of the tyre, and what determines it."""
+
+    setting: str  #: that steps, one of ``STEPPED``
+    word: str  #: for it
+    sigma: str  #: the length, as tir names it
+    K: str  #: the slip stiffness over which it counts, as tir names it
+    slip_stiffness: Callable[[Any, Any], Any]  #: of coefficients and inputs of the upright wheel
+    names: tuple[
+        str, str, str, str
+    ]  #: carcass stiffness, its linear and quadratic terms over load, and that over pressure
+    zero: str  #: rig error that shifts the setting
+    unit: float  #: of the zero, in that of the setting
+    stage: str  #: word for the row of the coverage matrix
+    title: str
+    run: str  #: what is missing without steps, and the run that measures it
+
+    @property
+    def force(self) -> str:
+        """The channel that follows the setting."""
+        return STEPPED[self.setting].force
+
+
+_RUN = (
+    "no recording steps {what} fast enough: roll at about 1 m/s, at two or three loads, {step} within a fraction of a second, "
+    "hold each {value} for 6 s, and record at 20 Hz"
 )
-"""What is missing, and the run that measures it."""
-UNCLEAR = (
-    "the steps do not show the relaxation length beyond their noise: hold each angle longer, or step further"
+DIRECTIONS = (
+    Direction(
+        setting="alpha",
+        word="the sideslip angle",
+        sigma="sigma_y",
+        K="K_ya",
+        slip_stiffness=lambda p, q: stiffness.cornering_stiffness(p, q, 0.0),
+        names=("LATERAL_STIFFNESS", "PCFY1", "PCFY2", "PCFY3"),
+        zero="alpha_0_deg",
+        unit=RADIANS,
+        stage="relaxation",
+        title="Relaxation",
+        run=_RUN.format(what="the sideslip angle", step="step it 0, 1, 0, -1, 0 deg", value="angle"),
+    ),
+    Direction(
+        setting="kappa",
+        word="longitudinal slip",
+        sigma="sigma_x",
+        K="K_xk",
+        slip_stiffness=stiffness.longitudinal_slip_stiffness,
+        names=("LONGITUDINAL_STIFFNESS", "PCFX1", "PCFX2", "PCFX3"),
+        zero="kappa_0",
+        unit=1.0,
+        stage="relaxation-slip",
+        title="Relaxation over slip",
+        run=_RUN.format(
+            what="longitudinal slip",
+            step="step the speed of the wheel so that slip is 0, 0.025, 0, -0.025, 0",
+            value="slip",
+        ),
+    ),
 )
+UNCLEAR = "the steps of {what} do not show the relaxation length beyond their noise: hold each of them longer, or step further"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,27 +108,28 @@ class StepLength:
     load: float  #: [N]
     pressure: float  #: [Pa]
     length: Quantity  #: [m]
-    stiffness: Quantity  #: of the carcass [N/m], where the cornering stiffness is exact
+    stiffness: Quantity  #: of the carcass [N/m], where the slip stiffness is exact
     written: float = math.nan  #: relaxation length of the file there [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """What steps of the sideslip angle determine."""
+    """What steps in one direction determine."""
 
+    direction: Direction
     runs: tuple[StepLength, ...] = ()
     found: Mapping[str, Quantity] = field(default_factory=dict)
     beside: BesideNumbers = field(default_factory=BesideNumbers)  #: the same with their covariance
-    missing: str = RUN  #: why the others, or all, are held
+    missing: str = ""  #: why the others, or all, are held
 
     @property
     def coverage(self) -> StageCoverage:
         """The row of the coverage matrix."""
         free = tuple(self.found)
-        held = tuple(name for name in NAMES if name not in free)
+        held = tuple(name for name in self.direction.names if name not in free)
         return StageCoverage(
-            stage="relaxation",
-            title="Relaxation",
+            stage=self.direction.stage,
+            title=self.direction.title,
             supported=bool(free),
             free=free,
             held=held,
@@ -80,68 +138,87 @@ class Relaxation:
 
 
 def relaxation(
-    steps: Points | None, simulation: Simulation, posterior: Posterior, held: Collection[str] = ()
-) -> Relaxation:
-    """Carcass stiffness over load and pressure, with standard uncertainties; coefficients ``held`` by hand stay.
+    steps: Mapping[str, Points], simulation: Simulation, posterior: Posterior, held: Collection[str] = ()
+) -> tuple[Relaxation, ...]:
+    """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 
     Parameters
     ----------
-    steps : samples of the runs of steps, one sweep each; None without any
+    steps : samples of the runs of steps, one sweep each, by the setting that steps
     simulation : the fitted tyre on its rig
     posterior : of the fit
+    held : coefficients that stay, by hand
     """
+    return tuple(
+        _of_direction(one, steps.get(one.setting), simulation, posterior, held) for one in DIRECTIONS
+    )
+
+
+def _of_direction(
+    direction: Direction,
+    steps: Points | None,
+    simulation: Simulation,
+    posterior: Posterior,
+    held: Collection[str],
+) -> Relaxation:
     if steps is None:
-        return Relaxation()
-    runs = [_of_run(steps.select(steps.sweep == k), simulation) for k in np.unique(steps.sweep)]
+        return Relaxation(direction, missing=direction.run)
+    runs = [_of_run(direction, steps.select(steps.sweep == k), simulation) for k in np.unique(steps.sweep)]
     clear = [run for run in runs if run.length.u < constants.FITTED_SHARE_OF_PRIOR * run.length.value]
     if not clear:
-        return Relaxation(missing=UNCLEAR)
+        return Relaxation(direction, missing=UNCLEAR.format(what=direction.word))
     values = simulation.values
     loads = levels.count(np.array([run.load for run in clear]), levels.LOAD)
     pressures = levels.count(np.array([run.pressure for run in clear]), levels.PRESSURE)
-    names = ["LATERAL_STIFFNESS", *("PCFY1", "PCFY2")[: loads - 1], *(["PCFY3"] if pressures > 1 else [])]
+    nominal, *over_load, over_pressure = direction.names
+    names = [nominal, *over_load[: loads - 1], *([over_pressure] if pressures > 1 else [])]
     lacking = [
         *([f"3 loads are needed, steps were run at {loads}"] if loads < 3 else []),
         *(["steps were run at one pressure"] if pressures < 2 else []),
     ]
     names = [name for name in names if name not in held]
-    beside = _fitted(names, values, clear, posterior)
+    beside = _fitted(direction, names, held, values, clear, posterior)
     at = {**values, **beside.values}
     written = tuple(
-        StepLength(run.file, run.load, run.pressure, run.length, run.stiffness, _length(run, at))
+        StepLength(run.file, run.load, run.pressure, run.length, run.stiffness, _length(direction, run, at))
         for run in clear
     )
     u = posterior.with_numbers(beside).stderr
     found = {name: Quantity(x, u[name], BY_NAME[name].unit) for name, x in beside.values.items()}
-    return Relaxation(written, found, beside, "; ".join(lacking))
+    return Relaxation(direction, written, found, beside, "; ".join(lacking))
 
 
-def _of_run(samples: Points, simulation: Simulation) -> StepLength:
+def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> StepLength:
     """The relaxation length at which the fitted tyre, lagging, follows the readings best."""
-    radius = float(simulation.values["UNLOADED_RADIUS"])
-    used = np.isfinite(samples.Fy)
-    sigma, move = radius, math.inf
-    simulation = simulation.with_numbers({"hysteresis_deg": 0.0})
-    for _ in range(constants.REFIT_STEPS):
-        readings, slopes = simulation.with_numbers({LAG: sigma}).sensitivities(samples, [LAG], ("Fy",))
-        model, slope = readings["Fy"][used], slopes["Fy"][used, 0]
-        plain_fit = np.column_stack([np.ones(len(model)), model])
-        offset, gain = np.linalg.lstsq(plain_fit, samples.Fy[used], rcond=None)[0]
-        residual = samples.Fy[used] - offset - gain * model
-        design = np.column_stack([plain_fit, gain * slope])
-        move = float(np.linalg.lstsq(design, residual, rcond=None)[0][2])
-        sigma = float(np.clip(sigma + move, 0.5 * sigma, 2.0 * sigma))
-        if abs(move) < constants.REFIT_TOLERANCE * sigma:
-            break
-    variance = float(residual @ residual) / max(len(residual) - 3, 1) * _correlation(residual)
-    u = math.sqrt(variance * float(np.linalg.pinv(design.T @ design)[2, 2]))
-    u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
+    samples = samples.select(np.isfinite(samples.channel(direction.force)))
     load, pressure = float(np.mean(samples.Fz)), float(np.mean(samples.p))
     state = Tyre.from_values(simulation.values).state(
         load, 0.0, float(np.mean(samples.gamma)), phi_t=float(samples.phi_t[0]), p=pressure,
         turn_slip=simulation.turn_slip,
     )  # fmt: skip
-    C = abs(float(state.K_ya)) / sigma
+    simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
+    radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
+    means = _Means.over(samples, constants.MEAN_OF_STEPS * radius)
+    read = means.of(samples.channel(direction.force))
+    beside = means.of(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
+    sigma, move, keeps = radius, math.inf, 0.0
+    for _ in range(constants.REFIT_STEPS):
+        model, slope = map(means.of, _response(direction, samples, simulation, sigma))
+        design = np.column_stack([beside, model])
+        known, *_ = np.linalg.lstsq(_whitened(design, keeps), _whitened(read, keeps), rcond=None)
+        left = read - design @ known
+        residual = _whitened(left, keeps)
+        design = _whitened(np.column_stack([design, known[-1] * slope]), keeps)
+        move = float(np.linalg.lstsq(design, residual, rcond=None)[0][-1])
+        sigma = float(np.clip(sigma + move, 0.5 * sigma, 2.0 * sigma))
+        if abs(move) < constants.REFIT_TOLERANCE * sigma:
+            break
+        keeps = _kept(left)
+    freedom = max(len(residual) - design.shape[1], 1)
+    variance = float(residual @ residual) / freedom * _correlation(residual)
+    u = math.sqrt(variance * float(np.linalg.pinv(design.T @ design)[-1, -1]))
+    u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
+    C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
         samples.files[int(samples.file[0])],
         load,
@@ -149,6 +226,53 @@ def _of_run(samples: Points, simulation: Simulation) -> StepLength:
         Quantity(sigma, u, "m"),
         Quantity(C, u / sigma * C, "N/m"),
     )
+
+
+class _Means(NamedTuple):
+    """Means over short distances: what they leave of a fast sampling says nothing about a slow process."""
+
+    label: np.ndarray  #: (n,) of the mean to which a sample belongs
+    size: np.ndarray  #: (m,) number of samples of each mean
+
+    @classmethod
+    def over(cls, samples: Points, way: float) -> _Means:
+        """Means over a distance [m], or the samples themselves where these are farther apart."""
+        rolled = rolled_distance(samples.time, samples.V)
+        _, label, size = np.unique(np.floor(rolled / way), return_inverse=True, return_counts=True)
+        return cls(label, size)
+
+    def of(self, x: np.ndarray) -> np.ndarray:
+        """Means (m,) or (m, k) of a series (n,) or (n, k)."""
+        sums = np.zeros((len(self.size), *x.shape[1:]))
+        np.add.at(sums, self.label, x)
+        return sums / self.size.reshape(-1, *[1] * (x.ndim - 1))
+
+
+def _turned(samples: Points, Re: float) -> np.ndarray:
+    """Angle (n,) by which the wheel has turned [rad]: a tyre that is not round moves the force once per turn."""
+    speed = np.where(np.isfinite(samples.omega), samples.omega, (1.0 + samples.kappa) * samples.V / Re)
+    return rolled_distance(samples.time, speed)
+
+
+def _response(
+    direction: Direction, samples: Points, simulation: Simulation, sigma: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force (n,) [N] that follows the setting over a length [m], and its derivative by the length [N/m]."""
+    follows, by_sigma = lagged(samples, sigma, direction.setting)
+    at = samples.replace(**{direction.setting: follows})
+    force, by_zero = simulation.sensitivities(at, [direction.zero], (direction.force,))
+    return force[direction.force], by_zero[direction.force][:, 0] / direction.unit * by_sigma
+
+
+def _kept(residual: np.ndarray) -> float:
+    """Share of the noise that the next sample keeps, as of a first-order process."""
+    x = residual - residual.mean()
+    return float(np.clip(x[1:] @ x[:-1] / (float(x @ x) or 1.0), 0.0, constants.MOST_KEPT_NOISE))
+
+
+def _whitened(x: np.ndarray, keeps: float) -> np.ndarray:
+    """Series (n,) or (n, k) less what the sample before explains of its noise."""
+    return np.concatenate([x[:1] * math.sqrt(1.0 - keeps**2), x[1:] - keeps * x[:-1]])
 
 
 def _correlation(residual: np.ndarray) -> float:
@@ -164,57 +288,73 @@ def _correlation(residual: np.ndarray) -> float:
     return total
 
 
-def _stiffness(values: Mapping[str, Any], load: Any, pressure: Any) -> Any:
-    p = SimpleNamespace(**values)
-    q = normalise.inputs(p, load, load, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
-    return carcass_stiffness(p.LATERAL_STIFFNESS, p.PCFY1, p.PCFY2, p.PCFY3, q)
+def _stiffness(direction: Direction, values: Mapping[str, Any], load: Any, pressure: Any) -> Any:
+    p, q = upright(values, load, pressure)
+    nominal, linear, quadratic, over_pressure = (getattr(p, name) for name in direction.names)
+    return carcass_stiffness(nominal, linear, quadratic, over_pressure, q)
 
 
-def _length(run: StepLength, values: Mapping[str, Any]) -> float:
+def _length(direction: Direction, run: StepLength, values: Mapping[str, Any]) -> float:
     """Relaxation length [m] of the file at the conditions of a run."""
-    return float(run.length.value * run.stiffness.value / _stiffness(values, run.load, run.pressure))
+    C = _stiffness(direction, values, run.load, run.pressure)
+    return float(run.length.value * run.stiffness.value / C)
 
 
 def _fitted(
-    names: Sequence[str], values: Mapping[str, Any], runs: Sequence[StepLength], posterior: Posterior
+    direction: Direction,
+    names: Sequence[str],
+    held: Collection[str],
+    values: Mapping[str, Any],
+    runs: Sequence[StepLength],
+    posterior: Posterior,
 ) -> BesideNumbers:
-    """The coefficients that fit the carcass stiffnesses of the runs; they follow the cornering stiffness of the fit."""
+    """The coefficients that fit the carcass stiffnesses of the runs; they follow the slip stiffness of the fit."""
     if not names:
         return BesideNumbers()
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
-    start = {**values, "LATERAL_STIFFNESS": float(np.median(measured)), **dict.fromkeys(names[1:], 0.0)}
-    bounds = {**BOUNDS, "LATERAL_STIFFNESS": (0.1 * measured.min(), 10.0 * measured.max())}
-    numbers = [FreeNumber(name, float(start[name]), *bounds[name]) for name in names]
+    nominal, *terms = direction.names
+    most = float(constants.LARGEST_CARCASS_TERM)
+    numbers = {name: FreeNumber(name, 0.0, -most, most) for name in terms}
+    for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
+        if name not in names:  # not shown by these runs, and yet not exactly as in the file
+            numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)
+    middle = float(np.median(measured))
+    numbers = {nominal: FreeNumber(nominal, middle, 0.1 * middle, 10.0 * middle), **numbers}
+    free = [number for name, number in numbers.items() if name not in held]
 
-    def stiffness(free: Mapping[str, Any]) -> Any:
-        return _stiffness({**values, **free}, load, pressure)
+    def of(at: Mapping[str, Any]) -> Any:
+        return _stiffness(direction, {**values, **at}, load, pressure)
 
-    end = solve(of_model(stiffness, names, measured, u), numbers, tolerance=1e-9)
+    end = solve(of_model(of, [number.name for number in free], measured, u), free, tolerance=1e-9)
+    own = [end.names.index(name) for name in names]
     freedom = len(runs) - len(names)
     scale = max(1.0, float(end.data @ end.data) / freedom) if freedom > 0 else 1.0
     fitted = tuple(name for name in posterior.names if name in BY_NAME)
-    free = traced({name: float(values[name]) for name in fitted})
-    _, K_ya = sideways({**values, **free}, load, pressure)
-    relative = gradient(K_ya, list(free.values())) / np.reshape(plain(K_ya), (-1, 1)) if fitted else 0.0
-    by_stiffness = end.covariance @ end.jacobian.T / u
+    at = traced({name: float(values[name]) for name in fitted})
+    K = direction.slip_stiffness(*upright({**values, **at}, load, pressure))
+    relative = gradient(K, list(at.values())) / np.reshape(plain(K), (-1, 1)) if fitted else 0.0
+    by_stiffness = (end.covariance @ end.jacobian.T / u)[own]
     return BesideNumbers(
-        values=dict(end.values),
-        covariance=scale * end.covariance,
+        values={name: end.values[name] for name in names},
+        covariance=scale * end.covariance[np.ix_(own, own)],
         leans_on=fitted,
         slope=by_stiffness @ (measured[:, None] * relative) if fitted else np.zeros((len(names), 0)),
     )
 
 
-def relaxation_sentence(found: Relaxation) -> str:
-    """The relaxation lengths that steps show, and the coefficients; empty without any."""
-    if not found.found:
-        return ""
+def relaxation_sentences(found: Sequence[Relaxation]) -> list[str]:
+    """The relaxation lengths that steps show, and the coefficients: a sentence per direction with steps."""
+    return [_sentence(one) for one in found if one.found]
+
+
+def _sentence(found: Relaxation) -> str:
     lengths = ", ".join(
         f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N"
         for run in found.runs
     )
     numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
+    force = CHANNELS[found.direction.force].word
     return ascii_only(
-        f"Relaxation length of the side force, from steps of the sideslip angle: {lengths}. So {numbers}."
+        f"Relaxation length of the {force}, from steps of {found.direction.word}: {lengths}. So {numbers}."
     )

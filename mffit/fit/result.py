@@ -57,7 +57,7 @@ class FitResult(Brief):
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
-    relaxation: Relaxation | None = None  #: what steps of the sideslip angle determine
+    relaxation: tuple[Relaxation, ...] = ()  #: what steps of the sideslip angle and of slip determine
     joined: tuple[Joined, ...] = ()  #: what other campaigns of the tyre gave
     beside: tuple[BesideNumbers, ...] = ()  #: coefficients fitted to readings of their own: radii, My, steps
     lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways

@@ -21,18 +21,15 @@ from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.refining import finite_spin_bias, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
+from mffit.planning.apart import sample_noise
 from mffit.planning.goals import BANDS, EPSILON, JOINT
 from mffit.planning.outlook import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.quantities import column
+from mffit.quantities import CHANNELS, column
 from mffit.results import BuildResult, as_json
 
 WRITTEN = ("plan.json", "plan.html")
-RECORDED = (
-    f"recording = {{ rate_Hz = 20, hold_s = {search.constants.PLAN_STEP_HOLD:g}, steering_deg_per_s = 50 }}"
-)
-"""How a simulated run of steps is recorded."""
 SHEETS = "runs"
 """Folder with the sheets to fill in at the rig."""
 
@@ -197,19 +194,39 @@ def simulated(config: Config, runs: Sequence[PlannedRun]) -> str:
         if run.points is None:
             continue
         for number, part in enumerate(_grids(run.points), 1):
-            several = f"-{number}" if number > 1 else ""
+            several, steps = f"-{number}" if number > 1 else "", run.addition.steps
             lines += ["", "[[sweep]]", f'file = "{run.name}{several}.csv"']
             lines += [f"load_N = {_listed(part.Fz)}", f"p_kPa = {_listed(part.p / 1e3)}"]
             lines += [
-                f"alpha_deg = {_listed(signs['alpha'] * np.degrees(part.alpha), ordered=run.addition.steps)}"
+                f"alpha_deg = {_listed(signs['alpha'] * np.degrees(part.alpha), ordered=steps == 'alpha')}"
             ]
             lines += [f"gamma_deg = {_listed(signs['gamma'] * np.degrees(part.gamma))}"]
-            lines += [f"kappa = {_listed(part.kappa)}", f"V_mps = {_listed(part.V)}"]
+            lines += [
+                f"kappa = {_listed(part.kappa, ordered=steps == 'kappa')}",
+                f"V_mps = {_listed(part.V)}",
+            ]
             lines += ['direction = "backward"'] if part.direction[0] < 0 else []
             lines += _place(part, configuration.path_curvature(config.rig))
             lines += ["free_rolling = true"] if run.addition.rolling else []
-            lines += [RECORDED] if run.addition.steps else []
+            lines += [_recorded(part)] if steps else []
     return "\n".join(lines) + "\n"
+
+
+def _recorded(points: Points) -> str:
+    """How a simulated run of steps is recorded; samples scatter more than the points of the project, which are means."""
+    rate, hold, correlation = (
+        search.constants.PLAN_STEP_RATE, search.constants.PLAN_STEP_HOLD, search.constants.PLAN_STEP_CORRELATION
+    )  # fmt: skip
+    keys = {
+        "rate_Hz": rate, "hold_s": hold, "correlation_s": correlation, "steering_deg_per_s": 50.0, "slip_per_s": 0.5
+    }  # fmt: skip
+    for channel in CHANNELS:
+        u = float(points.u(channel)[0])
+        if channel == "Fx" and not np.isfinite(u):  # not measured yet: as the side force
+            u = float(points.u_Fy[0])
+        if np.isfinite(u):
+            keys[f"noise_{column(channel)}"] = sample_noise(u)
+    return f"recording = {{ {', '.join(f'{key} = {x:.3g}' for key, x in keys.items())} }}"
 
 
 def _grids(points: Points) -> list[Points]:

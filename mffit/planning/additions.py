@@ -16,12 +16,13 @@ _EPSILON = DIRECT["epsilon_gamma"].ascii
 
 
 class LineOfPoints(NamedTuple):
-    """Set-points along one angle; everything not given here is as in most of the programme."""
+    """Set-points along one angle or slip; everything not given here is as in most of the programme."""
 
     over: Literal["alpha", "gamma", "kappa"]
     angles: Series  #: in degrees, or without unit: over the largest angle or slip that was run
     direction: Literal[1, -1] = 1  #: 1 forward, -1 backward
     camber_side: Literal[-1, 0, 1] = 0  #: of a coupled sweep
+    absolute: bool = False  #: slips as they are
     steer_side: Literal[-1, 0, 1] = 0  #: of a sweep of combined slip
 
 
@@ -37,7 +38,7 @@ class Addition:
     disc_only: bool = False
     belt_only: bool = False
     measures: tuple[str, ...] = ()  #: channels beside those of the programme
-    steps: bool = False  #: a recording of steps between its angles, at walking speed
+    steps: Literal["", "alpha", "kappa"] = ""  #: setting that a recording steps, at walking speed
     rolling: bool = False  #: rolling freely straight on, at all loads and several pressures
     mount: Literal[1, -1] = 1
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
@@ -239,7 +240,21 @@ ADDITIONS = (
         ),
         lines=(LineOfPoints("alpha", constants.PLAN_STEPS),),
         belt_only=True,
-        steps=True,
+        steps="alpha",
+    ),
+    Addition(
+        id="slip-steps",
+        title="recording of steps of longitudinal slip",
+        reason=(
+            "The distance over which the longitudinal force follows a step of slip is the relaxation length over slip: roll at "
+            f"{constants.PLAN_STEP_SPEED:g} m/s, let the drive of the wheel change its speed by "
+            f"{constants.PLAN_STEPS_OF_SLIP[1]:.1%} within a fraction of a second, hold it for {constants.PLAN_STEP_HOLD:g} s, "
+            "and record at 20 Hz."
+        ),
+        lines=(LineOfPoints("kappa", constants.PLAN_STEPS_OF_SLIP, absolute=True),),
+        belt_only=True,
+        measures=("Fx",),
+        steps="kappa",
     ),
 )
 """In the order in which they are tried; of equally good ones with as many points the first is taken."""

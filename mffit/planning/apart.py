@@ -1,4 +1,4 @@
-"""What is fitted apart from the forces: relaxation length and loaded radius, and what further runs would add."""
+"""What is fitted apart from the forces: relaxation lengths and loaded radius, and what further runs would add."""
 
 from __future__ import annotations
 
@@ -9,18 +9,25 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.fit import FitResult
-from mffit.fit.constants import USUAL_MISFIT_OF_RADIUS
+from mffit.fit.constants import CARCASS_TERM_SPREAD, USUAL_MISFIT_OF_RADIUS
+from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.planning import constants
 from mffit.planning.runs import PlannedRun
 from mffit.scatter import rms
+from tir import Tyre
 from tir.derivatives import gradient, traced
 
+PLANNED_STEPS = {
+    "alpha": np.radians(constants.PLAN_STEPS),
+    "kappa": np.array(constants.PLAN_STEPS_OF_SLIP),
+}
+"""Values of a run of steps, by the setting that steps [rad or -]."""
 LOADED = ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1")
 
 
 class FittedApart:
-    """Relative uncertainty of relaxation length and loaded radius after any list of runs.
+    """Relative uncertainty of relaxation lengths and loaded radius after any list of runs.
 
     Each is linear in a few numbers with wide priors; readings add their information.
     """
@@ -31,15 +38,15 @@ class FittedApart:
         tested = found.files.tested
         self.loads = np.array([tested["FZMIN"], self.nominal, tested["FZMAX"]])
         self.pressure = float(found.tyre["NOMPRES"])
-        self.noise = float(np.median(found.search.problem.sigma["Fy"])) if found.search else 1.0
-        self._relaxation = np.diag(np.array(constants.PLAN_UNKNOWN_CARCASS) ** -2.0)
-        steps = found.relaxation.runs if found.relaxation else ()
-        for run in steps:
-            self._relaxation = self._relaxation + self._of_step(run.load, run.length.u / run.length.value)
-        if steps:  # a run like those that were made is as exact as they are
-            self.noise *= float(
-                np.median([run.length.u / run.length.value / self.u_of_step(run.load) for run in steps])
-            )
+        sigma = found.search.problem.sigma if found.search else {}
+        side = float(np.median(sigma["Fy"])) if "Fy" in sigma else 1.0
+        noise = {name: float(np.median(sigma[name])) if name in sigma else side for name in ("Fx", "Fy")}
+        self._lags = [
+            _OfSteps(one, self.tyre, self.nominal, noise[one.direction.force]) for one in found.relaxation
+        ]
+        known = [scale for lag in self._lags if (scale := lag.noisier_than_expected)]
+        for lag in self._lags:  # a run like those that were made is as exact as they are
+            lag.noise *= lag.noisier_than_expected or (float(np.median(known)) if known else 1.0)
         self._radius = np.diag(self._spread_of_radius() ** -2.0)
         rolling, u = found.radii.rolling, found.radii.rms.get("RL")
         self.u_radius = max(float(USUAL_MISFIT_OF_RADIUS), u or 0.0)
@@ -48,12 +55,11 @@ class FittedApart:
                 rolling.select(np.isfinite(rolling.loaded)), self.u_radius
             )
 
-    def u_relaxation(self, runs: Iterable[PlannedRun]) -> float:
-        """Standard uncertainty of the relaxation length over the length, rms over three loads."""
-        information = self._relaxation + sum(
-            (self._of_step(run.load, self.u_of_step(run.load)) for run in runs if run.addition.steps), 0.0
-        )
-        return self._rms(_by_load(self.loads / self.nominal - 1.0), information, np.ones(len(self.loads)))
+    def u_relaxation(self, runs: Iterable[PlannedRun]) -> list[float]:
+        """Standard uncertainty of each relaxation length over the length, rms over three loads."""
+        runs = list(runs)
+        by_load = _by_load(self.loads / self.nominal - 1.0)
+        return [_rms(by_load, lag.information(runs), np.ones(len(self.loads))) for lag in self._lags]
 
     def u_loaded_radius(self, runs: Iterable[PlannedRun]) -> float:
         """Standard uncertainty of the loaded radius over the deflection, rms over three loads and pressures."""
@@ -70,24 +76,7 @@ class FittedApart:
             np.zeros(n), np.full(n, np.nan),
         )  # fmt: skip
         deflection = loads.ravel() / float(self.tyre["VERTICAL_STIFFNESS"])
-        return self._rms(self._slopes(at), information, deflection)
-
-    def u_of_step(self, load: float) -> float:
-        """Relative uncertainty of the length that one run of steps shows, offset and gain of the force free."""
-        state = self.tyre.state(load)
-        sigma = float(state.sigma_y)
-        height = abs(float(state.K_ya)) * constants.PLAN_STEP.rad
-        spacing = float(constants.PLAN_STEP_SPEED) * float(constants.PLAN_STEP_INDEPENDENT)
-        way = np.arange(0.0, float(constants.PLAN_STEP_SPEED) * float(constants.PLAN_STEP_HOLD), spacing)
-        settles = np.exp(-way / sigma)
-        slope = -height * way / sigma * settles  # by the logarithm of the length
-        known = np.column_stack([np.ones_like(way), 1.0 - settles])
-        left = slope - known @ np.linalg.lstsq(known, slope, rcond=None)[0]
-        return self.noise / math.sqrt(4.0 * max(float(left @ left), 1e-12))
-
-    def _of_step(self, load: float, u: float) -> np.ndarray:
-        row = _by_load(np.array([load / self.nominal - 1.0]))[0]
-        return np.outer(row, row) / u**2
+        return _rms(self._slopes(at), information, deflection)
 
     def _spread_of_radius(self) -> np.ndarray:
         stiffness = constants.PLAN_UNKNOWN_STIFFNESS * float(self.tyre["VERTICAL_STIFFNESS"])
@@ -107,11 +96,67 @@ class FittedApart:
         information: np.ndarray = slopes.T @ slopes / u**2
         return information
 
-    @staticmethod
-    def _rms(slopes: np.ndarray, information: np.ndarray, size: np.ndarray) -> float:
-        size_of = 1.0 / np.sqrt(np.diag(information))  # numbers of very different units
-        covariance = np.linalg.inv(information * np.outer(size_of, size_of)) * np.outer(size_of, size_of)
-        return rms(np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes)) / size)
+
+class _OfSteps:
+    """What runs of steps show of the relaxation length in one direction."""
+
+    def __init__(self, found: Relaxation, tyre: Tyre, nominal: float, noise: float) -> None:
+        self.direction, self.tyre, self.nominal = found.direction, tyre, nominal
+        self.noise = noise  #: of a finished point [N]
+        self.made = [(run.load, run.length.u / run.length.value) for run in found.runs]
+
+    @property
+    def noisier_than_expected(self) -> float | None:
+        """Uncertainty that runs of steps gave over that forecast; None without any."""
+        return float(np.median([u / self.u_of_step(load) for load, u in self.made])) if self.made else None
+
+    def information(self, runs: Iterable[PlannedRun]) -> np.ndarray:
+        """Information (3, 3) about the logarithm of the carcass stiffness, with its prior, after further runs."""
+        new = [(r.load, self.u_of_step(r.load)) for r in runs if r.addition.steps == self.direction.setting]
+        rows, u = (
+            _by_load(np.array([load for load, _ in self.made + new]) / self.nominal - 1.0),
+            [u for _, u in self.made + new],
+        )
+        weighted = rows / np.reshape(u, (-1, 1))
+        prior: np.ndarray = np.diag(
+            np.array([constants.PLAN_UNKNOWN_CARCASS, *CARCASS_TERM_SPREAD[:2]]) ** -2.0
+        )
+        return prior + weighted.T @ weighted
+
+    def u_of_step(self, load: float) -> float:
+        """Relative uncertainty of the length that one run of steps shows, offset and gain of the force free.
+
+        The noise is a first-order process, taken off as the fit takes it off.
+        """
+        state = self.tyre.state(load)
+        sigma, K = (abs(float(getattr(state, name))) for name in (self.direction.sigma, self.direction.K))
+        V, hold, rate = (
+            float(x) for x in (constants.PLAN_STEP_SPEED, constants.PLAN_STEP_HOLD, constants.PLAN_STEP_RATE)
+        )
+        values = PLANNED_STEPS[self.direction.setting]
+        time = np.arange(0.0, len(values) * hold, 1.0 / rate)
+        response, slope = np.zeros(len(time)), np.zeros(len(time))
+        for k, height in enumerate(K * np.diff(values), 1):
+            way = np.maximum(time - k * hold, 0.0) * V
+            response += height * (1.0 - np.exp(-way / sigma))
+            slope -= height * way / sigma * np.exp(-way / sigma)  # by the logarithm of the length
+        tau = float(constants.PLAN_STEP_CORRELATION)
+        noise = sample_noise(self.noise)
+        keeps = math.exp(-1.0 / (rate * tau))
+        design = np.column_stack([np.ones(len(time)), response, slope])
+        white = (design[1:] - keeps * design[:-1]) / (noise * math.sqrt(1.0 - keeps**2))
+        return float(np.sqrt(np.linalg.inv(white.T @ white)[2, 2]))
+
+
+def sample_noise(of_point: float) -> float:
+    """Standard deviation of a sample of a recording, from that of a finished point."""
+    return of_point * math.sqrt(constants.PLAN_POINT_TIME / (2.0 * constants.PLAN_STEP_CORRELATION))
+
+
+def _rms(slopes: np.ndarray, information: np.ndarray, size: np.ndarray) -> float:
+    size_of = 1.0 / np.sqrt(np.diag(information))  # numbers of very different units
+    covariance = np.linalg.inv(information * np.outer(size_of, size_of)) * np.outer(size_of, size_of)
+    return rms(np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes)) / size)
 
 
 def _by_load(dfz: np.ndarray) -> np.ndarray:

@@ -32,20 +32,32 @@ PLAN_LEANED_SLIP_CAMBERS = Series((4.0,), "deg", "Cambers at which a sweep of lo
 PLAN_LARGEST_SLIP = Real(
     0.15, "-", "Largest longitudinal slip that is proposed where none was run: beyond the peak of dry tyres."
 )
-PLAN_STEP = Real(1.0, "deg", "Size of a step of the sideslip angle; the side force is linear within it.")
-PLAN_STEPS = Series((0.0, 1.0, 0.0, -1.0, 0.0), "deg", "Angles of a run of steps, one after the other.")
+PLAN_STEPS = Series(
+    (0.0, 1.0, 0.0, -1.0, 0.0),
+    "deg",
+    "Angles of a run of steps, one after the other; the side force is linear within them.",
+)
+PLAN_STEPS_OF_SLIP = Series(
+    (0.0, 0.025, 0.0, -0.025, 0.0),
+    "-",
+    "Slips of a run of steps, one after the other: more than the 0.02 up to which a wheel counts as rolling freely, and with "
+    "three quarters or more of the slope of Fx at zero slip left, so that the relaxation length is that of small slip.",
+)
 PLAN_STEP_SPEED = Real(1.0, "m/s", "Speed of a run of steps.")
 PLAN_STEP_HOLD = Real(6.0, "s", "Time for which each angle is held in a run of steps.")
-PLAN_STEP_INDEPENDENT = Real(
-    0.4,
+PLAN_STEP_RATE = Real(20.0, "1/s", "Samples per second of a run of steps: several per time of settling.")
+PLAN_STEP_CORRELATION = Real(
+    0.8,
     "s",
-    "Time between samples of a run of steps that count as independent; cells and belts sway as long.",
+    "Correlation time of the noise of a recording: cells and belts sway as long; that of the virtual rig.",
 )
-PLAN_UNKNOWN_CARCASS = Series(
-    (0.3, 0.3, 0.2),
-    "-",
-    "Relative standard deviation of the lateral carcass stiffness of a tyre without steps: at nominal load, its slope and "
-    "curvature over dfz.",
+PLAN_POINT_TIME = Real(
+    2.0,
+    "s",
+    "Time over which a finished point is averaged at least; single samples scatter accordingly more.",
+)
+PLAN_UNKNOWN_CARCASS = Real(
+    0.3, "-", "Relative standard deviation of a carcass stiffness at nominal load of a tyre without steps."
 )
 PLAN_UNKNOWN_STIFFNESS = Real(
     0.3, "-", "Relative standard deviation of a vertical stiffness that was not measured."

@@ -34,7 +34,7 @@ class Goal:
             EPSILON: f"u({epsilon}) by the direct method",
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
-            FILE: "95 % band of the file over its forces, relaxation length and deflection, rms",
+            FILE: "95 % band of the file over its forces, relaxation lengths and deflection, rms",
             TIE: f"u of {self._tied} with its rival effects free",
         }.get(self.kind, f"u({self.name})")
 

@@ -75,7 +75,7 @@ class Outlook:
         if self._file is not None and self.apart is not None:
             names, by_channel = self._file
             parts = [_spread(posterior, names, slopes) for slopes in by_channel]
-            parts += [self.apart.u_relaxation(runs), self.apart.u_loaded_radius(runs)]
+            parts += [*self.apart.u_relaxation(runs), self.apart.u_loaded_radius(runs)]
             return COVERAGE_FACTOR_95 * rms(np.array(parts))
         if self._curves is None:
             return _or_infinite(posterior.stderr.get(self.goal.name))

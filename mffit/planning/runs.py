@@ -113,7 +113,7 @@ class _Programme:
 
     def angles(self, line: LineOfPoints) -> np.ndarray:
         """Angles [deg] or slips (n,) of a line."""
-        if line.angles.unit == "deg":
+        if line.angles.unit == "deg" or line.absolute:
             return np.array(line.angles)
         if line.over == "gamma" and not self.largest["gamma"] > constants.PLAN_SMALLEST_CAMBER_SWEPT:
             return np.array(constants.PLAN_SMALL_CAMBERS)

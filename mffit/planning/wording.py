@@ -93,7 +93,7 @@ def promise(plan: Plan) -> str:
     elif kind == FILE:
         estimate = (
             "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values (rms over sideslip, camber and "
-            "slip at three loads), of the relaxation length, and of the loaded radius over the deflection: the rms of these. "
+            "slip at three loads), of both relaxation lengths, and of the loaded radius over the deflection: the rms of these. "
             "What was not measured counts with its prior."
         )
     elif kind == TIE:

@@ -188,12 +188,19 @@ STAND_IN_PRESSURE = Real(
 )
 STAND_IN_SPEED = Real(1.0, "m/s", "For a bare table without speed; the alignment does not depend on it.")
 
-# Steps of the sideslip angle
+# Steps of the sideslip angle and of longitudinal slip
 SMALLEST_STEP = Real(0.3, "deg", "Smallest change of the angle that is a step.")
+STRAIGHT_ON = Real(
+    0.5,
+    "deg",
+    "Sideslip up to which a step of slip shows the relaxation length of straight running; beyond it Fx answers to both.",
+)
 LONGEST_STEP = Real(
     0.5,
     "-",
-    "Way of a step, and distance between samples, over the unloaded radius: relaxation lengths are 0.5 to 2 radii.",
+    "Way of a step, and distance between samples, over the unloaded radius: relaxation lengths are 0.25 to 2 radii.",
 )
 SHORTEST_REST = Real(3.0, "-", "Distance rolled after a step, over the unloaded radius.")
-LOAD_RANGE_OF_STEPS = Real(0.2, "-", "Largest range of the load over its mean while the angle steps.")
+LOAD_RANGE_OF_STEPS = Real(
+    0.2, "-", "Largest range of the load over its mean while the angle or the slip steps."
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +42,8 @@ class Reading(NamedTuple):
     stretches: tuple[StretchNote, ...]  #: of all recordings
     left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
-    steps: Points | None = None  #: samples of steps of the sideslip angle, each run a sweep; None without any
+    steps: Mapping[str, Points] = MappingProxyType({})
+    """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:

@@ -1,9 +1,10 @@
-"""Recordings with steps of the sideslip angle: samples that show over which rolled distance the side force follows."""
+"""Recordings with steps of the sideslip angle or of slip: samples that show over which rolled distance the force follows."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,10 +17,28 @@ from mffit.points.stretch import PLATEAU, Stretch
 from mffit.sweeps import Sweep
 
 
+class Stepped(NamedTuple):
+    """A setting that a rig steps from one value to another."""
+
+    force: str  #: channel that follows it
+    smallest: float  #: change that is a step
+    beside: str  #: the other setting, which rests
+    rests: float  #: largest size of the other one
+
+
+STEPPED = {
+    "alpha": Stepped("Fy", constants.SMALLEST_STEP.rad, "kappa", float(constants.FREE_ROLLING_SLIP)),
+    "kappa": Stepped("Fx", float(constants.STEP_OF_SLIP), "alpha", constants.STRAIGHT_ON.rad),
+}
+"""By the name of the setting."""
+
+
 def steps(
     sweeps: Sequence[Sweep], phi_t: Mapping[str, float], radius: float, scale: Scale | None = None
-) -> Points | None:
-    """Samples of every run of steps between two held angles, each run a sweep with its times; None without any.
+) -> dict[str, Points]:
+    """Samples of every run of steps between held values, each run a sweep with its times, by the setting that steps.
+
+    A setting that no recording steps is left out.
 
     Parameters
     ----------
@@ -28,50 +47,53 @@ def steps(
     radius : unloaded radius [m], the size of relaxation lengths
     scale : usual size of the settings in the campaign
     """
-    found = [
-        _samples(sweep, phi_t[sweep.file], begin, end)
-        for sweep in sweeps
-        if sweep.is_series and np.any(np.isfinite(sweep.Fy)) and np.all(np.diff(sweep.time) > 0.0)
-        for begin, end in _runs(sweep, radius, scale)
-    ]
-    return concatenate(found) if found else None
+    found: dict[str, list[Points]] = {}
+    for sweep in sweeps:
+        if not sweep.is_series or np.any(np.diff(sweep.time) <= 0.0):
+            continue
+        for number, (setting, begin, end) in enumerate(_runs(sweep, radius, scale), 1):
+            if np.any(np.isfinite(getattr(sweep, STEPPED[setting].force)[begin:end])):
+                samples = _samples(sweep, f"{sweep.name}:{number:02d}", phi_t[sweep.file], begin, end)
+                found.setdefault(setting, []).append(samples)
+    return {setting: concatenate(parts) for setting, parts in found.items()}
 
 
-def _runs(sweep: Sweep, radius: float, scale: Scale | None) -> list[tuple[int, int]]:
-    """First and last sample (excluded) of every run of steps."""
+def _runs(sweep: Sweep, radius: float, scale: Scale | None) -> list[tuple[str, int, int]]:
+    """The setting, the first and the last sample (excluded) of every run of steps."""
     if len(sweep) < 2 or not all(np.all(np.isfinite(x)) for x in settings_of(sweep)):
         return []
     rolled = rolled_distance(sweep.time, sweep.V)
+    rest = constants.SHORTEST_REST * radius
     held = [s for s in stretches(settings_of(sweep), scale=scale) if s.kind == PLATEAU and not s.dropped]
-    out: list[tuple[int, int]] = []
+    out: list[tuple[str, int, int]] = []
     for before, after in itertools.pairwise(held):
-        if not _is_step(sweep, rolled, before, after, radius):
-            continue
-        if out and out[-1][1] == before.end:
-            out[-1] = (out[-1][0], after.end)
-        else:
-            out.append((before.begin, after.end))
+        for setting in STEPPED:
+            if not _is_step(sweep, setting, rolled, before, after, radius):
+                continue
+            if out and out[-1][::2] == (setting, before.end):
+                out[-1] = (setting, out[-1][1], after.end)
+            else:
+                # What was before the first of the held values may still be settling.
+                settled = int(np.searchsorted(rolled, rolled[before.begin] + rest))
+                out.append((setting, min(settled, before.end - 1), after.end))
     return out
 
 
-def _is_step(sweep: Sweep, rolled: np.ndarray, before: Stretch, after: Stretch, radius: float) -> bool:
-    """Whether the angle goes from one plateau to the next at once, all else the same, and is held long enough after it."""
-    rows = slice(before.begin, after.end)
-    first, last = (float(np.median(sweep.alpha[s.begin : s.end])) for s in (before, after))
-    if (
-        abs(last - first) < constants.SMALLEST_STEP.rad
-        or np.ptp(sweep.gamma[rows]) > constants.STEP_OF_ANGLE.rad
-    ):
+def _is_step(
+    sweep: Sweep, setting: str, rolled: np.ndarray, before: Stretch, after: Stretch, radius: float
+) -> bool:
+    """Whether a setting goes from one plateau to the next at once, all else the same, and is held long enough after it."""
+    rows, step = slice(before.begin, after.end), STEPPED[setting]
+    values = getattr(sweep, setting)
+    first, last = (float(np.median(values[s.begin : s.end])) for s in (before, after))
+    if abs(last - first) < step.smallest or np.max(np.abs(getattr(sweep, step.beside)[rows])) > step.rests:
         return False
-    if (
-        np.any(np.diff(sweep.direction[rows]))
-        or np.max(np.abs(sweep.kappa[rows])) > constants.FREE_ROLLING_SLIP
-    ):
+    if np.ptp(sweep.gamma[rows]) > constants.STEP_OF_ANGLE.rad or np.any(np.diff(sweep.direction[rows])):
         return False
     load = sweep.Fz[rows]
     if np.ptp(load) > constants.LOAD_RANGE_OF_STEPS * np.mean(load):
         return False
-    share = (sweep.alpha[rows] - first) / (last - first)
+    share = (values[rows] - first) / (last - first)
     leaves, arrives = int(np.argmax(share > 0.1)), len(share) - int(np.argmax(share[::-1] < 0.9)) - 1
     way = rolled[rows][arrives] - rolled[rows][leaves]
     spacing = float(np.median(np.diff(rolled[rows])))
@@ -83,14 +105,14 @@ def _is_step(sweep: Sweep, rolled: np.ndarray, before: Stretch, after: Stretch, 
     )
 
 
-def _samples(sweep: Sweep, phi_t: float, begin: int, end: int) -> Points:
+def _samples(sweep: Sweep, name: str, phi_t: float, begin: int, end: int) -> Points:
     rows = slice(begin, end)
-    names = ("p", "V", "T", "Fy", "direction", "line")
+    names = ("p", "V", "T", "kappa", "Fx", "Fy", "omega", "direction", "line")
     return make_points(
         sweep.alpha[rows],
         sweep.gamma[rows],
         sweep.Fz[rows],
-        sweep_names=(sweep.name,),
+        sweep_names=(name,),
         files=(sweep.file,),
         phi_t=phi_t,
         time=sweep.time[rows],

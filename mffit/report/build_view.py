@@ -160,7 +160,7 @@ class BuildView:
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
-    relaxation: Relaxation | None  #: what steps of the sideslip angle determine
+    relaxation: tuple[Relaxation, ...]  #: what steps of the sideslip angle and of slip determine
     campaigns: tuple[CampaignView, ...]  #: the others, if several were joined
     lent: Lent | None  #: what a sister tyre gave, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled

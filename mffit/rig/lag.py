@@ -1,4 +1,4 @@
-"""First-order lag of the sideslip angle along continuous sweeps."""
+"""First-order lag of the sideslip angle or of longitudinal slip along continuous sweeps."""
 
 from __future__ import annotations
 
@@ -7,27 +7,28 @@ import numpy as np
 from mffit.points import Points
 
 
-def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
-    """Sideslip angle (n,) that the force answers to [rad], and its derivative by the relaxation length [rad/m].
+def lagged(points: Points, sigma: float, setting: str = "alpha") -> tuple[np.ndarray, np.ndarray]:
+    """Sideslip angle or slip (n,) that the force answers to [rad or -], and its derivative by the relaxation length [1/m].
 
-    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between samples,
-    however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins settled; steady
-    points have no lag.
+    ``sigma d(alpha')/ds + alpha' = alpha``; the same for ``setting`` kappa. Exact for an angle that moves linearly over the
+    rolled distance between samples, however far these are apart. Where the wheel does not roll, the lag stays constant. Every
+    sweep begins settled; steady points have no lag.
 
     Over a step of length d from (alpha_0, alpha_0') to alpha_1, with q = d/sigma and f = (1 - exp(-q))/q, the lag
     b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
     """
-    alpha, slope = points.alpha.copy(), np.zeros(len(points))
+    values = getattr(points, setting)
+    follows, slope = values.copy(), np.zeros(len(points))
     moving = np.isfinite(points.time)
     for k in np.unique(points.sweep[moving]):
         rows = np.flatnonzero(moving & (points.sweep == k))
         rows = rows[np.argsort(points.time[rows], kind="stable")]
         V = points.V[rows]
         steps = np.diff(points.time[rows]) * 0.5 * (V[:-1] + V[1:])
-        lag, by_sigma = _lag(np.diff(points.alpha[rows]), steps, sigma)
-        alpha[rows] -= lag
+        lag, by_sigma = _lag(np.diff(values[rows]), steps, sigma)
+        follows[rows] -= lag
         slope[rows] = -by_sigma
-    return alpha, slope
+    return follows, slope
 
 
 def _lag(moved: np.ndarray, steps: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:

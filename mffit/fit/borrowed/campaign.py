@@ -21,7 +21,7 @@ from mffit.fit.borrowed.sister import BY_FRICTION, LENT, OVER_SLIP
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import NAMES as OF_RELAXATION
+from mffit.fit.relaxation import DIRECTIONS
 from mffit.fit.upright import sideways
 from mffit.fit.wheel.vertical import OF_RADII
 from mffit.points import Points, levels
@@ -35,7 +35,7 @@ GROUPS = {
     "overturning moment": tuple(row.name for row in TABLE if row.channel == "Mx"),
     "rolling resistance": tuple(row.name for row in TABLE if row.channel == "My"),
     "vertical stiffness and radii": OF_RADII,
-    "relaxation": OF_RELAXATION,
+    **{direction.title.lower(): direction.names for direction in DIRECTIONS},
 }
 """What a campaign may give, each group as a whole: its coefficients were fitted together."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -117,7 +117,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "temperature": None if found.temperature is None else _temperature(found.temperature),
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
         "runs": None if found.runs is None else _runs(found.runs),
-        "relaxation": None if found.relaxation is None else _relaxation(found.relaxation),
+        "relaxation": _relaxation(found.relaxation) if found.relaxation else None,
         "campaigns": [_joined(row) for row in found.joined],
         "sister": None if found.lent is None else _sister(found.lent),
         "confounded": [
@@ -202,16 +202,23 @@ def _runs(found: BetweenRuns) -> dict[str, Any]:
     }
 
 
-def _relaxation(found: Relaxation) -> dict[str, Any]:
-    """Relaxation lengths from steps of the sideslip angle, and what follows from them or is missing."""
+def _relaxation(found: Sequence[Relaxation]) -> dict[str, Any]:
+    """Relaxation lengths from steps of the sideslip angle, and under ``slip`` from steps of slip."""
+    sideways, slip = map(_relaxation_of, found)
+    return {**sideways, "slip": slip}
+
+
+def _relaxation_of(found: Relaxation) -> dict[str, Any]:
+    """Relaxation lengths in one direction, and what follows from them or is missing."""
+    sigma = found.direction.sigma
     return {
         "runs": [
             {
                 "file": run.file,
                 "load_N": run.load,
                 "p_kPa": run.pressure / 1e3,
-                **stated("sigma_y_m", run.length),
-                "sigma_y_file_m": run.written,
+                **stated(f"{sigma}_m", run.length),
+                f"{sigma}_file_m": run.written,
             }
             for run in found.runs
         ],

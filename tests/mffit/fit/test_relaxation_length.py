@@ -1,7 +1,9 @@
-"""Relaxation length of the side force from steps of the sideslip angle."""
+"""Relaxation lengths from steps of the sideslip angle and of slip."""
 
 from __future__ import annotations
 
+import json
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,22 +14,47 @@ from scipy.signal import lfilter
 
 import tir
 from mffit import config as configuration
+from mffit import virtual_rig
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import RUN, _correlation, relaxation, relaxation_sentence
+from mffit.fit.relaxation import DIRECTIONS, _correlation, relaxation, relaxation_sentences
 from mffit.points.loading import read
 from mffit.points.steps import steps
+from mffit.results.as_json import of_build
 from mffit.rig import Simulation
 from mffit.sweeps import load
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
 NONE_KNOWN = Posterior((), np.zeros((0, 0)))
+UNKNOWN = {
+    "LATERAL_STIFFNESS": 300e3, "PCFY1": 0.0, "PCFY2": 0.0, "PCFY3": 0.0,
+    "LONGITUDINAL_STIFFNESS": 800e3, "PCFX1": 0.0, "PCFX2": 0.0, "PCFX3": 0.0,
+}  # fmt: skip
+SIDEWAYS, SLIP = range(2)
 
 
 @pytest.fixture(scope="module")
-def campaign():
-    content = configuration.load(SAMPLE / "tyre.toml")
-    kept = tuple(row for row in content.sweep if row.file.startswith(("steps", "rolling")))
-    return content.model_copy(update={"sweep": kept})
+def campaign(tmp_path_factory):
+    """The sample's steps of sideslip, and steps of slip at the same loads and at another pressure."""
+    content = tomllib.loads((SAMPLE / "rig.toml").read_text(encoding="utf-8"))
+    sideways = [sweep for sweep in content["sweep"] if sweep["file"].startswith("steps")]
+    slip = [
+        {
+            "file": f"slip_{load}N_{p}kPa.csv", "load_N": load, "p_kPa": p, "V_mps": 1, "kappa": [0, 0.025, 0, -0.025, 0],
+            "recording": {"rate_Hz": 20, "hold_s": 6, "slip_per_s": 0.4, "noise_Fx_N": 15.0},
+        }
+        for load, p in ((2000, 240), (4200, 240), (6500, 240), (4200, 200))
+    ]  # fmt: skip
+    rolling = next(sweep for sweep in content["sweep"] if sweep["file"] == "rolling.csv")
+    folder = tmp_path_factory.mktemp("steps")
+    virtual_rig.simulate(
+        virtual_rig.load_plan({**content, "sweep": [rolling, *sideways, *slip]}, folder=SAMPLE), folder
+    )
+    return configuration.load(folder / "tyre.toml")
+
+
+@pytest.fixture(scope="module")
+def recorded(campaign):
+    return read(campaign).steps
 
 
 @pytest.fixture(scope="module")
@@ -36,44 +63,73 @@ def truth() -> tir.Tyre:
 
 
 @pytest.fixture(scope="module")
-def found(campaign, truth):
+def found(recorded, truth):
     """The tyre is known but for its carcass, and the rig has its errors."""
-    start = truth.replace(LATERAL_STIFFNESS=300e3, PCFY1=0.0, PCFY2=0.0)
-    return relaxation(read(campaign).steps, Simulation.of(start, turn_slip=False), NONE_KNOWN)
+    return relaxation(recorded, Simulation.of(truth.replace(**UNKNOWN), turn_slip=False), NONE_KNOWN)
 
 
-def test_the_relaxation_length_is_that_of_the_tyre_at_every_load(found, truth):
-    assert [round(run.load, -2) for run in found.runs] == [2000, 4200, 6500]
-    for run in found.runs:
-        true = float(truth.state(run.load, p=run.pressure).sigma_y)
+@pytest.mark.parametrize(("direction", "runs"), [(SIDEWAYS, 3), (SLIP, 4)])
+def test_the_relaxation_length_is_that_of_the_tyre_at_every_load(found, truth, direction, runs):
+    assert len(found[direction].runs) == runs
+    for run in found[direction].runs:
+        true = float(getattr(truth.state(run.load, p=run.pressure), ("sigma_y", "sigma_x")[direction]))
         assert run.length.value == pytest.approx(true, abs=2.6 * run.length.u)
-        assert run.length.u < 0.06 * true
-        assert run.written == pytest.approx(run.length.value, rel=1e-6)  # three loads, three coefficients
+        assert run.length.u < 0.15 * true
+        assert run.written == pytest.approx(run.length.value, rel=1e-6)  # as many coefficients as runs
 
 
-def test_coefficients_are_within_their_uncertainty(found, truth):
-    assert set(found.found) == {"LATERAL_STIFFNESS", "PCFY1", "PCFY2"}
-    for name, q in found.found.items():
+@pytest.mark.parametrize(
+    ("direction", "names"),
+    [
+        (SIDEWAYS, {"LATERAL_STIFFNESS", "PCFY1", "PCFY2"}),
+        (SLIP, {"LONGITUDINAL_STIFFNESS", "PCFX1", "PCFX2", "PCFX3"}),
+    ],
+)
+def test_coefficients_are_within_their_uncertainty(found, truth, direction, names):
+    assert set(found[direction].found) == names
+    for name, q in found[direction].found.items():
         assert q.value == pytest.approx(truth[name], abs=2.6 * q.u), name
-    assert found.coverage.held == ("PCFY3",)
-    assert "one pressure" in found.coverage.missing[0]
 
 
-def test_one_load_determines_the_stiffness_only(campaign, truth):
-    one = read(campaign).steps
-    one = one.select(one.sweep == 1)
-    assert set(relaxation(one, Simulation.of(truth, turn_slip=False), NONE_KNOWN).found) == {
-        "LATERAL_STIFFNESS"
-    }
+def test_what_is_held_and_why(found):
+    assert found[SIDEWAYS].coverage.held == ("PCFY3",)
+    assert "one pressure" in found[SIDEWAYS].coverage.missing[0]
+    assert found[SLIP].coverage.missing == ()
 
 
-def test_the_stiffness_follows_the_cornering_stiffness_of_the_fit(campaign, truth):
+def test_the_json_has_both_directions(found):
+    written = json.loads(json.dumps(of_build._relaxation(found)))
+    assert [round(run["load_N"], -2) for run in written["runs"]] == [2000, 4200, 6500]
+    assert written["runs"][0]["sigma_y_m"] == found[SIDEWAYS].runs[0].length.value
+    assert len(written["slip"]["runs"]) == 4
+    assert written["slip"]["runs"][0]["sigma_x_m"] == found[SLIP].runs[0].length.value
+    assert written["slip"]["missing"] is None
+
+
+def test_offset_and_gain_of_a_run_do_not_matter(recorded, truth, found):
+    shifted = {"kappa": recorded["kappa"].replace(Fx=1.3 * recorded["kappa"].Fx + 70.0)}
+    again = relaxation(shifted, Simulation.of(truth.replace(**UNKNOWN), turn_slip=False), NONE_KNOWN)[SLIP]
+    for run, other in zip(found[SLIP].runs, again.runs, strict=True):
+        assert other.length[:2] == pytest.approx(run.length[:2], rel=1e-3)
+
+
+@pytest.fixture
+def one_run(recorded):
+    return {"alpha": recorded["alpha"].select(recorded["alpha"].sweep == 1)}
+
+
+def test_one_load_determines_the_stiffness_only(one_run, truth):
+    sideways, slip = relaxation(one_run, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
+    assert set(sideways.found) == {"LATERAL_STIFFNESS"}
+    assert not slip.found
+
+
+def test_the_stiffness_follows_the_cornering_stiffness_of_the_fit(one_run, truth):
     """A relaxation length is cornering stiffness over carcass stiffness: 5 % in PKY1 are 5 % in LATERAL_STIFFNESS."""
-    one = read(campaign).steps
-    one = one.select(one.sweep == 1)
     u = 0.05 * abs(truth["PKY1"])
-    found = relaxation(one, Simulation.of(truth, turn_slip=False), Posterior(("PKY1",), np.array([[u**2]])))
-    alone = relaxation(one, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
+    tyre = Simulation.of(truth, turn_slip=False)
+    found = relaxation(one_run, tyre, Posterior(("PKY1",), np.array([[u**2]])))[SIDEWAYS]
+    alone = relaxation(one_run, tyre, NONE_KNOWN)[SIDEWAYS]
     q = found.found["LATERAL_STIFFNESS"]
     own = alone.found["LATERAL_STIFFNESS"].u
     assert q.u == pytest.approx(np.hypot(own, 0.05 * q.value), rel=1e-3)
@@ -86,21 +142,29 @@ def test_the_stiffness_follows_the_cornering_stiffness_of_the_fit(campaign, trut
     assert np.std(stiffness) == pytest.approx(own, rel=0.15)
 
 
-def test_steps_that_take_long_are_no_steps(campaign):
-    """The same recordings with a steering that takes a second, one metre of rolling, from angle to angle."""
+@pytest.mark.parametrize(("setting", "runs"), [("alpha", 3), ("kappa", 4)])
+def test_steps_that_take_long_are_no_steps(campaign, setting, runs):
+    """The same recordings with a rig that takes a second, one metre of rolling, from value to value."""
     series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]
-    slow = [replace(sweep, alpha=uniform_filter1d(sweep.alpha, 20)) for sweep in series]
+    slow = [replace(sweep, **{setting: uniform_filter1d(getattr(sweep, setting), 20)}) for sweep in series]
     phi_t = {sweep.file: 0.0 for sweep in series}
-    assert len(np.unique(steps(series, phi_t, 0.3185).sweep)) == 3
-    assert steps(slow, phi_t, 0.3185) is None
+    assert len(np.unique(steps(series, phi_t, 0.3185)[setting].sweep)) == runs
+    assert setting not in steps(slow, phi_t, 0.3185)
+
+
+def test_steps_of_slip_at_sideslip_show_no_length_of_straight_running(campaign):
+    series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]
+    steered = [replace(sweep, alpha=sweep.alpha + np.radians(2.0)) for sweep in series]
+    assert "kappa" not in steps(steered, {sweep.file: 0.0 for sweep in series}, 0.3185)
 
 
 def test_without_steps_the_result_says_what_to_run(truth):
-    nothing = relaxation(None, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
-    assert not nothing.coverage.supported
-    assert nothing.coverage.missing == (RUN,)
-    assert not nothing.found
-    assert relaxation_sentence(nothing) == ""
+    nothing = relaxation({}, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
+    for one, direction in zip(nothing, DIRECTIONS, strict=True):
+        assert not one.coverage.supported
+        assert one.coverage.missing == (direction.run,)
+        assert one.coverage.held == direction.names
+    assert relaxation_sentences(nothing) == []
 
 
 def test_correlated_residuals_count_as_fewer_and_white_ones_as_they_are():
@@ -110,7 +174,7 @@ def test_correlated_residuals_count_as_fewer_and_white_ones_as_they_are():
     assert _correlation(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(9.0, rel=0.25)
 
 
-def test_the_sentence_gives_every_length_with_its_load(found):
-    run = found.runs[0]
-    said = f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N, "
-    assert said in relaxation_sentence(found)
+def test_the_sentences_give_every_length_with_its_load(found):
+    for one, said in zip(found, relaxation_sentences(found), strict=True):
+        run = one.runs[0]
+        assert f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N, " in said

@@ -56,13 +56,13 @@ def goal():
 
 @pytest.fixture(scope="module")
 def plan(first, goal):
-    return plan_of(first, goal, runs=3)
+    return plan_of(first, goal, runs=4)
 
 
 def test_what_was_never_run_gains_most(plan):
     """Fx, relaxation length and radius of this project come from priors alone."""
     kinds = {step.run.addition.id for step in plan.steps}
-    assert "steps" in kinds
+    assert kinds & {"steps", "slip-steps"}
     assert "rolling" in kinds
     assert kinds & {"drive", "combined", "drive-camber", "drive-pressure"}
     assert plan.then < 0.4 * plan.now
@@ -82,7 +82,8 @@ def test_the_runs_are_made_as_proposed_and_are_as_good(first, plan, goal, tmp_pa
                     sorted(run.points.condition(column)), abs=1e-3
                 )
     assert longer.fit.coefficients["PKX1"].status in ("fitted", "regularised")
-    assert "LATERAL_STIFFNESS" in longer.fit.relaxation.found
+    found = [direction.found for direction in longer.fit.relaxation]
+    assert "LATERAL_STIFFNESS" in found[0] or "LONGITUDINAL_STIFFNESS" in found[1]
     assert "VERTICAL_STIFFNESS" in longer.fit.radii.found
     assert plan_of(longer, goal, runs=0).now == pytest.approx(plan.then, rel=0.6)
 
