@@ -48,7 +48,8 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
     found = [*_dimensions(tyre), *broken(tyre, SINGLE), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
     if not any(problem.level == "error" for problem in found):
         with np.errstate(all="ignore"):
-            found += [*_shape(tyre), *over_the_range(tyre), *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
+            ranged = (_with_origin(problem, tyre) for problem in over_the_range(tyre))
+            found += [*_shape(tyre), *ranged, *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
     for target in programs:
         found += target_problems(tyre, target)
     return [_with_line(problem, tyre) for problem in found]
@@ -64,6 +65,12 @@ def _with_line(problem: Problem, tyre: Tyre) -> Problem:
     if not lines:
         return problem
     return replace(problem, sentence=f"line {lines[0]}: {problem.sentence}", line=lines[0])
+
+
+def _with_origin(problem: Problem, tyre: Tyre) -> Problem:
+    """The problem with the origin of its coefficient, where the file states it: it may not have been measured."""
+    origin = tyre.status.get(problem.name)
+    return replace(problem, sentence=f"{problem.sentence} ({problem.name}: {origin})") if origin else problem
 
 
 def _error(name: str, sentence: str) -> Problem:

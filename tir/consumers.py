@@ -10,6 +10,7 @@ from tir.document import Document, FileLine
 from tir.equations.forces import Forces
 from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
+from tir.properties import number_of, unquoted
 from tir.targets import Target
 from tir.tyre import Tyre
 from tir.units import KINDS
@@ -33,7 +34,7 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
         known = ", ".join(map(str, target.fittyps))
         yield Problem(
             "error",
-            f'FITTYP {version} is not supported, only {known}: write the file with target="{target.name}"',
+            f"FITTYP {version} is not supported, only {known}: {_remedy(target)}",
             "FITTYP",
         )
     if target.complete and tyre.document is not None:
@@ -45,9 +46,15 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
             "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off",
             "USE_MODE",
         )
+    if target.verified:
+        yield Problem("note", f"its own demands are not verified: {target.verified}")
     for rule in target.rules:
         if rule.concerns(tyre.values):
             yield Problem(rule.level, rule.sentence, rule.name)
+
+
+def _remedy(target: Target) -> str:
+    return f'write it for this program by tir.read(path).write(other, target="{target.name}")'
 
 
 def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
@@ -132,7 +139,12 @@ def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Pr
 def _keys_of_its_own(keys: dict[str, FileLine], target: Target) -> Iterator[Problem]:
     for name in target.more:
         if name not in keys:
-            yield Problem("error", f'[MODEL] lacks {name}: write the file with target="{target.name}"', name)
+            yield Problem("error", f"[MODEL] lacks {name}: {_remedy(target)}", name)
+    for name, needed in target.values.items():
+        if name in keys and needed not in (unquoted(keys[name].value), number_of(keys[name].value)):
+            wanted = repr(needed) if isinstance(needed, str) else f"{needed:g}"
+            sentence = f"{name} is {keys[name].value}, but has to be {wanted}: {_remedy(target)}"
+            yield Problem("warning", sentence, name)
     if "FUNCTION_NAME" in keys and "USER_SUB_ID" in keys:
         line = keys["USER_SUB_ID"]
         yield Problem(

@@ -40,7 +40,7 @@ class TirWarning(UserWarning):
 class Problem:
     """Something to look at in a file that can still be read."""
 
-    level: str  #: "error" (cannot be simulated sensibly) or "warning"
+    level: str  #: "error" (cannot be simulated sensibly), "warning" or "note" (nothing to mend)
     sentence: str  #: what, where and what to do
     name: str = ""  #: the key concerned
     line: int | None = None

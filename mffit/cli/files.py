@@ -33,8 +33,8 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     problems = [*tyre.problems, *tir.check(tyre, filter(None, names))]
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
-    errors = sum(problem.level == "error" for problem in problems)
-    voice.say(f"{file}: {counted(errors, 'error')}, {counted(len(problems) - errors, 'warning')}")
+    errors, warnings = (sum(p.level == level for p in problems) for level in ("error", "warning"))
+    voice.say(f"{file}: {counted(errors, 'error')}, {counted(warnings, 'warning')}")
     voice.give(lambda: as_json.problems(file, problems))
     if errors:
         raise SystemExit(2)

@@ -43,3 +43,11 @@ GOOD_SHARE = Real(
 GOOD_CONDITIONS = Real(
     0.95, "-", "Share of the conditions at small camber that a good conversion of a moment reproduces."
 )
+WEIGHT_OF_CURVATURE_LIMIT = Real(
+    300.0,
+    "-",
+    "Residual per unit by which a curvature factor exceeds 1 (1 % of the largest force is 1): holds the limit.",
+)
+CURVATURE_MARGIN = Real(
+    0.005, "-", "Distance of a fitted curvature factor from 1, so that none exceeds it between the loads."
+)

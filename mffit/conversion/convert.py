@@ -33,7 +33,8 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     """The MF 6.2 file that has the forces of an MF 5.2 or PAC2002 file.
 
     Most coefficients mean the same. Those of camber are fitted to the old side force and aligning moment over the ranges of the
-    file, because MF 6.2 has another camber force, and leaves camber out of the force that acts on the trail.
+    file, because MF 6.2 has another camber force, and leaves camber out of the force that acts on the trail. Curvature factors
+    that exceed 1, where the old formula holds them, are fitted to the old forces within that limit.
 
     Parameters
     ----------
@@ -57,11 +58,11 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     goal = mf52.forces(p, *at)._asdict()
     start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
-    found = refit(start, at, goal)
+    found = refit(start, at, goal, reach)
     values = {**start, **found, **_ranges(old, reach)}
     tyre = Tyre.from_values(values)
     misfit = tuple(_misfits(tyre, at, goal))
-    provenance = {ORIGIN: _origin(old), MISFIT: wording.worst(misfit)}
+    provenance = {ORIGIN: _origin(old, found), MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
     return Conversion(tyre, old, reach, misfit, tuple(found))
 
@@ -121,8 +122,8 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
     return out
 
 
-def _origin(old: OldFile) -> str:
-    return f"{old.path.name}, {old.kind}, by a fit of the camber terms; see the table of mffit convert"
+def _origin(old: OldFile, found: Mapping[str, float]) -> str:
+    return f"{old.path.name}, {old.kind}, by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
 
 
 def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:

@@ -10,9 +10,9 @@ from types import MappingProxyType
 from typing import Any
 
 from tir import Problem, TirError
-from tir.document import Document, read_document
+from tir.document import Document, FileLine, read_document
 from tir.parameters import BY_NAME
-from tir.properties import OLD_FITTYPS, OLD_FORMATS, number_of, parameter_of, units_of, unquoted
+from tir.properties import OLD_FITTYPS, OLD_FORMATS, number_of, parameter_of, units_of, unquoted, value_of
 from tir.units import factor
 
 OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
@@ -78,23 +78,14 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
         if line.section in ("UNITS", "MDI_HEADER") or line.key in VERSION or line.key in values:
             continue
         row = parameter_of(line)
-        text = unquoted(line.value)
-        if row is not None and row.kind == "text":
-            values[line.key] = text
-            continue
-        if row is None and line.key not in OWN:
+        if row is not None:
+            value = value_of(row, line, words, document, problems)
+            if value is not None:
+                values[line.key] = value
+        elif line.key in OWN:
+            values[line.key] = _own_number(line, document) * factor(OWN[line.key][1], words)
+        else:
             unused.append(line.key)
-            continue
-        number = number_of(text)
-        if number is None or not math.isfinite(number):
-            raise TirError(
-                f'{line.key} is "{text}", but a number was expected: give a number',
-                path=document.path,
-                line=line.number,
-                name=line.key,
-            )
-        unit = OWN[line.key][1] if row is None else row.unit
-        values[line.key] = number * factor(unit, words)
     for name, value in given.items():
         values.setdefault(name, value)
     missing = [name for name in NEEDED if name not in values]
@@ -111,6 +102,19 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
     defaults = {row.name: _default(row.name) for row in BY_NAME.values()}
     own = {name: value for name, (value, _) in OWN.items()}
     return OldFile(kind, MappingProxyType({**defaults, **own, **values}), present, tuple(problems), document)
+
+
+def _own_number(line: FileLine, document: Document) -> float:
+    """The number of a key that only old files have."""
+    number = number_of(unquoted(line.value))
+    if number is None or not math.isfinite(number):
+        raise TirError(
+            f'{line.key} is "{unquoted(line.value)}", but a number was expected: give a number',
+            path=document.path,
+            line=line.number,
+            name=line.key,
+        )
+    return number
 
 
 def _default(name: str) -> Any:

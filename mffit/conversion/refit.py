@@ -1,55 +1,105 @@
-"""Least squares of the new file's side force and aligning moment to the old ones."""
+"""Least squares of the new file's forces to the old ones."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.conversion import constants
-from mffit.conversion.grid import Conditions
+from mffit.conversion.curvature_limits import CurvatureFactor, exceeding, excess
+from mffit.conversion.grid import Conditions, Reach
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT, STARTS
-from mffit.least_squares import FreeNumber, of_model, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
+from tir.derivatives import traced
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
 FREE: Mapping[str, Sequence[str]] = {
+    "Fx": (),
     "Fy": CAMBER_FORCE,
     "Mz": (*CAMBER_MOMENT, "QBZ9", "QBZ10", "QDZ6", "QDZ7"),
 }
-"""By channel, what is fitted: the coefficients of camber. All others mean the same in both formulae."""
+"""By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae."""
+WITHOUT_START: Sequence[Mapping[str, float]] = ({},)
 
 
-def refit(values: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """The coefficients of camber with which the new formulae come nearest to the old forces; Fy first, as it enters Mz."""
+def refit(
+    values: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray], reach: Reach
+) -> dict[str, float]:
+    """The coefficients with which the new formulae come nearest to the old forces: those of camber, and of too large curvature.
+
+    The side force comes before the aligning moment, into which it enters.
+    """
     found: dict[str, float] = {}
-    for channel, names in FREE.items():
-        found.update(_of_channel(channel, names, {**values, **found}, at, goal[channel]))
+    curved = exceeding(SimpleNamespace(**values), reach)
+    for channel, by_camber in FREE.items():
+        limited = [factor for factor in curved if factor.channel == channel]
+        names = (*by_camber, *(name for factor in limited for name in factor.names))
+        if names:
+            fit = _ChannelFit(channel, names, limited, reach)
+            found.update(_of_channel(fit, {**values, **found}, at, goal[channel]))
     return found
 
 
+class _ChannelFit(NamedTuple):
+    """What is free in a channel, and which curvature factors are held to 1."""
+
+    channel: str
+    names: Sequence[str]
+    limited: Sequence[CurvatureFactor]
+    reach: Reach
+
+
 def _of_channel(
-    channel: str, names: Sequence[str], values: Mapping[str, Any], at: Conditions, goal: np.ndarray
+    fit: _ChannelFit, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
 ) -> Mapping[str, float]:
     unit = float(constants.MISFIT_UNIT_OF_CONVERSION) * float(np.max(np.abs(goal)))
     u = unit / np.sqrt(at.weight / at.weight.sum())
     inputs = at._asdict()
 
     def force(numbers: Mapping[str, Any]) -> Any:
-        return outputs_of((channel,), SimpleNamespace(**{**values, **numbers}), inputs)[0]
+        return outputs_of((fit.channel,), SimpleNamespace(**{**values, **numbers}), inputs)[0]
 
+    problem = of_model(force, fit.names, goal, u)
+    if fit.limited:
+        problem = _held_to_one(problem, fit, values)
     ends = [
         solve(
-            of_model(force, names, goal, u),
-            [_number(name, float(start.get(name, values[name]))) for name in names],
+            problem,
+            [_number(name, float(start.get(name, values[name]))) for name in fit.names],
             max_steps=int(constants.STEPS_OF_THE_CONVERSION),
             tolerance=float(constants.END_OF_THE_CONVERSION),
         )
-        for start in STARTS[channel]
+        for start in STARTS.get(fit.channel, WITHOUT_START)
     ]
     return min(ends, key=lambda end: end.cost).values
+
+
+def _held_to_one(
+    problem: LeastSquaresProblem, fit: _ChannelFit, values: Mapping[str, Any]
+) -> LeastSquaresProblem:
+    """The problem with a residual wherever a curvature factor exceeds 1."""
+    weight, margin = float(constants.WEIGHT_OF_CURVATURE_LIMIT), float(constants.CURVATURE_MARGIN)
+
+    def broken(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
+        p = SimpleNamespace(**{**values, **numbers})
+        over, slope = excess(p, fit.limited, fit.reach, by)
+        active = over + margin > 0.0
+        return np.where(active, weight * (over + margin), 0.0), slope * (weight * active)[:, None]
+
+    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return problem.residual(x)[0], broken(dict(zip(fit.names, x.tolist(), strict=True)))[0]
+
+    def linear(x: np.ndarray) -> Linear:
+        numbers = traced(dict(zip(fit.names, x.tolist(), strict=True)))
+        limits, slope = broken(numbers, list(numbers.values()))
+        return replace(problem.linear(x), limits=limits, limits_slope=slope)
+
+    return LeastSquaresProblem(residual, linear)
 
 
 def _number(name: str, start: float) -> FreeNumber:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from mffit.conversion import constants
+from mffit.conversion.curvature_limits import FACTORS
 from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.quantities import MODEL
 
@@ -17,9 +18,17 @@ def headline(found: Conversion) -> str:
         f"{found.old.path.name} ({found.old.kind}) as MF 6.2, over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to "
         f"{math.degrees(reach.alpha):.3g} deg, camber to {math.degrees(reach.gamma):.3g} deg, longitudinal slip to "
         f"{reach.kappa:g}. "
-        f"{len(found.fitted)} coefficients were fitted to the old forces, those of camber and of the residual torque; all others "
-        "mean the same in both formulae."
+        f"{len(found.fitted)} coefficients were fitted to the old forces, those of {refitted(found.fitted)}; all others mean the "
+        "same in both formulae."
     )
+
+
+def refitted(names: Iterable[str]) -> str:
+    """What the fitted coefficients describe."""
+    curved = [factor.names[0][:-1] for factor in FACTORS if factor.names[0] in set(names)]
+    if not curved:
+        return "camber and of the residual torque"
+    return f"camber, of the residual torque and of curvature above 1 ({', '.join(curved)}), which the old formula holds to 1"
 
 
 def region(row: RegionMisfit) -> str:

@@ -92,6 +92,7 @@ def build(
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
+    fitted = replace(fitted, explanations=(*fitted.explanations, *(f"{note}." for note in reading.notes)))
     tyres = {use: annotated(files[use].tyre, use) for use in names}
     if fitted.temperature is not None:
         tyres[TEMPERATURE] = annotated(fitted.temperature.file.tyre, TEMPERATURE)

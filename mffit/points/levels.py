@@ -81,6 +81,11 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     return nearest_labels(held, kind)
 
 
+def labels_of_setting(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
+    """The level (n,) that each value of a setting was meant to have: :func:`labels_of_sweeps` of a load, which wanders."""
+    return labels_of_sweeps(values, sweep, kind) if kind is LOAD else nearest_labels(values, kind)
+
+
 def _is_held(scaled: np.ndarray) -> bool:
     """Whether values (n,) in tolerances wander about one value, instead of stepping from one to another."""
     low, high = np.percentile(scaled, constants.PERCENTILES_OF_HELD)

@@ -35,7 +35,7 @@ STAND_IN = {"p": constants.STAND_IN_PRESSURE, "V": constants.STAND_IN_SPEED}
 
 
 class Reading(NamedTuple):
-    """The points of a configuration, with warnings and the stretches of its recordings."""
+    """The points of a configuration, with warnings, notes and the stretches of its recordings."""
 
     points: Points
     warnings: tuple[str, ...]
@@ -44,6 +44,7 @@ class Reading(NamedTuple):
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
     steps: Mapping[str, Points] = MappingProxyType({})
     """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
+    notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -80,23 +81,27 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    sweeps, definitions = against_free_rolling(found.sweeps, config)
+    sweeps, of_slip = against_free_rolling(found.sweeps, config)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
-    warnings = [*found.warnings, *definitions, *(sentence for part in reduced for sentence in part.warnings)]
+    warnings = [
+        *found.warnings,
+        *of_slip.warnings,
+        *(sentence for part in reduced for sentence in part.warnings),
+    ]
     straight = config.rig.type == "flat-track"
     if straight and not continuous and np.any(points.continuous):
         lag = common([one for part in reduced for one in part.lags])
         points = settled_sweeps(points, lag)
         warnings += _of_motion(reduced, lag)
     steady = points if continuous and straight else points.select(~points.continuous)
-    notes = tuple(note for part in reduced for note in part.stretches)
+    stretches = tuple(note for part in reduced for note in part.stretches)
     left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
     if not len(steady):
         if may_be_empty:
-            return Reading(steady, (*warnings, _nothing(reduced)), notes, left_out)
+            return Reading(steady, (*warnings, _nothing(reduced)), stretches, left_out, notes=of_slip.notes)
         raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
         warnings += _moving(points)
@@ -105,7 +110,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    return Reading(kept, tuple(warnings), notes, left_out, _excluded(found.excluded, phi_t), stepped)
+    excluded = _excluded(found.excluded, phi_t)
+    return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes)
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:

@@ -24,6 +24,13 @@ FREE, LOADED = "free-rolling", "loaded-radius"
 """What the slip of a column may be against."""
 
 
+class SlipRemarks(NamedTuple):
+    """Sentences about the definition of slip."""
+
+    notes: tuple[str, ...]  #: what was taken, where nothing contradicts it
+    warnings: tuple[str, ...]  #: a contradiction, or a shift that nobody declared
+
+
 class Driven(NamedTuple):
     """Readings (n,) in any axes; only the magnitudes of load and angles count."""
 
@@ -145,10 +152,8 @@ def slip_zero(of: Driven) -> SlipZero | None:
     )
 
 
-def against_free_rolling(
-    sweeps: Sequence[Sweep], config: Config
-) -> tuple[tuple[Sweep, ...], tuple[str, ...]]:
-    """The sweeps with slip against free rolling, and sentences about the definition of slip and the shift.
+def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple[Sweep, ...], SlipRemarks]:
+    """The sweeps with slip against free rolling, and what is to be said of the definition of slip and the shift.
 
     Files whose slip has the same heading share the definition and the zero.
     """
@@ -156,7 +161,7 @@ def against_free_rolling(
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
-    out, sentences = list(sweeps), []
+    out, notes, warnings = list(sweeps), [], []
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
         zero = slip_zero(_joined_readings(sweeps[k] for k in rows))
@@ -166,13 +171,14 @@ def against_free_rolling(
         if wrong:
             raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
         if not (against == FREE and zero.is_free_rolling):  # declared so, and it is
-            sentences.append(sentence(heading, against, zero))
+            expected = against is None if zero.is_free_rolling else against == LOADED
+            (notes if expected else warnings).append(sentence(heading, against, zero))
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
                 kappa = (1.0 + out[k].kappa) / (1.0 + shift) - 1.0
                 out[k] = replace(out[k], kappa=kappa, table=out[k].table.assign(kappa_free_rolling=kappa))
-    return tuple(out), tuple(sentences)
+    return tuple(out), SlipRemarks(tuple(notes), tuple(warnings))
 
 
 def sentence(heading: str, against: str | None, zero: SlipZero) -> str:

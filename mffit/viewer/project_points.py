@@ -76,10 +76,8 @@ def facets(points: Points) -> list[dict[str, Any]]:
     found = []
     for name, kind in FACETS.items():
         values = np.abs(inputs[name]) if name == "Vx" else inputs[name]
-        if kind is levels.LOAD:
-            of = _ranks(levels.labels_of_sweeps(values, points.sweep, kind))
-        else:
-            of = levels.nearest_labels(values, kind)
+        meant = levels.labels_of_setting(values, points.sweep, kind)
+        of = _ranks(meant) - int(np.any(meant == levels.NO_LEVEL))
         medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
         found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians], [name]))
     for name, word, of, words, shared in (

@@ -144,7 +144,7 @@ class RecordingsFolder:
         config = self._config(choice)
         with formats.reading_once():
             reading = read(config, may_be_empty=True)
-        warnings = list(reading.warnings)
+        warnings = [*reading.notes, *reading.warnings]
         axes: tuple[str, ...] = ()
         wrong: tuple[str, ...] = ()
         if len(reading.points):
@@ -297,7 +297,9 @@ def _conditions(points: Points) -> list[dict[str, Any]]:
     found = []
     for column in SETTINGS:
         quantity = CONDITIONS[column]
-        near = levels.level_values(getattr(points, column.partition("_")[0]), levels.KINDS[quantity.word])
-        shown = {float(f"{round(x, 3):.4g}") + 0.0 for x in (near / in_si(quantity.unit)).tolist()}
+        values = getattr(points, column.partition("_")[0])
+        meant = levels.labels_of_setting(values, points.sweep, levels.KINDS[quantity.word])
+        at_levels = np.unique(levels.median_of_labels(values, meant)) / in_si(quantity.unit)
+        shown = {float(f"{round(x, 3):.4g}") + 0.0 for x in at_levels.tolist()}
         found.append({"name": quantity.word, "unit": quantity.unit_behind, "levels": sorted(shown)})
     return found

@@ -247,6 +247,27 @@ def test_a_profile_without_the_program_says_so():
     assert all(sentence.endswith("nothing was run") for sentence in said.values())
 
 
+def test_check_notes_what_is_not_verified_of_a_program(tyre):
+    assert [p.level for p in check(tyre, ["carsim"]) if "nothing was run" in p.sentence] == ["note"]
+    assert not [p for p in check(tyre, ["mftyre"]) if p.level == "note"]
+
+
 def test_a_file_for_ansys_motion_selects_the_model(tyre):
     keys = {line.key: line.value for line in parse_document(tyre.text("ansysmotion")).entries}
     assert keys["PROPERTY_FILE_FORMAT"] == "'MF'"
+
+
+def test_a_file_that_selects_another_model_is_warned_of(tyre, tmp_path):
+    for other, warned in (("USER", True), ("MF", False)):
+        text = tyre.text("ansysmotion").replace("'MF'", f"'{other}'")
+        (tmp_path / "m.tir").write_text(text)
+        found = [p.sentence for p in check(tir.read(tmp_path / "m.tir"), ["ansysmotion"])]
+        assert any("PROPERTY_FILE_FORMAT is 'USER', but has to be 'MF'" in one for one in found) == warned
+
+
+def test_what_is_wrong_over_the_range_has_the_origin_of_its_coefficient(tyre):
+    """A coefficient that nobody measured is warned of in another way than a fitted one."""
+    odd = tyre.replace(RCX1=1.7, RBX3=0.0, REX1=0.0, ALPMAX=0.3)
+    (plain,) = (p.sentence for p in check(odd) if p.name == "RBX1")
+    (said,) = (p.sentence for p in check(odd.annotate(status={"RBX1": "from base"})) if p.name == "RBX1")
+    assert said == f"{plain} (RBX1: from base)"

@@ -34,7 +34,7 @@ def sniff_summary(sniffed: Sniffed) -> str:
             _axes(sniffed),
             _conditions(sniffed),
             _stretches(sniffed),
-            paragraphs(_remarks(sniffed.recordings) + list(sniffed.reading.warnings)),
+            paragraphs([*_remarks(sniffed.recordings), *sniffed.reading.notes, *sniffed.reading.warnings]),
         ]
     )
 

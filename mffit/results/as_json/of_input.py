@@ -54,7 +54,7 @@ def sniffed(found: Sniffed) -> dict[str, Any]:
             {"file": str(run.recording), "lines": run.lines, "why": run.why} for run in found.bad_runs
         ],
         "stretches": stretch_table(found.reading.stretches).to_dict("records"),
-        "warnings": list(found.reading.warnings),
+        "warnings": [*found.reading.notes, *found.reading.warnings],
     }
 
 

@@ -191,7 +191,8 @@ function showLinks() {
 addEventListener("dragover", event => event.preventDefault());
 addEventListener("drop", event => {
   event.preventDefault();
-  if (event.dataTransfer.files.length) say("Recordings are dropped into a window without a project: mffit open FOLDER. For this one, name them under [[sweep]] in tyre.toml.", true);
+  const names = [...event.dataTransfer.files].map(file => file.name);
+  if (names.length) say(`${names.join(", ")}: not added, because a project is open. Copy it into the folder of tyre.toml and add [[sweep]] with file = "${names[0]}" there; this page then follows.`, true);
 });
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));

@@ -194,16 +194,37 @@ def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys)
     assert "not made by mffit convert" in capsys.readouterr().err
 
 
+ODD = TEXT.replace("PEX1                     = 0.34", "PEX1                     = 1.6")
+
+
+def test_curvature_above_one_is_fitted_within_the_limit_that_the_old_formula_keeps(tmp_path, capsys):
+    """MF 5.2 holds its curvature factors to 1; MF 6.2 without limits does not, and a wheel that slips would push backwards."""
+    (tmp_path / "odd.tir").write_text(ODD)
+    main(["convert", str(tmp_path / "odd.tir"), "--out", str(tmp_path / "new.tir")])
+    assert "curvature above 1 (PEX)" in " ".join(capsys.readouterr().out.split())
+    new, p = tir.read(tmp_path / "new.tir"), mf52.in_terms_of_62(read_old(tmp_path / "odd.tir").values)
+    Fz, kappa = np.meshgrid([1000.0, 4000.0, 7900.0], [-1.0, -0.3, -0.1, 0.05, 0.2, 1.0])
+    old = mf52.forces(p, Fz.ravel(), kappa=kappa.ravel()).Fx
+    assert np.max(np.abs(new(Fz.ravel(), kappa=kappa.ravel()).Fx - old)) < 0.02 * np.max(np.abs(old))
+    assert new.status["PEX1"].endswith("fitted to the old forces")
+    assert new.status["RBX1"].endswith("unchanged")
+
+
 def test_a_conversion_that_is_off_says_so(tmp_path, capsys):
-    """MF 5.2 holds its curvature factors to 1; what 6.2 reads without limits does not."""
-    (tmp_path / "odd.tir").write_text(
-        TEXT.replace("PEX1                     = 0.34", "PEX1                     = 1.6")
-    )
+    """A strong camber term in the trail's force, which MF 6.2 leaves out."""
+    (tmp_path / "odd.tir").write_text(re.sub(r"PHY3 .*\n", "PHY3 = 0.4\n", TEXT))
     with pytest.raises(SystemExit) as end:
         main(["convert", str(tmp_path / "odd.tir"), "--out", str(tmp_path / "new.tir")])
     assert end.value.code == 3
-    assert re.search(r"- F_x at camber to 5 deg.* is off by up to", capsys.readouterr().out)
+    assert re.search(r"- M_z at camber to 5 deg.* is off by up to", capsys.readouterr().out)
     assert (tmp_path / "new.tir").is_file()
+
+
+def test_text_for_a_number_that_no_force_needs_is_listed(tmp_path):
+    """As in files of MF 6.2: some programs write the unit in place of an unknown mass."""
+    (tmp_path / "old.tir").write_text(TEXT + "\n[INERTIA]\nMASS = kg\n")
+    said = [problem.sentence for problem in read_old(tmp_path / "old.tir").problems]
+    assert any('MASS is "kg"' in one for one in said)
 
 
 def test_an_old_file_can_be_the_base_of_a_build(tmp_path):

@@ -178,3 +178,14 @@ def test_loads_that_wander_while_braking_are_one_level_and_steps_are_not():
     assert set(found[sweep < 12]) == {0}
     assert set(found[sweep == 12]) == {1, 2}
     assert len(set(levels.nearest_labels(Fz[sweep < 12], levels.LOAD))) > 1
+
+
+def test_a_load_that_wanders_with_the_forces_of_its_sweeps_is_one_level():
+    """Loads of 450 to 600 N in each of many sweeps, three dense places: set to 520 N once."""
+    rng = np.random.default_rng(3)
+    offset = np.concatenate([rng.normal(at, 4.0, 40) for at in (480.0, 525.0, 570.0)])
+    values = np.concatenate([np.tile(offset, 8), np.full(300, 1650.0)])
+    sweep = np.concatenate([np.repeat(np.arange(8), len(offset)), np.full(300, 8)])
+    assert levels.count(values, LOAD) > 2
+    assert len(np.unique(levels.labels_of_setting(values, sweep, LOAD))) == 2
+    assert len(np.unique(levels.labels_of_setting(np.repeat([0.1, 0.2], 5), np.zeros(10), CAMBER))) == 2

@@ -154,6 +154,13 @@ def test_a_reader_sees_every_picture(browser, width, media):
     assert console_errors(browser) == []
 
 
+def test_the_headings_of_tables_are_repeated_on_the_next_sheet(written):
+    """Browsers repeat a <thead>, and no other row."""
+    page = (written / "report.html").read_text(encoding="utf-8")
+    assert len(re.findall(r"<thead><tr><th", page)) > 8
+    assert not re.search(r"<table[^>]*>\s*<tr[^>]*>\s*<th", page)
+
+
 def test_folded_coefficients_show_when_opened_and_on_paper(browser):
     look(browser)
     fold = browser.find_element("css selector", ".fold")
