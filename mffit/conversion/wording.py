@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 from mffit.conversion import constants
+from mffit.conversion.refit import COMBINED_CURVATURE, PURE_CURVATURE
 from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.quantities import MODEL
 
@@ -13,13 +14,19 @@ from mffit.quantities import MODEL
 def headline(found: Conversion) -> str:
     """What was made of what, and over which ranges."""
     reach = found.reach
+    curvature = ", of the curvature that the old formula limits" if limited(found) else ""
     return (
         f"{found.old.path.name} ({found.old.kind}) as MF 6.2, over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to "
         f"{math.degrees(reach.alpha):.3g} deg, camber to {math.degrees(reach.gamma):.3g} deg, longitudinal slip to "
         f"{reach.kappa:g}. "
-        f"{len(found.fitted)} coefficients were fitted to the old forces, those of camber and of the residual torque; all others "
-        "mean the same in both formulae."
+        f"{len(found.fitted)} coefficients were fitted to the old forces, those of camber{curvature} and of the residual torque; "
+        "all others mean the same in both formulae."
     )
+
+
+def limited(found: Conversion) -> bool:
+    """Whether a curvature factor of the old file exceeds 1, to which MF 5.2 holds it."""
+    return not {*PURE_CURVATURE, *COMBINED_CURVATURE}.isdisjoint(found.fitted)
 
 
 def region(row: RegionMisfit) -> str:
