@@ -85,7 +85,7 @@ def interpret(document: Document, lacking: Mapping[str, float | str] = MappingPr
             problems.append(
                 _warning(f"{line.key} comes before the first [SECTION]; it is read all the same", line)
             )
-        value = _value(row, line, words, document, problems)
+        value = value_of(row, line, words, document, problems)
         if value is None:
             continue
         values[line.key] = value
@@ -147,7 +147,7 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
     return words
 
 
-def _value(
+def value_of(
     row: Parameter, line: FileLine, words: dict[str, str], document: Document, problems: list[Problem]
 ) -> float | str | None:
     """The value in the unit of the table; None, with a problem added, if it is missing and the file can still be used."""

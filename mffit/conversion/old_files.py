@@ -12,7 +12,15 @@ from typing import Any
 from tir import Problem, TirError
 from tir.document import Document, read_document
 from tir.parameters import BY_NAME
-from tir.properties import OLD_FITTYPS, OLD_FORMATS, number_of, parameter_of, units_of, unquoted
+from tir.properties import (
+    OLD_FITTYPS,
+    OLD_FORMATS,
+    number_of,
+    parameter_of,
+    units_of,
+    unquoted,
+    value_of,
+)
 from tir.units import factor
 
 OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
@@ -78,13 +86,15 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
         if line.section in ("UNITS", "MDI_HEADER") or line.key in VERSION or line.key in values:
             continue
         row = parameter_of(line)
-        text = unquoted(line.value)
-        if row is not None and row.kind == "text":
-            values[line.key] = text
+        if row is not None:
+            value = value_of(row, line, words, document, problems)
+            if value is not None:
+                values[line.key] = value
             continue
-        if row is None and line.key not in OWN:
+        if line.key not in OWN:
             unused.append(line.key)
             continue
+        text = unquoted(line.value)
         number = number_of(text)
         if number is None or not math.isfinite(number):
             raise TirError(
@@ -93,8 +103,7 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
                 line=line.number,
                 name=line.key,
             )
-        unit = OWN[line.key][1] if row is None else row.unit
-        values[line.key] = number * factor(unit, words)
+        values[line.key] = number * factor(OWN[line.key][1], words)
     for name, value in given.items():
         values.setdefault(name, value)
     missing = [name for name in NEEDED if name not in values]

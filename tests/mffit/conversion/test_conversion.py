@@ -159,6 +159,15 @@ def test_units_are_those_of_the_file(tmp_path):
     )
 
 
+def test_text_in_a_number_that_no_force_needs_is_a_problem_not_a_refusal(tmp_path):
+    (tmp_path / "old.tir").write_text(
+        TEXT.replace("VERTICAL_DAMPING         = 50", "VERTICAL_DAMPING         = Ns/m")
+    )
+    found = convert(tmp_path / "old.tir")
+    assert any("VERTICAL_DAMPING" in problem.sentence for problem in found.old.problems)
+    assert found.misfit == convert(OLD).misfit
+
+
 @pytest.mark.parametrize(
     ("mangled", "said"),
     [
