@@ -7,7 +7,7 @@ from tir.constant import Count, Real, Series
 CONVERTED_LOADS = Series(
     (0.1, 2.5),
     "-",
-    "Loads over the nominal one at most, even if the old file allows more: no car tyre carries more.",
+    "Loads over the nominal one (times LFZO) at most, even if the old file allows more: no car tyre carries more.",
 )
 CONVERTED_SIDESLIP = Real(
     20.0, "deg", "Largest sideslip, even if the old file allows more: well beyond the peak."

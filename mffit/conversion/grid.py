@@ -36,7 +36,8 @@ class Conditions(NamedTuple):
 
 def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
     """The ranges of an old file within those of cars; the latter where the file states none."""
-    least, most = (share * float(values["FNOMIN"]) for share in constants.CONVERTED_LOADS)
+    nominal = float(values["FNOMIN"]) * float(values["LFZO"])
+    least, most = (share * nominal for share in constants.CONVERTED_LOADS)
     low = max(least, float(values["FZMIN"])) if "FZMIN" in present else least
     high = min(most, float(values["FZMAX"])) if "FZMAX" in present else most
 

@@ -194,6 +194,43 @@ def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys)
     assert "not made by mffit convert" in capsys.readouterr().err
 
 
+def with_values(**values: float) -> str:
+    """The old file with other values."""
+    text = TEXT
+    for name, value in values.items():
+        text, n = re.subn(rf"^({name}\s*=).*", rf"\g<1> {value}", text, flags=re.MULTILINE)
+        assert n == 1, name
+    return text
+
+
+def test_curvature_that_mf52_holds_to_one_is_converted(tmp_path):
+    """Above 1 at every load, the curvature of Fx acts as 1: the new file has the Fx of an old file that says so."""
+    (tmp_path / "held.tir").write_text(with_values(PEX1=1.6, REX1=1.8))
+    (tmp_path / "one.tir").write_text(with_values(PEX1=1.0, PEX2=0.0, PEX3=0.0, PEX4=0.0, REX1=1.0, REX2=0.0))
+    held, one = convert(tmp_path / "held.tir"), convert(tmp_path / "one.tir")
+    assert not held.poor
+    assert {"PEX1", "REX1"} <= set(held.fitted)
+    assert not {"PEX1", "REX1"} & set(one.fitted)
+    rng = np.random.default_rng(6)
+    at = (rng.uniform(500.0, 8000.0, 200), *(rng.uniform(-end, end, 200) for end in (0.2, 0.05, 0.3)))
+    wanted = one.tyre(*at).Fx
+    np.testing.assert_allclose(held.tyre(*at).Fx, wanted, atol=2e-3 * np.max(np.abs(wanted)))
+
+
+def test_curvature_that_exceeds_one_on_one_side_only_is_approached(tmp_path):
+    """Braked, PEX4 raises the curvature above 1 at some loads; without the fit Fx would be off by twice its largest value."""
+    (tmp_path / "odd.tir").write_text(with_values(PEX1=0.9, PEX2=0.5, PEX4=-0.4))
+    rows = [row for row in convert(tmp_path / "odd.tir").misfit if row.channel == "Fx"]
+    assert max(row.largest / row.greatest_force for row in rows) < 0.03
+
+
+def test_the_loads_of_the_conversion_follow_the_scaled_nominal_load():
+    old = read_old(OLD)
+    free = old.present - {"FZMIN", "FZMAX"}
+    whole, half = (reach_of({**old.values, "LFZO": share}, free).Fz for share in (1.0, 0.5))
+    assert half == pytest.approx([load / 2.0 for load in whole])
+
+
 ODD = TEXT.replace("PEX1                     = 0.34", "PEX1                     = 1.6")
 
 
