@@ -42,6 +42,7 @@ class Parameter:
     )
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
+    tyres_spread: float | None  #: its scatter among published tyres where that is known and narrow, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -120,6 +121,7 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         channel=row["channel"],
         symmetry=frozenset(row["symmetry"].split()),
         disc_spread=float(spread) if tie == "disc" else None,
+        tyres_spread=float(spread) if tie == "tyres" else None,
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],
         equation=row["equation"],

@@ -34,7 +34,7 @@ from tir.equations import lateral, longitudinal, normalise
 from tir.outputs import outputs_of
 
 EDGE = Look(colour=style.INK, line="-", width=1.1)
-EDGE_NAME = "limit within the tested sideslip and slip"
+EDGE_NAME = "limit within the slips that were run"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
@@ -124,6 +124,11 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
     return min(0.0, float(alpha.min())), max(0.0, float(alpha.max()))
 
 
+def _reach_of_combined(view: BuildView) -> float:
+    """Largest sideslip [rad], to either side, at which longitudinal slip was run."""
+    return float(np.max(np.abs(view.felt.alpha[~view.points.free_rolling]), initial=0.0))
+
+
 def friction_ellipse(view: BuildView) -> Sheet:
     """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, and the tyre with its bands."""
     groups = main_slip_curves(view)
@@ -159,12 +164,13 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
     steps = int(constants.STEPS_OF_FILE_CURVE)
-    kappa, alpha = (
-        grid.ravel()
-        for grid in np.meshgrid(
-            np.linspace(*slip_range(view), steps), np.linspace(*sideslip_range(view), steps)
-        )
+    low, high = sideslip_range(view)
+    reach = _reach_of_combined(view)
+    together = np.meshgrid(
+        np.linspace(*slip_range(view), steps), np.linspace(max(low, -reach), min(high, reach), steps)
     )
+    alone = np.zeros(steps), np.linspace(low, high, steps)
+    kappa, alpha = (np.concatenate([grid.ravel(), line]) for grid, line in zip(together, alone, strict=True))
     force = np.column_stack(_forces(view, _inputs(view, curve, kappa=kappa, alpha=alpha)))
     turn = np.linspace(0.0, 2.0 * np.pi, 4 * (steps // 2) + 1)
     # Directions are of forces over their peaks, so that the sides of a flat ellipse are seen as well as its ends.

@@ -105,6 +105,14 @@ def test_the_friction_limit_is_closed_convex_and_holds_the_readings(view):
         assert named(panel, Ribbon, slip.EDGE_NAME)
 
 
+def test_the_friction_limit_combines_no_more_sideslip_with_slip_than_was_run(view):
+    """Slip was swept at up to 5 deg of sideslip, sideslip alone to 10 deg."""
+    curves = next(iter(slip.main_slip_curves(view).values()))
+    kappa, alpha, _ = slip.friction_limit(view, curves[0])
+    assert np.degrees(np.max(np.abs(alpha[np.abs(kappa) > 0.01]))) == pytest.approx(5.0, abs=0.01)
+    assert np.degrees(np.max(np.abs(alpha))) > 9.0
+
+
 def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
     tyre, sheet = belt.truth(), slip.weights(view)
     for panel in sheet.panels[:3]:
