@@ -42,7 +42,6 @@ class Parameter:
     )
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
-    tyres_spread: float | None  #: its scatter among published tyres where that is known and narrow, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -91,12 +90,12 @@ class Parameter:
     @property
     def normal_mode(self) -> bool:
         """Whether it is a coefficient of Fy or Mz at pure sideslip and camber, without turn slip."""
-        return self.section in NORMAL_MODE and bool(self.stage) and not self.combined
+        return self.section in NORMAL_MODE and bool(self.stage) and not self.of_slip
 
     @property
-    def combined(self) -> bool:
-        """Whether it acts only where longitudinal slip and sideslip come together."""
-        return any(need.word == "combined" for need in self.needs)
+    def of_slip(self) -> bool:
+        """Whether it acts only where longitudinal slip was run, alone or with sideslip."""
+        return any(need.word in ("kappa", "combined") for need in self.needs)
 
 
 def _load() -> tuple[Parameter, ...]:
@@ -121,7 +120,6 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         channel=row["channel"],
         symmetry=frozenset(row["symmetry"].split()),
         disc_spread=float(spread) if tie == "disc" else None,
-        tyres_spread=float(spread) if tie == "tyres" else None,
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],
         equation=row["equation"],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -33,9 +32,6 @@ def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> flo
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]
-    among_tyres = BY_NAME[name].tyres_spread
-    if among_tyres is not None:  # of a base file, the tyre and the base's tyre scatter both
-        return math.sqrt(2.0) * among_tyres if from_base and expected else among_tyres
     share = constants.LEAST_SPREAD_BASE_FILE if from_base and expected else constants.LEAST_SPREAD_DEFAULT
     return max(constants.SIMILAR_TYRES_SPREAD * abs(expected), share * BY_NAME[name].width)
 

@@ -148,6 +148,11 @@ USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
 )
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
+LEAST_MISFIT_OF_NOISE = Real(
+    0.5,
+    "-",
+    "Misfit over stated noise below which readings that the model does not explain are in another unit than their noise.",
+)
 CARRIED_MISFIT = Real(1.5, "-", "Misfit over that of all points above which a sweep is named.")
 SWEEPS_NAMED_WITH_MISFIT = Count(3, "-", "Most sweeps that are named with a misfit.")
 OUTLIERS_IN_SENTENCE = Count(5, "-", "Most outliers that a sentence names.")

@@ -86,6 +86,11 @@ class FinishedFit:
         """Whether a channel misses the noise."""
         return self.far(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
 
+    def at_the_noise(self, channel: str) -> bool:
+        """Whether a channel states its noise, and misses the model by no more and not by far less."""
+        ratio, _ = self.misfit(channel)
+        return not self.doubtful(channel) and ratio > constants.LEAST_MISFIT_OF_NOISE
+
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
         """Whether a channel misses the noise so far that the fit is not trusted."""
         return self.far(channel, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, rows)
@@ -189,9 +194,9 @@ def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "state, and their units and axes right?",
 )
 def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Share of a channel's variance that the model explains."""
+    """Share of a channel's variance that the model explains, unless the stated noise is all that is left."""
     for name in fit.used:
-        if fit.r2[name] < constants.EXPLAINED_VARIANCE:
+        if fit.r2[name] < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
             yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
 
 

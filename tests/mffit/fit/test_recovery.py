@@ -66,14 +66,6 @@ def test_the_prior_is_thirty_per_cent_and_at_least_a_share_of_the_bounds():
     assert scatter("PPY2", 0.01, from_base=False, curved=True) == pytest.approx(0.1 * width)
 
 
-def test_the_shape_of_the_weights_of_combined_slip_scatters_little_among_tyres():
-    """RCX1 and RCY1 of 28 published files: 1.05 with a standard deviation of 0.11, whatever the tyre."""
-    for name in ("RCX1", "RCY1"):
-        assert scatter(name, 1.0, from_base=False, curved=False) == pytest.approx(0.12)
-        assert scatter(name, 1.3, from_base=True, curved=False) == pytest.approx(0.12 * 2**0.5)
-        assert scatter(name, 0.0, from_base=True, curved=False) == pytest.approx(0.12)
-
-
 def test_ply_steer_is_small_on_a_disc_and_free_on_a_straight_path():
     assert scatter("PHY1", 0.0, from_base=True, curved=True) == 0.002
     assert scatter("PHY1", 0.0, from_base=True, curved=False) == pytest.approx(0.1 * BY_NAME["PHY1"].width)

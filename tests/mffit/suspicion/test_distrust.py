@@ -123,9 +123,15 @@ def test_a_misfit_that_might_be_a_mistake_s_is_a_reason(changed):
 
 
 def test_a_model_explains_half_of_the_variance_or_is_not_trusted():
-    assert judged(noise(), r2=0.51).trusted
-    assert "49 %" in judged(noise(), r2=0.49).reasons[0]
-    assert " 0 %" in judged(noise(), r2=-3.0).reasons[0]
+    assert judged(noise(), u=np.nan, r2=0.51).trusted
+    assert "49 %" in judged(noise(), u=np.nan, r2=0.49).reasons[0]
+    assert " 0 %" in judged(noise(), u=np.nan, r2=-3.0).reasons[0]
+
+
+@pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.51, True), (0.49, False), (1.25, False)])
+def test_a_channel_with_nothing_but_its_stated_noise_has_nothing_to_explain(scale, trusted):
+    """Mx of a wheel that is only driven and braked; readings far below their noise are in another unit."""
+    assert judged(noise(scale), r2=0.1).trusted == trusted
 
 
 def test_without_a_stated_noise_left_out_sweeps_decide():
