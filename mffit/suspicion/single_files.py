@@ -103,22 +103,25 @@ def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarr
     limits=(
         constants.SIDESLIP_THAT_SHOWS_FORCE,
         constants.CAMBER_THAT_SHOWS_FORCE,
+        constants.SLIP_THAT_SHOWS_FORCE,
         constants.SMALLEST_FRICTION,
         constants.FEWEST_POINTS_OF_FRICTION,
     ),
     sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
-    'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
+    '{column} = {{ column = "{column}", unit = "kN" }} under [sweep.columns]',
 )
 def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
-    """Largest Fy per load at angles that show a force."""
-    shows = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
+    """Largest Fy per load at angles that show a force, and largest Fx at longitudinal slips that do."""
+    angles = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
         np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
     )
-    if np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
-        return
-    if np.max(np.abs(part.Fy[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
-        facts = {"largest": np.max(np.abs(part.Fy[shows])), "load": np.median(part.Fz)}
-        yield Finding(facts, column="Fy_N")
+    slips = np.abs(part.kappa) > constants.SLIP_THAT_SHOWS_FORCE
+    for column, force, shows in (("Fy_N", part.Fy, angles), ("Fx_N", part.Fx, slips & np.isfinite(part.Fx))):
+        if np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
+            continue
+        if np.max(np.abs(force[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
+            facts = {"largest": np.max(np.abs(force[shows])), "load": np.median(part.Fz), "column": column}
+            yield Finding(facts, column=column)
 
 
 @of_file(
@@ -170,10 +173,11 @@ def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
     sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
 )
 def arm_too_long(part: Points, config: Config) -> Iterator[Finding]:
-    """|Mz| over load."""
-    arm = np.abs(part.Mz) / part.Fz
-    if np.any(arm > constants.LONGEST_ARM):
-        yield Finding({"arm": np.nanmax(arm)}, column="Mz_Nm")
+    """|Mz| and |Mx| over load."""
+    for column, moment in (("Mz_Nm", part.Mz), ("Mx_Nm", part.Mx)):
+        arm = np.abs(moment) / part.Fz
+        if np.any(arm > constants.LONGEST_ARM):
+            yield Finding({"arm": np.nanmax(arm)}, column=column)
 
 
 @of_file(
