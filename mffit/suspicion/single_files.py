@@ -103,25 +103,22 @@ def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarr
     limits=(
         constants.SIDESLIP_THAT_SHOWS_FORCE,
         constants.CAMBER_THAT_SHOWS_FORCE,
-        constants.SLIP_THAT_SHOWS_FORCE,
         constants.SMALLEST_FRICTION,
         constants.FEWEST_POINTS_OF_FRICTION,
     ),
     sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
-    '{column} = {{ column = "{column}", unit = "kN" }} under [sweep.columns]',
+    'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
 )
 def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
-    """Largest Fy per load at angles that show a force, and largest Fx at longitudinal slips that do."""
-    angles = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
+    """Largest Fy per load at angles that show a force."""
+    shows = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
         np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
     )
-    slips = np.abs(part.kappa) > constants.SLIP_THAT_SHOWS_FORCE
-    for column, force, shows in (("Fy_N", part.Fy, angles), ("Fx_N", part.Fx, slips & np.isfinite(part.Fx))):
-        if np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
-            continue
-        if np.max(np.abs(force[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
-            facts = {"largest": np.max(np.abs(force[shows])), "load": np.median(part.Fz), "column": column}
-            yield Finding(facts, column=column)
+    if np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
+        return
+    if np.max(np.abs(part.Fy[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
+        facts = {"largest": np.max(np.abs(part.Fy[shows])), "load": np.median(part.Fz)}
+        yield Finding(facts, column="Fy_N")
 
 
 @of_file(

@@ -47,7 +47,6 @@ FEW = SOUND.select(np.arange(3))
 FORCE = SOUND.Fy
 CAMBER = np.radians([-8.0, -7.0, -6.0, 0.0, 6.0, 7.0, 8.0])
 LOADS = np.full(7, 1500.0)
-SLIP = 0.1 * np.sign(ALPHA)
 SINGLE_FILES = [
     ("angle-in-radians", tyre(Fy=-1500.0 * 125.0 * ALPHA), tyre(Fy=-1500.0 * 115.0 * ALPHA)),
     ("angle-in-radians", tyre(gamma=ALPHA, alpha=0.0, Fy=-19500.0 * ALPHA), tyre(gamma=ALPHA, alpha=0.0, Fy=-16500.0 * ALPHA)),
@@ -63,8 +62,6 @@ SINGLE_FILES = [
     ),
     ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
     ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
-    ("force-in-kilonewtons", tyre(0.0, kappa=SLIP, Fx=28.0), tyre(0.0, kappa=SLIP, Fx=32.0)),
-    ("force-in-kilonewtons", tyre(0.0, kappa=0.51 * SLIP, Fx=28.0), tyre(0.0, kappa=0.49 * SLIP, Fx=28.0)),
     ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
     ("force-in-kilonewtons", tyre(0.0, [DEG * 5.1] * 3, Fy=28.0), tyre(0.0, [DEG * 4.9] * 3, Fy=28.0)),
     ("lone-load", tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE), tyre(Fz=changed(LOADS, [2], 7490.0), Fy=FORCE)),
@@ -229,7 +226,6 @@ def sentence(rule: str, points: Points) -> str:
             "reaches 1200 Nm at loads of 1500 N while Fy_N stays below 30 N, so the headings Fy_N and Mz_Nm look exchanged",
         ),
         ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), "is at most 28 N at loads of 1500 N"),
-        ("force-in-kilonewtons", tyre(0.0, kappa=SLIP, Fx=2.0), 'or Fx_N = { column = "Fx_N", unit = "kN" }'),
         (
             "lone-load",
             tyre(Fz=changed(changed(LOADS, [0, 1], 900.0), [2], 7510.0), Fy=FORCE),
