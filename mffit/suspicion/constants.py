@@ -66,7 +66,6 @@ STEEPEST_OVER_CAMBER = Real(
 )
 SIDESLIP_THAT_SHOWS_FORCE = Real(2.0, "deg", "Sideslip beyond which every tyre has a side force.")
 CAMBER_THAT_SHOWS_FORCE = Real(5.0, "deg", "Camber beyond which every tyre has a side force.")
-SLIP_THAT_SHOWS_FORCE = Real(0.05, "-", "Longitudinal slip beyond which every tyre has a longitudinal force.")
 FEWEST_POINTS_OF_FRICTION = Count(
     3, "-", "Fewer points with an implausible force per load are single outliers."
 )
