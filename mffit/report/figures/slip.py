@@ -34,7 +34,9 @@ from tir.equations import lateral, longitudinal, normalise
 from tir.outputs import outputs_of
 
 EDGE = Look(colour=style.INK, line="-", width=1.1)
-EDGE_NAME = "limit within the slips that were run"
+BEYOND = Look(colour=style.INK, line=":", width=1.1)
+EDGE_NAME = "limit of the model"
+EDGE_NAME_RUN = "limit within the slips that were run together"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
@@ -134,7 +136,9 @@ def friction_ellipse(view: BuildView) -> Sheet:
     groups = main_slip_curves(view)
     colours = _colours(c for members in groups.values() for c in members)
     panels = [_ellipse(view, load, members, colours) for load, members in sorted(groups.items())]
-    key = {"measured": READINGS, "model": LINE, EDGE_NAME: EDGE, **_sideslip_key(colours)}
+    edges = (EDGE_NAME, EDGE_NAME_RUN)
+    drawn = {s.name: s.look for p in panels for s in p.series if isinstance(s, Trace) and s.name in edges}
+    key = {"measured": READINGS, "model": LINE, **drawn, **_sideslip_key(colours)}
     return Sheet(rows=in_rows(panels, columns=min(4, max(3, len(panels)))), height=2.6, key=key)
 
 
@@ -164,13 +168,12 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
     steps = int(constants.STEPS_OF_FILE_CURVE)
-    low, high = sideslip_range(view)
-    reach = _reach_of_combined(view)
-    together = np.meshgrid(
-        np.linspace(*slip_range(view), steps), np.linspace(max(low, -reach), min(high, reach), steps)
+    kappa, alpha = (
+        grid.ravel()
+        for grid in np.meshgrid(
+            np.linspace(*slip_range(view), steps), np.linspace(*sideslip_range(view), steps)
+        )
     )
-    alone = np.zeros(steps), np.linspace(low, high, steps)
-    kappa, alpha = (np.concatenate([grid.ravel(), line]) for grid, line in zip(together, alone, strict=True))
     force = np.column_stack(_forces(view, _inputs(view, curve, kappa=kappa, alpha=alpha)))
     turn = np.linspace(0.0, 2.0 * np.pi, 4 * (steps // 2) + 1)
     # Directions are of forces over their peaks, so that the sides of a flat ellipse are seen as well as its ends.
@@ -186,9 +189,17 @@ def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
 
 
 def _limit(view: BuildView, curve: Curve) -> list[Ribbon | Trace]:
-    """The friction limit with its band, outwards and inwards."""
+    """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
-    return _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    beyond = np.abs(alpha) > _reach_of_combined(view) * (1.0 + 1e-6)
+    if not np.any(beyond):
+        return [ribbon, whole]
+    ends = np.flatnonzero(np.diff(beyond)) + 1
+    run = [part for part in np.split(np.arange(len(alpha)), ends) if not beyond[part[0]]]
+    x, y = whole.x, whole.y
+    inside = [Trace(name=EDGE_NAME_RUN, x=x[part], y=y[part], look=EDGE) for part in run]
+    return [ribbon, Trace(name=EDGE_NAME, x=x, y=y, look=BEYOND), *inside]
 
 
 def _path(
@@ -199,7 +210,7 @@ def _path(
     name: str,
     look: Look,
     across: np.ndarray | None = None,
-) -> list[Ribbon | Trace]:
+) -> tuple[Ribbon, Trace]:
     """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
@@ -216,10 +227,10 @@ def _path(
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
     dx, dy = across_y * band.half, across_x * band.half
     shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
-    return [
+    return (
         Ribbon(name=name, x=Fy, y=Fx, dx=dx, dy=dy, look=shade),
         Trace(name=name, x=Fy, y=Fx, look=look),
-    ]
+    )
 
 
 def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any]:
