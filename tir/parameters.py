@@ -90,12 +90,12 @@ class Parameter:
     @property
     def normal_mode(self) -> bool:
         """Whether it is a coefficient of Fy or Mz at pure sideslip and camber, without turn slip."""
-        return self.section in NORMAL_MODE and bool(self.stage) and not self.combined
+        return self.section in NORMAL_MODE and bool(self.stage) and not self.of_slip
 
     @property
-    def combined(self) -> bool:
-        """Whether it acts only where longitudinal slip and sideslip come together."""
-        return any(need.word == "combined" for need in self.needs)
+    def of_slip(self) -> bool:
+        """Whether it acts only where longitudinal slip was run, alone or with sideslip."""
+        return any(need.word in ("kappa", "combined") for need in self.needs)
 
 
 def _load() -> tuple[Parameter, ...]:

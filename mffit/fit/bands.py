@@ -1,4 +1,4 @@
-"""Where the 95 % bands of the side force are narrow: at the pressure of most sweeps, and how much wider at the others."""
+"""Where the 95 % bands are narrow: of Fy at the pressure of most sweeps, of Fx at the sideslips with longitudinal slip."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.posterior import Posterior, spread_through
-from mffit.fit.ranges import tested_ranges
+from mffit.fit.ranges import sideslips_with_slip, tested_ranges
 from mffit.points import Points, levels, main_pressure, make_points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -34,6 +34,44 @@ class BandsByPressure:
     def wider(self) -> bool:
         """Whether a coefficient that the sweeps do not show widens the bands at the other pressures."""
         return bool(self.unseen) and self.half_of_others > constants.WIDER_BANDS * self.half
+
+
+@dataclass(frozen=True, slots=True)
+class BandOfCombined:
+    """Rms half width of the 95 % band of Fx over longitudinal slip and load, where slip was run at one sideslip only."""
+
+    sideslip: float  #: the one at which it was run [rad], without its sign
+    half_at: float  #: there [N]
+    half_between: float  #: halfway to straight running [N]
+
+    @property
+    def wider(self) -> bool:
+        """Whether the fit knows Fx clearly less well between the sideslips than at them."""
+        return self.half_between > constants.WIDER_BANDS * self.half_at
+
+
+def band_of_combined(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfCombined | None:
+    """The band of Fx at the one sideslip with longitudinal slip, and before it; None without such, and with several."""
+    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > constants.COUPLED_ALPHA.rad]
+    sizes = {int(k) for k in levels.nearest_labels(np.abs(run), levels.SIDESLIP)} if run else set()
+    if len(sizes) != 1 or "Fx" not in points.measured:
+        return None
+    tested = tested_ranges(points)
+    loads, _, slips = (int(n) for n in constants.BAND_GRID)
+    Fz, kappa = (
+        axis.ravel()
+        for axis in np.meshgrid(
+            np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
+            np.linspace(tested["KPUMIN"], tested["KPUMAX"], slips),
+        )
+    )
+    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
+
+    def half(alpha: float) -> float:
+        where = make_points(alpha, 0.0, Fz, kappa=kappa, p=p, V=V, phi_t=0.0)
+        return rms(posterior.band(tyre, where, ("Fx",)).Fx)
+
+    return BandOfCombined(abs(run[-1]), half(run[-1]), half(0.5 * run[-1]))
 
 
 def bands_by_pressure(

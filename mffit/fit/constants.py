@@ -259,6 +259,12 @@ BAND_GRID = Series(
     (3, 3, 9), "-", "Loads, camber angles and sideslip angles over which these widths are averaged."
 )
 
+MOST_SIDESLIPS_NAMED = Count(
+    7,
+    "-",
+    "Most sideslips of combined slip that a sentence lists; more fill a line and are given by their ends.",
+)
+
 # Ensemble
 DRAWS_PER_MEMBER = Count(3, "-", "Most draws per member of an ensemble; some break a physical limit.")
 DRAWN_LIMIT_MARGINS = Real(2.0, "-", "Violation of a limit, over the margin, that a drawn tyre may have.")

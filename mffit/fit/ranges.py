@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, violations
-from mffit.points import Points
+from mffit.points import Points, levels
 from tir.evaluate import evaluate
 
 NAMES = ("PRESMIN", "PRESMAX", "FZMIN", "FZMAX", "ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX")
@@ -32,6 +32,12 @@ def tested_ranges(points: Points) -> dict[str, float]:
         "CAMMAX": gamma,
         **{name: min(x, 0.0) if name == "KPUMIN" else max(x, 0.0) for name, x in slip.items()},
     }
+
+
+def sideslips_with_slip(points: Points) -> tuple[float, ...]:
+    """Sideslips [rad] at which longitudinal slip was run, rising; empty where none was."""
+    held = levels.level_values(points.alpha[~points.free_rolling], levels.SIDESLIP)
+    return tuple(np.unique(held[np.isfinite(held)]).tolist())
 
 
 def single_pressure(ranges: Mapping[str, float]) -> bool:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from mffit.fit.bands import bands_by_pressure
+from mffit.fit.bands import band_of_combined, bands_by_pressure
 from mffit.fit.coverage import why_held
 from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import TurningZeros
-from mffit.fit.wording import bands_sentence, zeros_sentence
+from mffit.fit.wording import bands_sentence, combined_sentence, zeros_sentence
 from mffit.points import Points
 from mffit.rig import Simulation
 
@@ -26,7 +26,9 @@ def with_remarks(
     note = bands_sentence(bands, fitted.held, values, why)
     moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
     warned = zeros is not None and zeros.contradicted and from_base
-    remarks = [note, "" if warned else moved]
+    combined = band_of_combined(fitted.posterior, tyre, points)
+    between = combined_sentence(combined) if combined is not None else ""
+    remarks = [note, between, "" if warned else moved]
     return replace(
         found,
         bands=bands,

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit.bands import BandsByPressure
+from mffit.fit import constants
+from mffit.fit.bands import BandOfCombined, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
@@ -155,7 +156,9 @@ def ranges_sentence(files: Files) -> str:
     low, high = (f"{tested[name] / 1e3:.0f}" for name in ("PRESMIN", "PRESMAX"))
     pressures = f"{low} kPa only" if single_pressure(tested) else f"{low} to {high} kPa"
     slip = (
-        f", longitudinal slip {tested['KPUMIN']:.2f} to {tested['KPUMAX']:.2f}" if "KPUMAX" in tested else ""
+        f", longitudinal slip {tested['KPUMIN']:.2f} to {tested['KPUMAX']:.2f} {_at_sideslips(files.sideslips_with_slip)}"
+        if "KPUMAX" in tested
+        else ""
     )
     return (
         f"Tested: {tested['FZMIN']:.0f} to {tested['FZMAX']:.0f} N, sideslip to {np.degrees(tested['ALPMAX']):.1f} deg, "
@@ -164,6 +167,30 @@ def ranges_sentence(files: Files) -> str:
         f"{written['FZMIN']:.0f} to {written['FZMAX']:.0f} N, {np.degrees(written['ALPMAX']):.0f} deg of sideslip, "
         f"{np.degrees(written['CAMMAX']):.0f} deg of camber, {written['PRESMIN'] / 1e3:.0f} to "
         f"{written['PRESMAX'] / 1e3:.0f} kPa. Beyond the tested conditions nothing was measured."
+    )
+
+
+def _at_sideslips(sideslips: Sequence[float]) -> str:
+    """At which sideslips [rad] longitudinal slip was run, in words."""
+    degrees = [round(float(np.degrees(alpha)), 1) + 0.0 for alpha in sideslips]
+    if not any(degrees):
+        return "without sideslip"
+    if len(degrees) > constants.MOST_SIDESLIPS_NAMED:
+        return f"at sideslips of {degrees[0]:g} to {degrees[-1]:g} deg"
+    *others, last = (f"{alpha:g}" for alpha in degrees)
+    return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
+
+
+def combined_sentence(band: BandOfCombined) -> str:
+    """How far the fit interpolates where longitudinal slip was run at one sideslip only; empty where that is harmless."""
+    if not band.wider:
+        return ""
+    alpha = float(np.degrees(band.sideslip))
+    return (
+        f"longitudinal slip with sideslip was run at {alpha:.1f} deg only, which does not show how Fx falls on the way there: "
+        f"the 95 % band of Fx is +-{band.half_between:.0f} N at {alpha / 2:.1f} deg (rms over slip and load), and "
+        f"+-{band.half_at:.0f} N at {alpha:.1f} deg; sweeps of slip at a second sideslip, such as {alpha / 2:.0f} deg, would "
+        "narrow it"
     )
 
 

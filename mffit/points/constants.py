@@ -163,6 +163,10 @@ SOFTEST_SLIP_STIFFNESS = Real(
     "-",
     "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
 )
+SLIP_WITH_FORCE = Real(0.05, "-", "Longitudinal slip beyond which every tyre has a longitudinal force.")
+SMALLEST_DRIVEN_FORCE = Real(
+    0.02, "-", "|Fx| over load that every tyre exceeds beyond it: kN read as N are at most 0.002."
+)
 LARGEST_SHIFT_OF_SLIP = Real(
     0.12,
     "-",

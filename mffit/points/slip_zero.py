@@ -164,7 +164,12 @@ def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple
     out, notes, warnings = list(sweeps), [], []
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
-        zero = slip_zero(_joined_readings(sweeps[k] for k in rows))
+        readings = _joined_readings(sweeps[k] for k in rows)
+        if _too_weak(readings):
+            raise InputError(
+                _weak(readings, config), file=config.path or config.sweep[0].file, key="columns.Fx_N"
+            )
+        zero = slip_zero(readings)
         if zero is None:
             continue
         wrong = _contradiction(heading, zero)
@@ -196,6 +201,25 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
     if zero.falls:
         return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
     return f"the zero of {heading} is not free rolling: {found}; taken off"
+
+
+def _too_weak(of: Driven) -> bool:
+    """Whether slips that show a force have less of one than any tyre."""
+    shown = (np.abs(of.slip) > constants.SLIP_WITH_FORCE) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
+    if np.sum(shown) < constants.FEWEST_POINTS_AT_ZERO or np.ptp(of.slip[shown]) < constants.SLIP_WITH_FORCE:
+        return False  # a wheel without drive: its slip says nothing
+    return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < constants.SMALLEST_DRIVEN_FORCE)
+
+
+def _weak(of: Driven, config: Config) -> str:
+    """What is wrong with the longitudinal force, and the remedy."""
+    column = config.columns.get("Fx_N")
+    heading = (column.column if column is not None else None) or "Fx_N"
+    return (
+        f"Fx is at most {np.nanmax(np.abs(of.Fx)):.3g} N at loads of {np.nanmedian(np.abs(of.Fz)):.0f} N and slips of up to "
+        f"{np.nanmax(np.abs(of.slip)):.2f}, which looks like kN; write newtons, or "
+        f'Fx_N = {{ column = "{heading}", unit = "kN" }} under [columns]'
+    )
 
 
 def _contradiction(heading: str, zero: SlipZero) -> str:

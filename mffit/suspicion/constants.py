@@ -79,7 +79,7 @@ LARGEST_MOMENT_ARM = Real(
     "m",
     "|Mz| over load that no tyre exceeds: trail times friction. Side forces over load exceed it at usual angles.",
 )
-LONGEST_ARM = Real(1.0, "m", "|Mz| over load that no tyre reaches.")
+LONGEST_ARM = Real(1.0, "m", "|Mz| or |Mx| over load that no tyre reaches.")
 LOWEST_TESTED_PRESSURE = Real(0.35, "-", "No tyre is tested below this share of its nominal pressure.")
 FEWEST_ROWS_OF_A_DEAD_CHANNEL = Count(4, "-", "Equal readings that mean a dead channel.")
 FEWEST_ROWS_OF_A_LONE_LOAD = Count(4, "-", "Fewest rows of which one load can be an outlier.")
@@ -148,6 +148,19 @@ USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
 )
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
+MISFIT_OF_ANOTHER_UNIT = Real(
+    0.1,
+    "-",
+    "Misfit over stated noise, of many readings, that only a noise stated in another unit explains: kN or percent are farther.",
+)
+FEWEST_READINGS_OF_A_UNIT = Count(
+    50, "-", "Fewest readings with a stated noise; a fit passes closer to fewer of them."
+)
+LEAST_MISFIT_OF_NOISE = Real(
+    0.5,
+    "-",
+    "Misfit over stated noise below which readings that the model does not explain are in another unit than their noise.",
+)
 CARRIED_MISFIT = Real(1.5, "-", "Misfit over that of all points above which a sweep is named.")
 SWEEPS_NAMED_WITH_MISFIT = Count(3, "-", "Most sweeps that are named with a misfit.")
 OUTLIERS_IN_SENTENCE = Count(5, "-", "Most outliers that a sentence names.")

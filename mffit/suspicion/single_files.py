@@ -170,10 +170,11 @@ def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
     sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
 )
 def arm_too_long(part: Points, config: Config) -> Iterator[Finding]:
-    """|Mz| over load."""
-    arm = np.abs(part.Mz) / part.Fz
-    if np.any(arm > constants.LONGEST_ARM):
-        yield Finding({"arm": np.nanmax(arm)}, column="Mz_Nm")
+    """|Mz| and |Mx| over load."""
+    for column, moment in (("Mz_Nm", part.Mz), ("Mx_Nm", part.Mx)):
+        arm = np.abs(moment) / part.Fz
+        if np.any(arm > constants.LONGEST_ARM):
+            yield Finding({"arm": np.nanmax(arm)}, column=column)
 
 
 @of_file(

@@ -17,11 +17,12 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, column
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Subject, When, rule
+from mffit.suspicion.slopes import overturning_slopes
 from mffit.suspicion.unpublished import CamberReduction, causes
 
 
@@ -85,6 +86,11 @@ class FinishedFit:
     def doubtful(self, channel: str) -> bool:
         """Whether a channel misses the noise."""
         return self.far(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+
+    def at_the_noise(self, channel: str) -> bool:
+        """Whether a channel states its noise, and misses the model by no more and not by far less."""
+        ratio, _ = self.misfit(channel)
+        return not self.doubtful(channel) and ratio > constants.LEAST_MISFIT_OF_NOISE
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
         """Whether a channel misses the noise so far that the fit is not trusted."""
@@ -189,9 +195,9 @@ def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "state, and their units and axes right?",
 )
 def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Share of a channel's variance that the model explains."""
+    """Share of a channel's variance that the model explains, unless the stated noise is all that is left."""
     for name in fit.used:
-        if fit.r2[name] < constants.EXPLAINED_VARIANCE:
+        if fit.r2[name] < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
             yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
 
 
@@ -269,6 +275,34 @@ def unpublished(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
+    id="misfit-far-below-noise",
+    limits=(constants.MISFIT_OF_ANOTHER_UNIT, constants.FEWEST_READINGS_OF_A_UNIT),
+    outcome=Outcome.WARNED,
+    sentence="the model misses {channel} by {ratio:.2g} times its stated uncertainty only, so that the readings and their "
+    "uncertainty cannot be in the same unit: check the units of {column} and u_{column}",
+)
+def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of the model over the stated uncertainty, where it is too small."""
+    for name in fit.used:
+        ratio, n = fit.misfit(name)
+        if n >= constants.FEWEST_READINGS_OF_A_UNIT and ratio < constants.MISFIT_OF_ANOTHER_UNIT:
+            yield {"channel": name, "ratio": ratio, "column": column(name)}
+
+
+@of_model(
+    id="overturning-moment-reversed",
+    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    outcome=Outcome.WARNED,
+    sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
+    "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
+)
+def moment_reversed(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
+    if {name: s.sign for name, s in overturning_slopes(fit.points).items()} == {"alpha": 1, "gamma": 1}:
+        yield {}
+
+
+@of_model(
     id="effect-in-the-residuals",
     limits=(constants.MISFIT_IN_DOUBT,),
     outcome=Outcome.WARNED,
@@ -318,7 +352,7 @@ REASONS = (
     unpublished,
 )
 """Rules whose findings make a file not to be trusted, the gravest first."""
-DOUBTS = (hand_against_data, doubtful_misfit, effect_left, structure_left)
+DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, moment_reversed, effect_left, structure_left)
 """Rules whose findings are warnings."""
 
 

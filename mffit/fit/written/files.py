@@ -10,7 +10,7 @@ from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
 from mffit.fit.ranges import NAMES as RANGES
-from mffit.fit.ranges import plausible_ranges, tested_ranges, with_room
+from mffit.fit.ranges import plausible_ranges, sideslips_with_slip, tested_ranges, with_room
 from mffit.fit.start import camber_stiffness_terms
 from mffit.fit.written.misfit import FileFigures, Reference
 from mffit.fit.written.normal import derive, side_force_for
@@ -34,6 +34,7 @@ class Files:
     camber_limit: float | None = None  #: to which the file for turn slip off is held [rad]
     otherwise: FileFigures | None = None
     """The file for turn slip off with the other weight, or where it is held to some camber, without that limit."""
+    sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
     untested: Mapping[str, str] = field(default_factory=dict)
     """Where the written range of a quantity comes from that the sweeps do not vary, in words."""
 
@@ -98,6 +99,7 @@ def make_files(
         written=written,
         changed={use: tuple(values) for use, values in changed.items() if values},
         lacking=_turn_slip_forces(model) if disc else {},
+        sideslips_with_slip=sideslips_with_slip(points),
         untested=untested,
     )
 

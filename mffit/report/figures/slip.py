@@ -34,7 +34,9 @@ from tir.equations import lateral, longitudinal, normalise
 from tir.outputs import outputs_of
 
 EDGE = Look(colour=style.INK, line="-", width=1.1)
-EDGE_NAME = "limit within the tested sideslip and slip"
+BEYOND = Look(colour=style.INK, line=":", width=1.1)
+EDGE_NAME = "limit of the model"
+EDGE_NAME_RUN = "limit within the slips that were run together"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
@@ -124,12 +126,19 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
     return min(0.0, float(alpha.min())), max(0.0, float(alpha.max()))
 
 
+def _reach_of_combined(view: BuildView) -> float:
+    """Largest sideslip [rad], to either side, at which longitudinal slip was run."""
+    return float(np.max(np.abs(view.felt.alpha[~view.points.free_rolling]), initial=0.0))
+
+
 def friction_ellipse(view: BuildView) -> Sheet:
     """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, and the tyre with its bands."""
     groups = main_slip_curves(view)
     colours = _colours(c for members in groups.values() for c in members)
     panels = [_ellipse(view, load, members, colours) for load, members in sorted(groups.items())]
-    key = {"measured": READINGS, "model": LINE, EDGE_NAME: EDGE, **_sideslip_key(colours)}
+    edges = (EDGE_NAME, EDGE_NAME_RUN)
+    drawn = {s.name: s.look for p in panels for s in p.series if isinstance(s, Trace) and s.name in edges}
+    key = {"measured": READINGS, "model": LINE, **drawn, **_sideslip_key(colours)}
     return Sheet(rows=in_rows(panels, columns=min(4, max(3, len(panels)))), height=2.6, key=key)
 
 
@@ -180,9 +189,17 @@ def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
 
 
 def _limit(view: BuildView, curve: Curve) -> list[Ribbon | Trace]:
-    """The friction limit with its band, outwards and inwards."""
+    """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
-    return _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    beyond = np.abs(alpha) > _reach_of_combined(view) * (1.0 + 1e-6)
+    if not np.any(beyond):
+        return [ribbon, whole]
+    ends = np.flatnonzero(np.diff(beyond)) + 1
+    run = [part for part in np.split(np.arange(len(alpha)), ends) if not beyond[part[0]]]
+    x, y = whole.x, whole.y
+    inside = [Trace(name=EDGE_NAME_RUN, x=x[part], y=y[part], look=EDGE) for part in run]
+    return [ribbon, Trace(name=EDGE_NAME, x=x, y=y, look=BEYOND), *inside]
 
 
 def _path(
@@ -193,7 +210,7 @@ def _path(
     name: str,
     look: Look,
     across: np.ndarray | None = None,
-) -> list[Ribbon | Trace]:
+) -> tuple[Ribbon, Trace]:
     """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
@@ -210,10 +227,10 @@ def _path(
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
     dx, dy = across_y * band.half, across_x * band.half
     shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
-    return [
+    return (
         Ribbon(name=name, x=Fy, y=Fx, dx=dx, dy=dy, look=shade),
         Trace(name=name, x=Fy, y=Fx, look=look),
-    ]
+    )
 
 
 def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any]:

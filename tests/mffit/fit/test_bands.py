@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 import small_rigs
 
-from mffit.fit.bands import BandsByPressure, bands_by_pressure
+from mffit.fit.bands import BandOfCombined, BandsByPressure, band_of_combined, bands_by_pressure
 from mffit.fit.posterior import Posterior
-from mffit.fit.wording import bands_sentence
+from mffit.fit.wording import bands_sentence, combined_sentence
 from mffit.points import make_points
 from mffit.rig import Simulation
+from tests.mffit.fit import combined_programme as belt
 
 U = {"PKY1": 0.1, "PPY2": 0.7}
 
@@ -67,3 +68,31 @@ def test_one_pressure_needs_no_word():
     assert bands.others == ()
     assert not bands.wider
     assert bands_sentence(bands, U, tyre.values, "") == ""
+
+
+def test_one_sideslip_with_slip_leaves_the_way_there_to_the_formula():
+    """RCX1 with RBX1 such that the weight at 5 deg stays: nothing is unknown there, and the shape in between is."""
+    tyre = belt.truth()
+    reach = np.radians(5.0) * tyre["RBX1"]
+    slope = -np.arctan(reach) * (1.0 + reach**2) / reach * tyre["RBX1"] / tyre["RCX1"]
+    together = np.array([1.0, slope]) * 0.1
+    posterior = Posterior(("RCX1", "RBX1"), np.outer(together, together))
+    simulation = Simulation.of(tyre.replace(REX1=0.0, REX2=0.0, RBX2=0.0), turn_slip=False)
+    one = band_of_combined(posterior, simulation, belt.programme(sideslips=(0.0, 5.0)))
+    assert one is not None
+    assert one.sideslip == pytest.approx(np.radians(5.0), rel=0.01)
+    assert one.wider
+    assert one.half_at < 0.1 * one.half_between
+    both_sides = band_of_combined(posterior, simulation, belt.programme(sideslips=(-5.0, 0.0, 5.0)))
+    assert both_sides is not None
+    assert band_of_combined(posterior, simulation, belt.programme()) is None
+    assert band_of_combined(posterior, simulation, belt.programme(sideslips=(0.0,))) is None
+    assert band_of_combined(posterior, simulation, belt.programme(driven=False)) is None
+
+
+def test_what_one_sideslip_leaves_open_is_said_with_both_bands():
+    said = combined_sentence(BandOfCombined(np.radians(4.0), 9.0, 61.0))
+    assert "run at 4.0 deg only" in said
+    assert "+-61 N at 2.0 deg" in said
+    assert "+-9 N at 4.0 deg" in said
+    assert combined_sentence(BandOfCombined(np.radians(4.0), 9.0, 10.0)) == ""

@@ -143,6 +143,9 @@ def test_what_is_missing_for_longitudinal_slip_is_said():
     straight = {row.stage: row for row in coverage(belt.programme(sideslips=(0.0,)), "left")}
     assert straight["Fx"].supported
     assert straight["combined-Fx"].missing == ("no sweep combines longitudinal slip and sideslip",)
+    # A driven wheel that runs straight on has a side force and a moment of their own.
+    assert straight["combined-Fy"].free == ("RVY1", "RVY2", "RVY3", "RVY5", "RVY6")
+    assert straight["combined-Mz"].free == ("SSZ1", "SSZ3", "SSZ4")
     right = {row.stage: row for row in coverage(belt.programme(sideslips=(0.0, 2.0, 5.0)), "left")}
     assert "RHX1" in right["combined-Fx"].free  # the sweeps of sideslip go to both sides
     rolling = belt.programme(driven=False)

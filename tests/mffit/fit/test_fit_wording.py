@@ -100,6 +100,22 @@ def test_tested_and_written_ranges_are_stated():
     )
 
 
+@pytest.mark.parametrize(
+    ("degrees", "words"),
+    [
+        ((-6.0, -2.04, 0.0, 6.0), "0.20 at sideslips of -6, -2, 0 and 6 deg. The"),
+        ((-0.0, 4.0), "at sideslips of 0 and 4 deg"),
+        ((4.0,), "at 4 deg of sideslip."),
+        ((-0.01,), "without sideslip."),
+        (tuple(range(-5, 6)), "at sideslips of -5 to 5 deg."),
+    ],
+)
+def test_slip_is_stated_with_the_sideslips_at_which_it_was_run(degrees, words):
+    tested = TESTED | {"KPUMIN": -0.2, "KPUMAX": 0.2}
+    made = Files({}, tested, WRITTEN, {}, {}, sideslips_with_slip=tuple(np.radians(degrees)))
+    assert words in ranges_sentence(made)
+
+
 @pytest.mark.parametrize(("lowest", "words"), [(286e3, "286 kPa only"), (284e3, "284 to 300 kPa")])
 def test_pressures_within_five_per_cent_are_one(lowest, words):
     assert words in ranges_sentence(Files({}, TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {}))

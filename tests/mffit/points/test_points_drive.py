@@ -125,6 +125,15 @@ def test_slip_of_another_sign_unit_or_zero_is_refused_with_the_remedy(configured
         points.read(configured(table))
 
 
+def test_a_longitudinal_force_in_kilonewtons_is_refused_with_the_remedy(configured):
+    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
+    table[COLUMNS["Fx_N"]] *= 1e-3
+    with pytest.raises(
+        InputError, match=r'looks like kN; write newtons, or Fx_N = . column = "FX", unit = "kN" .'
+    ):
+        points.read(configured(table))
+
+
 def test_slip_against_the_loaded_radius_is_shifted_by_load(configured, plain):
     """As the speed of the wheel and the radius of free rolling give it: no formula of the reader."""
     table = drive_recording()

@@ -105,6 +105,18 @@ def test_the_friction_limit_is_closed_convex_and_holds_the_readings(view):
         assert named(panel, Ribbon, slip.EDGE_NAME)
 
 
+def test_the_friction_limit_is_dotted_where_no_sweep_combined_as_much(view):
+    """Slip was swept at up to 5 deg of sideslip, sideslip alone to 10 deg."""
+    load, curves = next(iter(slip.main_slip_curves(view).items()))
+    _, alpha, _ = slip.friction_limit(view, curves[0])
+    panel = next(p for p in slip.friction_ellipse(view).panels if p.title == f"{load:.0f} N")
+    (whole,) = (s for s in panel.series if isinstance(s, Trace) and s.name == slip.EDGE_NAME)
+    inside = [s for s in panel.series if isinstance(s, Trace) and s.name == slip.EDGE_NAME_RUN]
+    assert whole.look.line == ":"
+    assert sum(len(s.x) for s in inside) == np.sum(np.abs(np.degrees(alpha)) < 5.01) < len(alpha)
+    assert all(s.look.line == "-" for s in inside)
+
+
 def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
     tyre, sheet = belt.truth(), slip.weights(view)
     for panel in sheet.panels[:3]:

@@ -123,9 +123,36 @@ def test_a_misfit_that_might_be_a_mistake_s_is_a_reason(changed):
 
 
 def test_a_model_explains_half_of_the_variance_or_is_not_trusted():
-    assert judged(noise(), r2=0.51).trusted
-    assert "49 %" in judged(noise(), r2=0.49).reasons[0]
-    assert " 0 %" in judged(noise(), r2=-3.0).reasons[0]
+    assert judged(noise(), u=np.nan, r2=0.51).trusted
+    assert "49 %" in judged(noise(), u=np.nan, r2=0.49).reasons[0]
+    assert " 0 %" in judged(noise(), u=np.nan, r2=-3.0).reasons[0]
+
+
+@pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.51, True), (0.49, False), (1.25, False)])
+def test_a_channel_with_nothing_but_its_stated_noise_has_nothing_to_explain(scale, trusted):
+    """Mx of a wheel that is only driven and braked; readings far below their noise are in another unit."""
+    assert judged(noise(scale), r2=0.1).trusted == trusted
+
+
+@pytest.mark.parametrize(("scale", "n", "said"), [(0.09, 50, True), (0.11, 50, False), (0.09, 49, False)])
+def test_a_misfit_far_below_the_noise_is_a_unit(scale, n, said):
+    doubts = judged(noise(scale)[:n]).doubts
+    assert any("check the units of Fy_N and u_Fy_N" in doubt for doubt in doubts) == said
+
+
+@pytest.mark.parametrize(
+    ("by_alpha", "by_gamma", "said"), [(60.0, 300.0, True), (-60.0, 300.0, False), (60.0, -300.0, False)]
+)
+def test_an_overturning_moment_against_side_force_and_lean_has_the_wrong_sign(by_alpha, by_gamma, said):
+    """Side force and lean move the load to their side, so that Mx falls with sideslip and with camber [Nm/rad]."""
+    alpha, gamma = (
+        x.ravel() for x in np.meshgrid(np.radians([-4.0, -1.0, 0.0, 1.0, 4.0]), np.radians([-4.0, 0.0, 4.0]))
+    )
+    Mx = by_alpha * alpha + by_gamma * gamma + 0.01 * RNG.standard_normal(len(alpha))
+    points = make_points(alpha, gamma, 1500.0, Mx=Mx, Fy=0.0, p=2e5, V=11.0, phi_t=0.0)
+    used = {"Mx": np.ones(len(Mx), bool)}
+    found = judge(FinishedFit(points=points, model=Readings(Mx=Mx), used=used, r2={"Mx": 1.0}))
+    assert any("scale = -1 for Mx_Nm" in doubt for doubt in found.doubts) == said
 
 
 def test_without_a_stated_noise_left_out_sweeps_decide():

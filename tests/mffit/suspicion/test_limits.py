@@ -70,6 +70,7 @@ SINGLE_FILES = [
     ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0))),
     ("load-in-another-unit", tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 6010.0))),
     ("moment-in-newton-millimetres", tyre(Mz=changed(FORCE, [0], -1510.0)), tyre(Mz=0.99 * FORCE)),
+    ("moment-in-newton-millimetres", tyre(Mx=changed(FORCE, [0], -1510.0)), tyre(Mx=0.99 * FORCE)),
     ("pressure-in-psi", tyre(p=36e3), tyre(p=88e3)),
     ("pressure-in-psi", tyre(p=13e3), tyre(p=12e3)),
 ]  # fmt: skip
