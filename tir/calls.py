@@ -58,7 +58,7 @@ def compile_kernels(
     Raises
     ------
     TirError
-        If llvmlite is not installed (``pip install llvmlite``), or a kind is unknown.
+        If llvmlite is not installed (``pip install llvmlite``) or cannot be used here, or a kind is unknown.
     """
     kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
     unknown = set(kinds) - set(kernel.KINDS)

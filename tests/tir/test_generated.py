@@ -185,7 +185,7 @@ def test_elementary_functions_are_those_of_the_libm(in_lanes):
         ("sin", angles),
         ("cos", angles),
         ("tan", angles),
-        ("arctan", np.append(angles, [np.inf, -np.inf])),
+        ("arctan", np.append(angles, [np.inf, -np.inf, 0.2679491924311227, 3.732050807568877])),
         ("arccos", np.linspace(-0.999, 1.0, 1001)),
         ("exp", np.linspace(-700.0, 700.0, 2001)),
     ):
@@ -280,6 +280,18 @@ def test_a_part_shorter_than_a_vector_stays_within_its_arrays(tyre):
     assert_equal(out, tyre(2e3, alpha, p=2e5, Vx=16.0), Forces._fields)
 
 
+@needs_llvm
+def test_narrower_vectors_give_the_same(tmp_path, monkeypatch):
+    """Processors without AVX-512 compute fewer conditions together."""
+    monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(kernel, "_lanes", lambda: 4)
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    run = kernel.load.__wrapped__("batch", Switches()).run_of(calls._values(tyre))
+    alpha, out = np.linspace(-0.2, 0.2, 23), np.zeros((6, 23))
+    run(np.array(2e3), alpha, *(np.array(x) for x in (0.0, 0.0, 0.0, 16.0, 2e5)), out, 0, 23)
+    assert_equal(out, evaluate(tyre.p, 2e3, alpha, pressure=2e5, Vx=16.0)[0], Forces._fields)
+
+
 @pytest.mark.parametrize("given", ["", "relative/cache"])
 def test_an_unusable_cache_variable_gives_the_usual_folder(monkeypatch, given):
     monkeypatch.setattr(sys, "platform", "linux")
@@ -311,8 +323,9 @@ def test_lists_are_arrays_for_states_too(tyre):
 
 
 @needs_llvm
-def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeypatch):
+def test_damaged_machine_code_in_the_cache_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
+    tyre = tir.read(VECTORS / "moto_front.tir")
     load = kernel.load.__wrapped__
     load("one", Switches())
     (kept,) = tmp_path.iterdir()
@@ -379,11 +392,20 @@ def test_a_broken_llvmlite_stops_no_call(tyre, monkeypatch, broken):
     assert not kernels.LOADED
 
 
-def test_without_a_global_lock_nothing_is_compiled(monkeypatch):
+def test_without_a_global_lock_machine_code_is_refused_and_calls_go_on(tyre, monkeypatch):
     import sysconfig
 
+    as_at_start(monkeypatch)
+    monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
     monkeypatch.setattr(sysconfig, "get_config_var", lambda name: int(name == "Py_GIL_DISABLED"))
-    assert not kernel.available.__wrapped__()
+    monkeypatch.setattr(kernel, "obstacle", kernel.obstacle.__wrapped__)
+    kernel.load.cache_clear()
+    with pytest.raises(tir.TirError, match="free-threaded"):
+        tir.compile_kernels()
+    found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
+    assert found == pytest.approx([found[0]] * 8)
+    kernels.wait()
+    assert not kernels.LOADED
 
 
 NUMBERS = [
@@ -416,7 +438,8 @@ def test_numbers_of_every_type_are_the_same_number(tyre, compiled, monkeypatch, 
 
 
 def test_without_llvm_the_message_names_the_package(monkeypatch):
-    monkeypatch.setattr(kernel, "available", lambda: False)
+    monkeypatch.setattr(kernel.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(kernel, "obstacle", kernel.obstacle.__wrapped__)
     kernel.load.cache_clear()
     with pytest.raises(tir.TirError, match="pip install llvmlite"):
         tir.compile_kernels()

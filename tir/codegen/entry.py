@@ -83,7 +83,10 @@ def module(kind: str, program: Program, lanes: int) -> str:
     text = ir.Module(name=kind)
     signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
     body = ir.IRBuilder(ir.Function(text, signature, kind).append_basic_block())
-    {"one": _one, "batch": functools.partial(_batch, lanes=lanes)}[kind](_Caller(body), program)
+    if kind == "one":
+        _one(_Caller(body), program)
+    else:
+        _batch(_Caller(body), program, lanes)
     return str(text)
 
 

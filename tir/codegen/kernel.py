@@ -65,19 +65,27 @@ class _Definition(ctypes.Structure):
 
 
 @cache
-def available() -> bool:
-    """Whether machine code can be compiled and called here: needs llvmlite, and CPython of 64 bits with its global lock.
+def obstacle() -> str | None:
+    """Why no machine code can be compiled and called here, with what to do; None if it can.
 
-    The entry in C was never tried without the lock.
+    The entry in C was never tried without CPython's global lock.
     """
     from sysconfig import get_config_var  # imported late, so that import tir is quick
 
-    return (
-        sys.implementation.name == "cpython"
-        and sys.maxsize > 2**32
-        and not get_config_var("Py_GIL_DISABLED")
-        and importlib.util.find_spec("llvmlite") is not None
-    )
+    if sys.implementation.name != "cpython" or sys.maxsize <= 2**32:
+        return "compiled kernels need CPython of 64 bits; calls go through numpy here"
+    if get_config_var("Py_GIL_DISABLED"):
+        return (
+            "compiled kernels are not used on a free-threaded build of CPython; calls go through numpy here"
+        )
+    if importlib.util.find_spec("llvmlite") is None:
+        return "compiled kernels need llvmlite, which is not installed: pip install llvmlite"
+    return None
+
+
+def available() -> bool:
+    """Whether machine code can be compiled and called here."""
+    return obstacle() is None
 
 
 def threads() -> int:
@@ -95,12 +103,11 @@ def load(kind: str, switches: Switches) -> Kernel:
     Raises
     ------
     TirError
-        If llvmlite is not installed.
+        If it cannot be compiled here, see :func:`obstacle`.
     """
-    if not available():
-        raise TirError(
-            "compiled kernels need llvmlite, which is not installed or not supported here: pip install llvmlite"
-        )
+    reason = obstacle()
+    if reason is not None:
+        raise TirError(reason)
     from llvmlite import binding
 
     machine = _machine()
