@@ -78,6 +78,9 @@ def export() -> None:
 @click.option(
     "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
 )
+@click.option(
+    "--transient", is_flag=True, help="Also functions for the lag of the contact, from slip speeds."
+)
 @voiced
 def c(
     file: Path,
@@ -86,6 +89,7 @@ def c(
     turn_slip: bool | None,
     limits: bool,
     tunable: bool,
+    transient: bool,
     voice: Voice,
 ) -> None:
     """Export a property file as C99 code.
@@ -96,7 +100,13 @@ def c(
 
     with _told(voice):
         written = write_c(
-            file, _folder(out, ".c"), name=name, turn_slip=turn_slip, limits=limits, tunable=tunable
+            file,
+            _folder(out, ".c"),
+            name=name,
+            turn_slip=turn_slip,
+            limits=limits,
+            tunable=tunable,
+            transient=transient,
         )
     _report(voice, written, file, turn_slip)
 
