@@ -1,4 +1,4 @@
-"""`mffit export`: a property file as C code or FMU, or a project's points as TYDEX."""
+"""`mffit export`: a property file as C code, FMU or the file of another program, or a project's points as TYDEX."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
 
 @click.group()
 def export() -> None:
-    """Export a property file as C code or FMU, or points as TYDEX."""
+    """Export a property file as C code, FMU or for another program, or points as TYDEX."""
 
 
 @export.command()
@@ -156,6 +156,34 @@ def fmu(
             sources_only=sources_only,
         )
     _report(voice, [written], file, turn_slip)
+
+
+@export.command("tir")
+@click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
+@click.option(
+    "--for", "targets", required=True, metavar="NAMES", help="Programs to write it for: mfeval,simscape,..."
+)
+@out_option("Folder to write to.", default="export", show_default=True)
+@voiced
+def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
+    """Export a property file for other programs.
+
+    Writes one complete file for each, FILE-NAME.tir, with the keys, order and line ends that the program needs. Numbers stay.
+    """
+    import tir
+    from mffit.output import output_folder
+
+    names = list(filter(None, (name.strip() for name in targets.split(","))))
+    tyre = tir.read(file)
+    known = {problem.sentence for problem in tir.check(tyre)}
+    found = [problem.sentence for problem in tir.check(tyre, names) if problem.sentence not in known]
+    with output_folder(_folder(out, ".tir"), by="export", protected=[file]) as folder:
+        for name in names:
+            tyre.write(folder / f"{file.stem}-{name}.tir", target=name)
+    written = [str(out / f"{file.stem}-{name}.tir") for name in names]
+    voice.warn(found)
+    voice.say(f"written: {', '.join(written)}")
+    voice.give(lambda: {"written": written})
 
 
 @export.command()

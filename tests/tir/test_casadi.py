@@ -125,7 +125,7 @@ def test_an_input_left_out_of_a_call_by_name_has_the_files_value():
 
 def test_an_unknown_output_is_named():
     pytest.importorskip("casadi")
-    with pytest.raises(tir.TirError, match="fy is no force or state: use .*Fy"):
+    with pytest.raises(tir.TirError, match=r"fy is no force or state: use .*Fy"):
         tir.casadi_function(tir.Tyre.from_values({}), outputs=("fy",))
 
 
