@@ -86,7 +86,7 @@ def casadi_function(
         known[node.number] = operation(*map(of, node.arguments))
     results = [casadi.SX(of(x)) for x in program.outputs.values()]
     usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
-    options = {
+    options: dict[str, Any] = {
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
         "default_in": [float(usual.get(key, 0.0)) for key in inputs],
     }
