@@ -35,11 +35,15 @@ def _code_options(command: Any) -> Any:
     return command
 
 
-def _folder(out: Path, ending: str) -> Path:
-    """The folder to write to; refuses the name of a file, which would become a folder of that name."""
+def _folder(out: Path, ending: str, *, named: bool = True) -> Path:
+    """The folder to write to; refuses the name of a file, which would become a folder of that name.
+
+    ``named``: whether the command has ``--name``.
+    """
     if out.suffix.lower() == ending:
+        name = f" --name {out.stem}" if named else ""
         raise InputError(
-            f"is the name of a file, but --out names the folder: write --out {out.parent} --name {out.stem}",
+            f"is the name of a file, but --out names the folder: write --out {out.parent}{name}",
             key=f"--out {out}",
         )
     return out
@@ -174,10 +178,12 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     from mffit.output import output_folder
 
     names = list(filter(None, (name.strip() for name in targets.split(","))))
+    if not names:
+        raise InputError("names no program: write, for example, --for mfeval,simscape", key="--for")
     tyre = tir.read(file)
     known = {problem.sentence for problem in tir.check(tyre)}
     found = [problem.sentence for problem in tir.check(tyre, names) if problem.sentence not in known]
-    with output_folder(_folder(out, ".tir"), by="export", protected=[file]) as folder:
+    with output_folder(_folder(out, ".tir", named=False), by="export", protected=[file]) as folder:
         for name in names:
             tyre.write(folder / f"{file.stem}-{name}.tir", target=name)
     written = [str(out / f"{file.stem}-{name}.tir") for name in names]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -35,3 +36,18 @@ def test_the_file_of_another_program_is_written_with_its_warnings(tmp_path, caps
     with pytest.raises(SystemExit):
         main(["export", "tir", str(tmp_path / "front.tir"), "--for", "chrono"])
     assert "PAC2002" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--for", "mfeval", "--out", "new.tir"], r"--out names the folder: write --out \.$"),
+        (["--for", ","], "names no program"),
+        (["--for", "matlab"], "unknown program"),
+    ],
+)
+def test_a_wrong_request_is_one_sentence(capsys, arguments, said):
+    with pytest.raises(SystemExit) as end:
+        main(["export", "tir", str(FILE), *arguments])
+    assert end.value.code == 2
+    assert re.search(said, capsys.readouterr().err.strip())
