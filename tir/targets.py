@@ -53,7 +53,8 @@ OF_SIMSCAPE = (
     TargetRule(
         "MC_CONTOUR_A",
         lambda p: p["MC_CONTOUR_A"] > 0.0,
-        "by MC_CONTOUR_A this is a motorcycle tyre, but the block is meant for tyres with a square cross-section",
+        "by MC_CONTOUR_A this is a motorcycle tyre, but the block is meant for tyres with a square cross-section: it takes the "
+        "sine of camber in Fy and lets the trail act on camber thrust too, so Mz is wrong where the tyre leans",
     ),
 )
 OF_MBSIM = (
@@ -70,9 +71,23 @@ OF_MBSIM = (
         "error",
     ),
     TargetRule(
+        "USE_MODE",
+        asks_for_turn_slip,
+        "USE_MODE asks for turn slip, with which its Mz is NaN where the spin is zero, and its trail acts on the force of spin "
+        "too: use the file for turn slip off, or expect another Mz on curves",
+    ),
+    TargetRule(
         "QDRP2",
         lambda p: p["QDRP2"] != 0.0 and asks_for_turn_slip(p),
         "it has no QDRP2, so the turn-slip moment differs; set it to 0 before the fit, or expect another Mz on curves",
+    ),
+)
+OF_MFEVAL = (
+    TargetRule(
+        "USE_MODE",
+        asks_for_turn_slip,
+        "USE_MODE asks for turn slip, with which it reverses camber thrust: use the file for turn slip off, and a mode of mfeval "
+        "that ends in 1",
     ),
 )
 OF_ANSYS = (
@@ -158,7 +173,15 @@ TARGETS: dict[str, Target] = {
             )
             for name, program, values, rules, verified in HOSTS
         ),
-        Target("mfeval", "MFeval and its relatives", (62, 61, 60), ADAMS, si=True, dollar_only=True),
+        Target(
+            "mfeval",
+            "MFeval and its relatives",
+            (62, 61, 60),
+            ADAMS,
+            si=True,
+            dollar_only=True,
+            rules=OF_MFEVAL,
+        ),
         *(
             Target(
                 name,

@@ -1,4 +1,4 @@
-"""`mffit export`: a property file as C code or FMU, or a project's points as TYDEX."""
+"""`mffit export`: a property file as C code, FMU or the file of another program, or a project's points as TYDEX."""
 
 from __future__ import annotations
 
@@ -35,11 +35,15 @@ def _code_options(command: Any) -> Any:
     return command
 
 
-def _folder(out: Path, ending: str) -> Path:
-    """The folder to write to; refuses the name of a file, which would become a folder of that name."""
+def _folder(out: Path, ending: str, *, named: bool = True) -> Path:
+    """The folder to write to; refuses the name of a file, which would become a folder of that name.
+
+    ``named``: whether the command has ``--name``.
+    """
     if out.suffix.lower() == ending:
+        name = f" --name {out.stem}" if named else ""
         raise InputError(
-            f"is the name of a file, but --out names the folder: write --out {out.parent} --name {out.stem}",
+            f"is the name of a file, but --out names the folder: write --out {out.parent}{name}",
             key=f"--out {out}",
         )
     return out
@@ -70,13 +74,16 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
 
 @click.group()
 def export() -> None:
-    """Export a property file as C code or FMU, or points as TYDEX."""
+    """Export a property file as C code, FMU or for another program, or points as TYDEX."""
 
 
 @export.command()
 @_code_options
 @click.option(
     "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
+)
+@click.option(
+    "--transient", is_flag=True, help="Also functions for the lag of the contact, from slip speeds."
 )
 @voiced
 def c(
@@ -86,6 +93,7 @@ def c(
     turn_slip: bool | None,
     limits: bool,
     tunable: bool,
+    transient: bool,
     voice: Voice,
 ) -> None:
     """Export a property file as C99 code.
@@ -96,7 +104,13 @@ def c(
 
     with _told(voice):
         written = write_c(
-            file, _folder(out, ".c"), name=name, turn_slip=turn_slip, limits=limits, tunable=tunable
+            file,
+            _folder(out, ".c"),
+            name=name,
+            turn_slip=turn_slip,
+            limits=limits,
+            tunable=tunable,
+            transient=transient,
         )
     _report(voice, written, file, turn_slip)
 
@@ -146,6 +160,36 @@ def fmu(
             sources_only=sources_only,
         )
     _report(voice, [written], file, turn_slip)
+
+
+@export.command("tir")
+@click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
+@click.option(
+    "--for", "targets", required=True, metavar="NAMES", help="Programs to write it for: mfeval,simscape,..."
+)
+@out_option("Folder to write to.", default="export", show_default=True)
+@voiced
+def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
+    """Export a property file for other programs.
+
+    Writes one complete file for each, FILE-NAME.tir, with the keys, order and line ends that the program needs. Numbers stay.
+    """
+    import tir
+    from mffit.output import output_folder
+
+    names = list(filter(None, (name.strip() for name in targets.split(","))))
+    if not names:
+        raise InputError("names no program: write, for example, --for mfeval,simscape", key="--for")
+    tyre = tir.read(file)
+    known = {problem.sentence for problem in tir.check(tyre)}
+    found = [problem.sentence for problem in tir.check(tyre, names) if problem.sentence not in known]
+    with output_folder(_folder(out, ".tir", named=False), by="export", protected=[file]) as folder:
+        for name in names:
+            tyre.write(folder / f"{file.stem}-{name}.tir", target=name)
+    written = [str(out / f"{file.stem}-{name}.tir") for name in names]
+    voice.warn(found)
+    voice.say(f"written: {', '.join(written)}")
+    voice.give(lambda: {"written": written})
 
 
 @export.command()

@@ -17,6 +17,7 @@ def write_c(
     turn_slip: bool | None = None,
     limits: bool = False,
     tunable: bool = False,
+    transient: bool = False,
 ) -> list[Path]:
     """Write a property file as one C99 header and one source, see :func:`tir.export_c`.
 
@@ -29,6 +30,7 @@ def write_c(
     turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
     limits : as in a call of the tyre
     tunable : also functions with the scaling factors and the temperature as arguments
+    transient : also the lag of the contact, see :func:`tir.export_c`
 
     Returns
     -------
@@ -46,7 +48,7 @@ def write_c(
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
     name = identifier(path, name, other_mode(tyre, on))
-    code = c_of(tyre, path, name, turn_slip=on, limits=limits, tunable=tunable)
+    code = c_of(tyre, path, name, turn_slip=on, limits=limits, tunable=tunable, lag=transient)
     with output_folder(out, by="export", protected=[path]) as folder:
         (folder / f"{name}.h").write_text(code.header, encoding="ascii", newline="\n")
         (folder / f"{name}.c").write_text(code.source, encoding="ascii", newline="\n")

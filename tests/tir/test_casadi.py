@@ -112,6 +112,23 @@ def test_the_tightest_corner_is_found_from_zero():
     )
 
 
+def test_an_input_left_out_of_a_call_by_name_has_the_files_value():
+    """CasADi's own default is 0: no speed and no pressure, which gives another force without a word."""
+    pytest.importorskip("casadi")
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    function = tir.casadi_function(tyre, outputs=("Fy", "My"), tunable=("LMUY",))
+    wanted = tyre(float(tyre["FNOMIN"]), alpha=0.05)
+    found = function(alpha=0.05)
+    assert float(found["Fy"]) == pytest.approx(wanted.Fy, rel=1e-12)
+    assert float(found["My"]) == pytest.approx(wanted.My, rel=1e-12)
+
+
+def test_an_unknown_output_is_named():
+    pytest.importorskip("casadi")
+    with pytest.raises(tir.TirError, match=r"fy is no force or state: use .*Fy"):
+        tir.casadi_function(tir.Tyre.from_values({}), outputs=("fy",))
+
+
 def test_scaling_factors_become_inputs():
     casadi = pytest.importorskip("casadi")
     tyre = tir.read(VECTORS / "moto_front.tir")

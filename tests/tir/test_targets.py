@@ -225,6 +225,8 @@ def test_the_order_of_sections_is_the_manuals(tyre):
         ("mbsim", {"QDRP2": -0.3, "USE_MODE": 225.0}, "QDRP2", "no QDRP2"),
         ("simscape", {"USE_MODE": 225.0}, "USE_MODE", "an option of the block"),
         ("simscape", {}, "MC_CONTOUR_A", "square cross-section"),
+        ("mbsim", {"USE_MODE": 225.0}, "USE_MODE", "Mz is NaN"),
+        ("mfeval", {"USE_MODE": 225.0}, "USE_MODE", "reverses camber thrust"),
         ("ansysmotion", {"USE_MODE": 225.0}, "USE_MODE", "'SWIFT'"),
     ],
 )

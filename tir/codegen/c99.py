@@ -145,7 +145,15 @@ def _with_lag(code: Code, name: str, programs: tuple[Program, Program]) -> Code:
         names = (*LAGGING, *LAG_INPUTS, "dt")[: None if record == "deflection" else -1]
         bodies += [*_function(head, f"{name}_{record}", program, names), ""]
     end = "#ifdef __cplusplus\n}\n#endif\n#endif\n"
-    header = code.header.removesuffix(end) + "\n".join([*declared, *(f"{head};" for head in heads), "", end])
+    told = [
+        f"/* {name}_step: the deflection after a step of dt [s] >= 0, from u and v before it; zero at rest.",
+        f"   {name}_contact: forces and states with these u and v.",
+        *(f"   {key:<9}{LAG_TEXTS[key]}" for key in LAG_INPUTS if key in LAG_TEXTS),
+        "*/",
+    ]
+    header = code.header.removesuffix(end) + "\n".join(
+        [*declared, *told, *(f"{head};" for head in heads), "", end]
+    )
     return Code(header, code.source + "\n".join(bodies))
 
 

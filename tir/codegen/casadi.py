@@ -40,6 +40,8 @@ def casadi_function(
 ) -> Any:
     """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, pressure (ISO-W, SI, radians).
 
+    An input that a call by name omits has the value of an FMU's start: FNOMIN, LONGVL, INFLPRES, the factors of the file, else 0.
+
     Parameters
     ----------
     tyre : its values become constants
@@ -52,8 +54,8 @@ def casadi_function(
     Raises
     ------
     TirError
-        If casadi is not installed (``pip install casadi``), a value by which the equations divide is 0, or a name cannot be
-        turned.
+        If casadi is not installed (``pip install casadi``), a value by which the equations divide is 0, a name cannot be turned,
+        or an output is unknown.
     """
     try:
         import casadi
@@ -62,7 +64,8 @@ def casadi_function(
     refuse_zero_divisors(tyre.p)
     switches = exported(tyre, turn_slip, star, limits)
     name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
-    turned = [one.name for one in chosen(tyre, tunable)]
+    factors = {one.name: one.start for one in chosen(tyre, tunable)}
+    turned = [*factors]
     program = trace_tuned(tyre, switches, outputs, turned)
     inputs = {key: casadi.SX.sym(key) for key in (*INPUTS, *turned)}
     known: dict[int, Any] = {}
@@ -82,7 +85,11 @@ def casadi_function(
         operation: Any = OPERATORS[word] if word in OPERATORS else getattr(casadi, word)
         known[node.number] = operation(*map(of, node.arguments))
     results = [casadi.SX(of(x)) for x in program.outputs.values()]
-    options = {"allow_duplicate_io_names": True}  # Fz is an input, and an output within the limits
+    usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
+    options: dict[str, Any] = {
+        "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
+        "default_in": [float(usual.get(key, 0.0)) for key in inputs],
+    }
     return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)
 
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
+from tir.errors import TirError
 from tir.evaluate import either_way
 from tir.parameters import TABLE
 
@@ -58,6 +59,9 @@ def trace(
     changed : changes the parameters by name before the run
     """
     found = run_on_symbols(switches, fixed or {}, {}, changed)
+    for name in outputs:
+        if name not in found:
+            raise TirError(f"{name} is no force or state: use {', '.join(found)}", name=name)
     return program_of({name: found[name] for name in outputs})
 
 

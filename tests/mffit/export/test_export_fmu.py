@@ -363,6 +363,10 @@ def test_the_switches_reach_the_code(tmp_path):
     with zipfile.ZipFile(held) as archive:
         assert "Inputs are held to the file's ranges." in archive.read("sources/moto_front.h").decode()
         assert "turn slip off, inputs held" in archive.read("modelDescription.xml").decode()
+    main(["export", "c", str(FILE), "--out", str(tmp_path / "c"), "--transient"])
+    assert "moto_front_step(" in (tmp_path / "c" / "moto_front.h").read_text()
+    main(["export", "c", str(FILE), "--out", str(tmp_path / "c")])
+    assert "moto_front_step(" not in (tmp_path / "c" / "moto_front.h").read_text()
 
 
 @pytest.mark.parametrize(
