@@ -26,7 +26,7 @@ from mffit.points.lag import rolled_distance
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.rig.lag import lagged
+from mffit.rig.lag import lagged_setting
 from mffit.rig.simulation import LAG
 from mffit.rig_errors.record import RADIANS
 from mffit.rounding import ascii_only, to_uncertainty
@@ -258,7 +258,7 @@ def _response(
     direction: Direction, samples: Points, simulation: Simulation, sigma: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (n,) [N] that follows the setting over a length [m], and its derivative by the length [N/m]."""
-    follows, by_sigma = lagged(samples, sigma, direction.setting)
+    follows, by_sigma = lagged_setting(samples, sigma, direction.setting)
     at = samples.replace(**{direction.setting: follows})
     force, by_zero = simulation.sensitivities(at, [direction.zero], (direction.force,))
     return force[direction.force], by_zero[direction.force][:, 0] / direction.unit * by_sigma
