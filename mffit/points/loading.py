@@ -18,7 +18,7 @@ from mffit.points import constants, levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import common, rolled_distance
+from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -44,6 +44,9 @@ class Reading(NamedTuple):
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
     steps: Mapping[str, Points] = MappingProxyType({})
     """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
+    lags: tuple[
+        Lag, ...
+    ] = ()  #: of the moving sweeps of the sideslip angle whose lag is known, on a straight path
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -105,7 +108,9 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    return Reading(kept, tuple(warnings), notes, left_out, _excluded(found.excluded, phi_t), stepped)
+    lags = [one for part in reduced for one in part.lags if straight and np.isfinite(one.lag)]
+    excluded = _excluded(found.excluded, phi_t)
+    return Reading(kept, tuple(warnings), notes, left_out, excluded, stepped, tuple(lags))
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:
