@@ -47,7 +47,8 @@ def of_rates(lags: Sequence[Lag], g: np.ndarray) -> OfRates:
     shift, weight = lag * r, 1.0 / (np.hypot(u, u_shape) * r)
     n, sigma, compliance = len(lag), np.maximum(lag, 1e-3), math.nan
     for _ in range(constants.STEPS_OF_RATES):
-        built_up = 1.0 - 2.0 * np.exp(-way / sigma)  # since the last turn of the sweep
+        # Share of the lag that is built up since the last turn of the sweep, where the force is zero: a length behind the angle.
+        built_up = 1.0 - 2.0 * np.exp(-(way + sigma) / sigma)
         design = np.column_stack([g * built_up * r, at_load])
         inverse = np.linalg.pinv(design * weight[:, None])
         known = inverse @ (shift * weight)
