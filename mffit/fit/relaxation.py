@@ -405,7 +405,7 @@ def _sentence(found: Relaxation) -> str:
         ((name, q),) = found.found.items()
         slow, fast = np.degrees(found.rates.rates)
         return ascii_only(
-            f"Relaxation length of the {CHANNELS[found.direction.force].word}, from {found.rates.count} sweeps of "
+            f"Relaxation length of the {CHANNELS[found.direction.force].word}, from {found.rates.sweeps} sweeps of "
             f"{found.direction.word} at {slow:.2g} to {fast:.2g} deg/s: {name} {to_uncertainty(q.value, q.u)}; the sweeps have "
             f"{math.degrees(found.rates.hysteresis):.2g} deg of hysteresis beside it."
         )

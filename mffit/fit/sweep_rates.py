@@ -26,7 +26,7 @@ class OfRates(NamedTuple):
     u: float  #: its standard uncertainty, where the slip stiffness is exact; infinite at one rate
     weights: np.ndarray  #: (n,) share of every sweep in the length
     hysteresis: float  #: half the shift of the ways up and down without lag, rms over the loads [rad]
-    count: int  #: of sweeps
+    sweeps: int  #: number of them
     rates: tuple[float, float]  #: smallest and largest [rad/s]
 
 
