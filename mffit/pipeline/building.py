@@ -145,7 +145,9 @@ def _fitted(
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, campaigns)
+        return fitting.fit(
+            config, points, parts, measured, base, progress, reading.steps, campaigns, reading.lags
+        )
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)

@@ -18,7 +18,7 @@ from mffit.points import constants, levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import common, rolled_distance
+from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -45,6 +45,9 @@ class Reading(NamedTuple):
     steps: Mapping[str, Points] = MappingProxyType({})
     """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
     notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
+    lags: tuple[
+        Lag, ...
+    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -110,8 +113,9 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
+    lags = [one for part in reduced for one in part.lags if straight and np.isfinite(one.lag)]
     excluded = _excluded(found.excluded, phi_t)
-    return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes)
+    return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes, tuple(lags))
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:

@@ -104,13 +104,18 @@ def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
         np.ptp(sweep.gamma[rows]), constants.SMALLEST_SWEEP.rad
     ):
         return UNKNOWN
+    if stretch.begin == 0:  # what was before is not known, and the force may still be building up
+        rolled = rolled_distance(sweep.time[rows], sweep.V[rows])
+        rows = rows[rolled >= min(constants.TRANSIENT_ROLL, 0.5 * rolled[-1])]
     time = sweep.time[rows]
     rolled = rolled_distance(time, sweep.V[rows])
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
-    return measure(
+    lag = measure(
         sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
     )
+    load, pressure, speed = (float(np.mean(x[rows])) for x in (sweep.Fz, sweep.p, sweep.V))
+    return lag._replace(load=load, pressure=pressure, speed=speed)
 
 
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:

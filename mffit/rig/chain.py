@@ -12,7 +12,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig.histories import History, path_radii
-from mffit.rig.lag import lagged
+from mffit.rig.lag import lagged_setting
 from mffit.rig.play import settled
 from mffit.rig_errors import AFTER, BEFORE, RigError
 from tir.derivatives import Traced, gradient, plain, traced
@@ -152,7 +152,7 @@ class Chain:
 
     def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
         """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""
-        follows, slope = lagged(self.points.replace(alpha=alpha), plain(sigma))
+        follows, slope = lagged_setting(self.points.replace(alpha=alpha), plain(sigma))
         return sigma.derived(follows, slope) if isinstance(sigma, Traced) else follows
 
     def turned_by_moment(self, alpha: Any, give: Any) -> Any:

@@ -7,7 +7,7 @@ import numpy as np
 from mffit.points import Points
 
 
-def lagged(points: Points, sigma: float, setting: str = "alpha") -> tuple[np.ndarray, np.ndarray]:
+def lagged_setting(points: Points, sigma: float, setting: str = "alpha") -> tuple[np.ndarray, np.ndarray]:
     """Sideslip angle or slip (n,) that the force answers to [rad or -], and its derivative by the relaxation length [1/m].
 
     ``sigma d(alpha')/ds + alpha' = alpha``; the same for ``setting`` kappa. Exact for an angle that moves linearly over the

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from mffit.config import RigTable
 from mffit.diagnosis import diagnose
 from mffit.points import concatenate, make_points
-from mffit.rig.lag import lagged
+from mffit.rig.lag import lagged_setting
 from tir.evaluate import evaluate
 
 SIGMA = 0.28  # m
@@ -86,7 +86,7 @@ def test_the_lag_is_exact_at_uneven_steps_whatever_the_order_of_the_rows():
     expected = integrated(time, np.full(len(time), 1.0), alpha)
     assert np.degrees(np.abs(alpha - expected)).max() > 2.0
     shuffled = rng.permutation(len(time))
-    found = lagged(moving(alpha[shuffled], time[shuffled], 1.0), SIGMA)[0]
+    found = lagged_setting(moving(alpha[shuffled], time[shuffled], 1.0), SIGMA)[0]
     assert found == pytest.approx(expected[shuffled], abs=1e-8)
 
 
@@ -94,14 +94,14 @@ def test_a_wheel_at_rest_keeps_its_lag():
     """The force answers to rolled distance: steering a wheel at rest moves alpha alone."""
     time = np.array([0.0, 0.5, 1.0, 1.0, 2.0])
     alpha = np.radians([1.0, 2.0, 3.0, 3.5, 4.0])
-    standing = lagged(moving(alpha, time, 0.0), SIGMA)[0]
+    standing = lagged_setting(moving(alpha, time, 0.0), SIGMA)[0]
     assert np.degrees(standing) == pytest.approx(np.ones(5), abs=1e-12)
 
 
 def test_steps_without_distance_do_not_change_later_samples():
     time, alpha = np.array([0.0, 0.2, 0.5, 0.9]), np.radians([0.0, 2.0, 3.0, 1.0])
-    once = lagged(moving(alpha, time, 2.0), SIGMA)[0]
-    twice = lagged(moving(np.repeat(alpha, 2), np.repeat(time, 2), 2.0), SIGMA)[0]
+    once = lagged_setting(moving(alpha, time, 2.0), SIGMA)[0]
+    twice = lagged_setting(moving(np.repeat(alpha, 2), np.repeat(time, 2), 2.0), SIGMA)[0]
     assert twice[::2] == pytest.approx(once, abs=1e-15)
     assert twice[1::2] == pytest.approx(once, abs=1e-15)
     expected = integrated(time, np.full(4, 2.0), alpha)

@@ -138,7 +138,7 @@ def test_a_flat_track_has_no_runs_about_turn_slip(tmp_path):
     simulated(flat(), tmp_path)
     config = configuration.load(tmp_path / "tyre.toml")
     found = {run.addition.id for run in candidates(config, ingestion.load(config)[0])}
-    driven = {"drive", "combined", "drive-camber", "drive-pressure", "rolling", "steps"}
+    driven = {"drive", "combined", "drive-camber", "drive-pressure", "rolling", "steps", "slip-steps"}
     assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load", *driven}
 
 

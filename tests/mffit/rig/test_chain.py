@@ -12,7 +12,7 @@ from mffit.diagnosis.campaigns import SURFACE
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.points import make_points
 from mffit.rig import Simulation
-from mffit.rig.lag import lagged
+from mffit.rig.lag import lagged_setting
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, Faults, Place
 from mffit.virtual_rig.machine import FORMULAE, Machine, steady
 from mffit.virtual_rig.recording import lagged
@@ -133,7 +133,7 @@ def test_the_lag_agrees_with_the_independent_filter():
     time = np.arange(400) / rate
     alpha = np.radians(5.0 * np.sin(1.3 * time))
     points = make_points(alpha, 0.0, LOAD, p=240e3, V=V, phi_t=0.0, continuous=True, time=time)
-    follows, slope = lagged(points, sigma)
+    follows, slope = lagged_setting(points, sigma)
     np.testing.assert_allclose(follows, lagged(alpha, V, sigma, rate), atol=1e-12)
     up, down = (lagged(alpha, V, sigma + step, rate) for step in (1e-6, -1e-6))
     np.testing.assert_allclose(slope, (up - down) / 2e-6, atol=1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.points import make_points
-from mffit.rig.lag import lagged
+from mffit.rig.lag import lagged_setting
 
 TIME = np.arange(40) / 20.0
 ALPHA = np.radians(5.0 * np.sin(1.3 * TIME))
@@ -20,22 +20,22 @@ def sweep(V=6.0):
 
 @pytest.mark.parametrize("sigma", [0.0, -1e-4])  # a search may try a length below its bound
 def test_without_relaxation_a_rolling_wheel_answers_at_once(sigma):
-    follows, _ = lagged(sweep(), sigma)
+    follows, _ = lagged_setting(sweep(), sigma)
     assert follows == pytest.approx(ALPHA)
 
 
 @pytest.mark.parametrize("V", [6.0, SPEED])
 def test_no_relaxation_is_the_limit_of_a_short_one(V):
     """Value and derivative by the relaxation length."""
-    follows, slope = lagged(sweep(V), 0.0)
-    near, near_slope = lagged(sweep(V), 1e-7)
+    follows, slope = lagged_setting(sweep(V), 0.0)
+    near, near_slope = lagged_setting(sweep(V), 1e-7)
     assert follows == pytest.approx(near, abs=1e-7)
     assert slope == pytest.approx(near_slope, abs=1e-5)
 
 
 @pytest.mark.parametrize("sigma", [0.0, 0.4])
 def test_a_wheel_that_does_not_roll_keeps_the_angle_that_its_force_answers_to(sigma):
-    follows, slope = lagged(sweep(SPEED), sigma)
+    follows, slope = lagged_setting(sweep(SPEED), sigma)
     standing = np.flatnonzero(SPEED == 0.0)
     assert np.ptp(ALPHA[standing]) > 0.01
     assert np.ptp(follows[standing]) == pytest.approx(0.0, abs=1e-12)
@@ -44,7 +44,7 @@ def test_a_wheel_that_does_not_roll_keeps_the_angle_that_its_force_answers_to(si
 
 def test_a_stop_is_a_filter_over_the_distance_rolled():
     """The samples of a wheel that stopped and rolled on equal those of the same angles over the same distances without time."""
-    follows, slope = lagged(sweep(SPEED), 0.4)
+    follows, slope = lagged_setting(sweep(SPEED), 0.4)
     steps = np.diff(TIME) * 0.5 * (SPEED[1:] + SPEED[:-1])
     expected = [ALPHA[0]]
     for move, d, before in zip(np.diff(ALPHA), steps, ALPHA[:-1], strict=True):
@@ -55,7 +55,7 @@ def test_a_stop_is_a_filter_over_the_distance_rolled():
             value += (angle - value) * (1.0 - np.exp(-d / n / 0.4))
         expected.append(value)
     assert follows == pytest.approx(expected, abs=1e-7)
-    up, down = (lagged(sweep(SPEED), 0.4 + h)[0] for h in (1e-6, -1e-6))
+    up, down = (lagged_setting(sweep(SPEED), 0.4 + h)[0] for h in (1e-6, -1e-6))
     assert slope == pytest.approx((up - down) / 2e-6, abs=1e-8)
 
 
@@ -65,9 +65,9 @@ def test_every_sweep_begins_settled_and_steady_points_have_no_lag():
         time=np.concatenate([TIME, TIME, np.full(40, np.nan)]), sweep=np.repeat([0, 1, 2], 40),
         sweep_names=("a", "b", "c"), continuous=np.repeat([True, True, False], 40),
     )  # fmt: skip
-    follows, slope = lagged(both, 0.4)
-    alone, alone_slope = lagged(sweep(), 0.4)
+    follows, slope = lagged_setting(both, 0.4)
+    alone, alone_slope = lagged_setting(sweep(), 0.4)
     assert follows == pytest.approx(np.concatenate([alone, alone, ALPHA]))
     assert slope == pytest.approx(np.concatenate([alone_slope, alone_slope, np.zeros(40)]))
     order = np.random.default_rng(1).permutation(120)
-    assert lagged(both.select(order), 0.4)[0] == pytest.approx(follows[order])
+    assert lagged_setting(both.select(order), 0.4)[0] == pytest.approx(follows[order])
