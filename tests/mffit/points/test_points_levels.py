@@ -178,3 +178,12 @@ def test_loads_that_wander_while_braking_are_one_level_and_steps_are_not():
     assert set(found[sweep < 12]) == {0}
     assert set(found[sweep == 12]) == {1, 2}
     assert len(set(levels.nearest_labels(Fz[sweep < 12], levels.LOAD))) > 1
+
+
+@pytest.mark.parametrize("n", [0, 1, 300])
+def test_rows_of_equal_keys_are_those_of_each_distinct_key_in_order(n):
+    keys = np.random.default_rng(8).integers(-1, 3, (n, 3)).astype(float)
+    expected = [np.flatnonzero(np.all(keys == key, axis=1)) for key in sorted(set(map(tuple, keys.tolist())))]
+    found = levels.rows_of_equal(keys)
+    assert len(found) == len(expected)
+    assert all(map(np.array_equal, found, expected))
