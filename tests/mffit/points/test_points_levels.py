@@ -187,3 +187,8 @@ def test_rows_of_equal_keys_are_those_of_each_distinct_key_in_order(n):
     found = levels.rows_of_equal(keys)
     assert len(found) == len(expected)
     assert all(map(np.array_equal, found, expected))
+
+
+def test_the_middle_of_a_level_is_that_of_most_of_its_points():
+    values = placed(np.array([0.0] * 30 + [0.4, 1.1]), SIDESLIP)
+    assert levels.labels(values, SIDESLIP).tolist() == [0] * 31 + [NO_LEVEL]
