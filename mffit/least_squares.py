@@ -50,7 +50,7 @@ def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarr
         found.append((data, slope))
         size += len(data)
         if size > constants.ROWS_AT_ONCE:
-            products = products + _products(found)
+            products = products + sum(_products(*block) for block in found)
             found = []
     if products.ndim:
         rows = root(products).T
@@ -58,16 +58,10 @@ def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarr
     return np.concatenate([data for data, _ in found]), np.concatenate([slope for _, slope in found])
 
 
-def _products(blocks: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Sums of products (k + 1, k + 1) of derivatives and residuals."""
-    k = blocks[0][1].shape[1]
-    total = np.zeros((k + 1, k + 1))
-    for data, slope in blocks:
-        total[:k, :k] += slope.T @ slope
-        total[k, :k] += data @ slope
-        total[k, k] += data @ data
-    total[:k, k] = total[k, :k]
-    return total
+def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """Sums of products (k + 1, k + 1) of the derivatives and residuals of a block."""
+    across = slope.T @ data
+    return np.block([[slope.T @ slope, across[:, None]], [across, data @ data]])
 
 
 class Kept(NamedTuple):

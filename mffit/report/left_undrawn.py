@@ -43,7 +43,7 @@ def parts(every: Sequence[Curve], drawn: Sequence[Curve]) -> str:
 
 def _count(curves: Sequence[Curve]) -> int:
     """Number of points on some curves."""
-    return np.count_nonzero(np.bincount(np.concatenate([c.index for c in curves]))) if curves else 0
+    return int(np.sum(np.bincount(np.concatenate([c.index for c in curves])) > 0)) if curves else 0
 
 
 def long_series(most: int) -> str:

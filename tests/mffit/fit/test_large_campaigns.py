@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import small_rigs
@@ -48,6 +50,18 @@ def test_condensed_rows_have_the_same_products(built, in_small_blocks):
     assert products(few) / np.outer(size, size) == pytest.approx(
         products(whole) / np.outer(size, size), abs=1e-12
     )
+
+
+def test_a_missing_reading_has_neither_residual_nor_derivatives(built):
+    problem = built.fit.search.problem
+    gone = np.arange(len(problem.points)) % 7 == 3
+    lacking = replace(problem, points=problem.points.replace(Mz=np.where(gone, np.nan, problem.points.Mz)))
+    names = [n.name for n in built.fit.search.numbers]
+    (_, data, slope), (_, _, complete) = (next(one.blocks(names)) for one in (lacking, problem))
+    of_channel = np.concatenate([gone & (name == "Mz") for name in problem.sigma])
+    assert not np.any(data[of_channel])
+    assert not np.any(slope[of_channel])
+    assert slope[~of_channel] == pytest.approx(complete[~of_channel])
 
 
 def test_a_number_without_effect_stays_without_effect(monkeypatch):

@@ -189,3 +189,17 @@ def test_a_load_that_wanders_with_the_forces_of_its_sweeps_is_one_level():
     assert levels.count(values, LOAD) > 2
     assert len(np.unique(levels.labels_of_setting(values, sweep, LOAD))) == 2
     assert len(np.unique(levels.labels_of_setting(np.repeat([0.1, 0.2], 5), np.zeros(10), CAMBER))) == 2
+
+
+@pytest.mark.parametrize("n", [0, 1, 300])
+def test_rows_of_equal_keys_are_those_of_each_distinct_key_in_order(n):
+    keys = np.random.default_rng(8).integers(-1, 3, (n, 3)).astype(float)
+    expected = [np.flatnonzero(np.all(keys == key, axis=1)) for key in sorted(set(map(tuple, keys.tolist())))]
+    found = levels.rows_of_equal(keys)
+    assert len(found) == len(expected)
+    assert all(map(np.array_equal, found, expected))
+
+
+def test_the_middle_of_a_level_is_that_of_most_of_its_points():
+    values = placed(np.array([0.0] * 30 + [0.4, 1.1]), SIDESLIP)
+    assert levels.labels(values, SIDESLIP).tolist() == [0] * 31 + [NO_LEVEL]

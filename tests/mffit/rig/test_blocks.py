@@ -7,7 +7,7 @@ import pytest
 import small_rigs
 
 from mffit.points import make_points
-from mffit.rig import Simulation, blocks, constants
+from mffit.rig import Simulation, blocks, constants, successive
 
 N, SWEEPS = 60, 4
 NAMES = ("PKY1", "QBZ1", "alpha_0_deg", "hysteresis_deg", "path_radius_m", "wear_per_km", "F0_N@b")
@@ -57,3 +57,13 @@ def test_blocks_hold_every_point_once_and_divide_no_sweep_if_asked(points, monke
         of_block = [set(points.sweep[rows].tolist()) for rows in whole]
         assert sum(map(len, of_block)) == SWEEPS
         assert len(whole) == {7: 4, 20: 4, 40: 2, 100: 1}[most]
+
+
+def test_rows_that_follow_each_other_are_selected_without_a_copy(points):
+    rows = np.arange(10, 20)
+    part = points.select(successive(rows), with_table=False)
+    assert np.shares_memory(part.alpha, points.alpha)
+    assert np.array_equal(part.alpha, points.alpha[rows])
+    assert len(part.table) == 10
+    for other in (rows[::2], rows[::-1], np.array([10, 11, 11, 13]), rows[:0]):
+        assert np.array_equal(points.select(successive(other)).alpha, points.alpha[other])
