@@ -99,7 +99,7 @@ def test_programs_that_come_and_go_leave_derivatives_as_they_are(p):
     inputs = ["alpha", "gamma", "kappa", "phi_t"]
     for k in range(2 ** len(inputs)):
         some = {"Fz": conditions["Fz"]} | {n: conditions[n] for i, n in enumerate(inputs) if k >> i & 1}
-        outputs_of(("Fy",), p, some)
+        outputs_of(("Fy",), p, some, turn_slip=True)
     assert by("PDY1")[:, 0] == pytest.approx(both[:, 1], rel=1e-12)
 
 

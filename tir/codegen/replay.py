@@ -121,8 +121,11 @@ def replay(
         of the outputs, and then for each output its derivatives by ``wrt``
     """
     with _ONE_AT_A_TIME:
-        found = _on_symbols(switches, still)
-        slopes = [_derivatives(switches, still, name) if wrt else {} for name in outputs]
+        found, known = _on_symbols(switches, still)
+        if wrt:
+            for name in set(outputs) - known.keys():
+                known[name] = _derivatives(found[name], still)
+        slopes = [known[name] if wrt else {} for name in outputs]
         return _replay(
             [*(found[name] for name in outputs), *(slope.get(x, 0.0) for slope in slopes for x in wrt)]
         )
@@ -133,19 +136,19 @@ _ONE_AT_A_TIME = RLock()
 
 
 @lru_cache(maxsize=16)
-def _on_symbols(switches: Switches, still: tuple[str, ...]) -> dict[str, Any]:
-    """Every force and state in one graph."""
-    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
+def _on_symbols(
+    switches: Switches, still: tuple[str, ...]
+) -> tuple[dict[str, Any], dict[str, Mapping[str, Any]]]:
+    """Every force and state in one graph, and a place for the derivatives of each, which are of the same graph."""
+    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0)), {}
 
 
-@lru_cache(maxsize=64)
-def _derivatives(switches: Switches, still: tuple[str, ...], output: str) -> Mapping[str, Any]:
+def _derivatives(output: Any, still: tuple[str, ...]) -> Mapping[str, Any]:
     """The derivatives of an output by every parameter and input, added to its graph.
 
     A replay computes only those that it needs.
     """
-    found = _on_symbols(switches, still)[output]
-    every = derivatives({output: found}, {*NUMBERS, *INPUTS} - set(still))
+    every = derivatives({"": output}, {*NUMBERS, *INPUTS} - set(still))
     return {name: slope for (_, name), slope in every.items()}
 
 
