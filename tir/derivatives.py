@@ -121,10 +121,10 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
 
     Returns
     -------
-    (n, k) array, or (k,) for a scalar output
+    (n, k) array, or (k,) for a scalar output; the n derivatives by one number are next to each other in memory
     """
-    shape = np.shape(plain(output))
-    out = np.zeros((*shape, len(wrt)))
+    rows = np.zeros((len(wrt), *np.shape(plain(output))))
+    out = np.moveaxis(rows, 0, -1)
     if not isinstance(output, Traced) or not wrt:
         return out
     column = {x.place: k for k, x in enumerate(wrt)}
@@ -134,9 +134,10 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
         place = -heappop(latest)
         passed = sensitivity.pop(place)
         if place in column:
-            out[..., column[place]] = passed
+            rows[column[place]] = passed
         for parent, partial in output.tape[place].parents:
-            key, share = parent.place, passed * partial
+            key = parent.place
+            share = partial if isinstance(passed, float) and passed == 1.0 else passed * partial
             if key in sensitivity:
                 sensitivity[key] = sensitivity[key] + share
             else:
