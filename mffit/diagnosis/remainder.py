@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -139,6 +140,11 @@ def predicted_sweep(left: Remainder, k: int, shown: np.ndarray) -> dict[str, Pre
             scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
             out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
     return out
+
+
+def log_of(chance: float) -> float:
+    """Natural logarithm of a probability; minus infinity where it is too small to be a number."""
+    return math.log(chance) if chance > 0.0 else -math.inf
 
 
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:
