@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc, fdtrc, ndtri
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.priors import anchor, moving
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.remainder import Remainder
+from mffit.diagnosis.remainder import Remainder, log_of
 from mffit.effects import CATALOG, Effect, Free
 from mffit.fit.fitted import Fitted
 from mffit.least_squares import touches
@@ -129,7 +129,7 @@ def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.nda
     inverse = (axes[:, clear] / power[clear]) @ axes[:, clear].T / np.outer(size, size)
     score = change.T @ left.residual
     amount, explained = inverse @ score, float(score @ inverse @ score)
-    chance = float(stats.chi2.logsf(explained, int(clear.sum())))
+    chance = log_of(chdtrc(int(clear.sum()), explained))
     if not left.at_noise:
         chance = max(chance, _between_sweeps(left, change, own @ amount, amount, inverse))
     numbers = {
@@ -164,7 +164,7 @@ def _between_sweeps(
         return 0.0
     covariance = inverse @ (by_sweep.T @ by_sweep) @ inverse * n / (n - 1.0)
     distance = float(amount @ np.linalg.pinv(covariance) @ amount)
-    return float(stats.f.logsf(distance * (n - k) / (k * (n - 1.0)), k, n - k))
+    return log_of(fdtrc(k, n - k, distance * (n - k) / (k * (n - 1.0))))
 
 
 def _sigma(log_chance: float) -> float:
@@ -172,7 +172,7 @@ def _sigma(log_chance: float) -> float:
     if log_chance >= 0.0:
         return 0.0
     if log_chance > -600.0:
-        return float(stats.norm.isf(0.5 * math.exp(log_chance)))
+        return -float(ndtri(0.5 * math.exp(log_chance)))
     return math.sqrt(-2.0 * log_chance)
 
 
@@ -197,7 +197,7 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
         if touches(value, lower, upper) and (step > 0.0) == (value - lower < upper - value):
             continue  # the readings pull it back inside
         explained = step**2 * power
-        chance = float(stats.chi2.logsf(explained, 1))
+        chance = log_of(chdtrc(1, explained))
         if not left.at_noise:
             at = np.array([step])
             chance = max(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -73,12 +74,11 @@ class Remainder:
         rows[: len(self.sigma)] = np.nan_to_num(change) / self.sigma[:, None]
         return rows
 
-    def left_out(self, rows: np.ndarray) -> np.ndarray:
-        """Residuals of some rows (mask (m,)) as all others predict them, to first order."""
+    def left_out(self, group: np.ndarray) -> np.ndarray:
+        """Residuals (m,) of each group (m,), counted from 0, as all other rows predict it, to first order."""
         k = self.axes.shape[1]
         information = (1.0 + constants.INFORMATION_LEFT) * np.eye(k)
-        group = np.where(rows, 0, -1)
-        return left_out_errors(self.axes, self.residual, information, np.zeros(k), group)[rows]
+        return left_out_errors(self.axes, self.residual, information, np.zeros(k), group)
 
 
 def remainder(fitted: Fitted) -> Remainder:
@@ -141,13 +141,19 @@ def predicted_sweep(left: Remainder, k: int, shown: np.ndarray) -> dict[str, Pre
     return out
 
 
+def log_of(chance: float) -> float:
+    """Natural logarithm of a probability; minus infinity where it is too small to be a number."""
+    return math.log(chance) if chance > 0.0 else -math.inf
+
+
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:
     """The matrix A (m, k) with A A' = J (J'J + P)^-1 J'."""
     information = J.T @ J + np.diag(precision)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-30))
     ridge = constants.INFORMATION_LEFT * np.eye(len(scale))
     factor = np.linalg.cholesky(information * scale * scale[:, None] + ridge)
-    return solve_triangular(factor, (J * scale).T, lower=True).T
+    axes = solve_triangular(factor, (J * scale).T, lower=True).T
+    return np.asfortranarray(axes)  # by columns, as derivatives are in memory
 
 
 def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
@@ -168,10 +174,7 @@ def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
 def left_out_sweeps(left: Remainder) -> dict[str, LeftOutSweeps]:
     """By channel, how well sweeps are predicted from all others."""
     n = len(left.points)
-    predicted = np.zeros_like(left.residual)
-    for k in np.unique(left.points.sweep):
-        rows = left.sweep == k
-        predicted[rows] = left.left_out(rows)
+    predicted = left.left_out(np.unique(left.sweep, return_inverse=True)[1])
     out = {}
     for k, name in enumerate(left.channels):
         part = slice(k * n, (k + 1) * n)

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc, log_ndtr
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.remainder import Remainder
+from mffit.diagnosis.remainder import Remainder, log_of
 from mffit.quantities import CONDITIONS
 
 ALONG_SWEEPS = "the course of the sweeps"
@@ -164,7 +164,7 @@ def _binned(
         )
         for j, cell in enumerate(filled)
     )
-    return ResidualComparison(channel, over, float(stats.chi2.logsf(chi2, max(int(clear.sum()), 1))), bins)
+    return ResidualComparison(channel, over, log_of(chdtrc(max(int(clear.sum()), 1), chi2)), bins)
 
 
 def _along(left: Remainder, channel: str, rows: np.ndarray) -> ResidualComparison | None:
@@ -191,4 +191,4 @@ def _along(left: Remainder, channel: str, rows: np.ndarray) -> ResidualCompariso
         len(first) - 4.0 * float(np.sum(neighbours**2)) + 2.0 * float(np.sum(inside**2))
     )  # 2 tr(S M S M), M = 1 - A A'
     z = (float(r[first] @ r[second]) - mean) / math.sqrt(max(variance, 1e-12))
-    return ResidualComparison(channel, ALONG_SWEEPS, float(stats.norm.logsf(z)))
+    return ResidualComparison(channel, ALONG_SWEEPS, float(log_ndtr(-z)))

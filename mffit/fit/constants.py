@@ -207,6 +207,11 @@ REFIT_STEPS_UNDER_SLIP = Count(
     "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape.",
 )
 REFIT_TOLERANCE_UNDER_SLIP = Real(1e-6, "-", "Relative gain that ends a refit there.")
+STEPS_BACK_FROM_A_BOUND = Count(
+    6,
+    "-",
+    "Most steps of a refit with a coefficient put back from its bound: left-out sweeps are then predicted as at its end.",
+)
 
 # Profiles of the sum of squares
 PROBE_DISTANCE = Real(2.0, "-", "Standard errors from the best fit at which the quadratic form is tested.")

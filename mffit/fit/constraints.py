@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -41,14 +40,15 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
 
     ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
-    rows, n = _rows(p, envelope), envelope.size
-    ends = list(itertools.accumulate((max(n, np.size(plain(row))) for row in rows), initial=0))
-    value, slope = np.empty(ends[-1]), np.zeros((ends[-1], len(by)))
-    for row, (start, end) in zip(rows, itertools.pairwise(ends), strict=True):
-        value[start:end] = plain(row)
-        if by:
-            slope[start:end] = gradient(row, by)
-    return value, slope
+    n = envelope.size
+    found = [
+        (np.broadcast_to(plain(row), size), np.broadcast_to(gradient(row, by), (size, len(by))))
+        for row in _rows(p, envelope)
+        for size in [max(n, np.size(plain(row)))]
+    ]
+    if envelope.kappa > 0.0 and envelope.alpha > 0.0:
+        found.append(_dented(p, envelope, by))
+    return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
 
 
 def _rows(p: Any, envelope: Envelope) -> list[Any]:
@@ -73,8 +73,7 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     if envelope.kappa > 0.0:
         rows += _longitudinal(p, q)
         rows += _under_slip(p, envelope, Fz, gamma, pressure)
-    rows = [row + constants.LIMIT_MARGIN for row in rows]
-    return [*rows, _dented(p, envelope)] if envelope.kappa > 0.0 and envelope.alpha > 0.0 else rows
+    return [row + constants.LIMIT_MARGIN for row in rows]
 
 
 def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
@@ -114,36 +113,37 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     return rows
 
 
-def _dented(p: Any, envelope: Envelope) -> Any:
+def _dented(p: Any, envelope: Envelope, by: Sequence[Traced]) -> tuple[np.ndarray, np.ndarray]:
     """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse has a dent.
 
-    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven.
+    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven. With
+    the derivatives, as in :func:`limits`: by hand, because a traced number knows no neighbours.
     """
     loads, sideslips, slips = (int(n) for n in constants.ELLIPSE_GRID)
-    reach = float(constants.LIMIT_REACH_OF_SLIP)
-    kappa = reach * envelope.kappa * np.linspace(-1.0, 1.0, slips)
     alpha = envelope.alpha * np.linspace(1.0 / sideslips, 1.0, sideslips)
-    Fz, alpha, k = (
-        axis.ravel()
-        for axis in np.meshgrid(
-            np.linspace(*envelope.Fz, loads), np.concatenate([-alpha, alpha]), np.arange(slips - 2)
-        )
+    kappa = float(constants.LIMIT_REACH_OF_SLIP) * envelope.kappa * np.linspace(-1.0, 1.0, slips)
+    axes = np.meshgrid(np.linspace(*envelope.Fz, loads), np.concatenate([-alpha, alpha]), kappa)
+    Fz, alpha, kappa = (axis.ravel() for axis in axes)
+    conditions = {"Fz": Fz, "alpha": alpha, "kappa": kappa, "pressure": 0.5 * sum(envelope.pressure)}
+    Fx, Fy = outputs_of(("Fx", "Fy"), p, {**conditions, "Vx": p.LONGVL})
+    lines = len(kappa) // slips
+
+    def steps(force: Any, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Changes of a force from slip to slip (lines, slips - 1), and their derivatives with one more axis."""
+        value, slope = plain(force).reshape(lines, slips), gradient(force, by).reshape(lines, slips, len(by))
+        unit = unit.reshape(lines, slips)[:, 1:]
+        return np.diff(value) / unit, np.diff(slope, axis=1) / unit[..., None]
+
+    (x, x_by), (y, y_by) = steps(Fx, Fz), steps(Fy, -np.sign(alpha) * Fz)
+    turn = x[:, :-1] * y[:, 1:] - y[:, :-1] * x[:, 1:]
+    turn_by = (
+        x_by[:, :-1] * y[:, 1:, None]
+        + x[:, :-1, None] * y_by[:, 1:]
+        - y_by[:, :-1] * x[:, 1:, None]
+        - y[:, :-1, None] * x_by[:, 1:]
     )
-    middle = 0.5 * sum(envelope.pressure)
-    places = [
-        outputs_of(
-            ("Fx", "Fy"),
-            p,
-            {"Fz": Fz, "alpha": alpha, "kappa": kappa[k + step], "pressure": middle, "Vx": p.LONGVL},
-        )
-        for step in range(3)
-    ]
-    along = [
-        ((after[0] - before[0]) / Fz, -np.sign(alpha) * (after[1] - before[1]) / Fz)
-        for before, after in itertools.pairwise(places)
-    ]
-    turn = along[0][0] * along[1][1] - along[0][1] * along[1][0]
-    return (turn - constants.LARGEST_DENT) / constants.ELLIPSE_TURN
+    one = float(constants.ELLIPSE_TURN)
+    return (turn.ravel() - constants.LARGEST_DENT) / one, turn_by.reshape(turn.size, len(by)) / one
 
 
 def _with_slips(

@@ -161,16 +161,11 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     for k, rows in enumerate(divided):
         block[rows], place[rows] = k, np.arange(len(rows))
 
-    @lru_cache(maxsize=1)
-    def of_block(k: int) -> tuple[np.ndarray, np.ndarray]:
-        residual, slope, i = read(k)
-        return np.where(used[i], residual - slope @ step, 0.0), slope @ combined
-
     def at(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         k = int(block[rows[0]])
-        residual, slope = of_block(k)
-        i = _stacked(place[rows], len(channels), len(divided[k]))
-        return residual[i], slope[i]
+        own = _stacked(place[rows], len(channels), len(divided[k]))
+        residual, slope, i = (x[own] for x in read(k))
+        return np.where(used[i], residual - slope @ step, 0.0), slope @ combined
 
     return Leverage(
         channels=channels,

@@ -271,36 +271,21 @@ def _named(key: str) -> str:
     return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
 
 
-def predicted_left_out(
-    model: NearSolution,
-    more: Iterable[Nuisance],
-    group: np.ndarray,
-    moved: Mapping[str, float] | None = None,
-) -> _Prediction:
-    """Left-out parts of sweeps as the model predicts them, to first order with further influences.
-
-    ``moved`` are values at which other numbers are held instead of their current ones, to first order too.
-    """
-    problem, moved = model.problem, moved or {}
+def predicted_left_out(model: NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
+    """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
+    problem = model.problem
     added = (number for nuisance in more for number in nuisance.free(problem.points, {}))
     numbers = [*problem.starting_here(model.numbers), *added]
     x = np.array([number.start for number in numbers])
-    names, k = [number.name for number in numbers], len(numbers)
+    names = [number.name for number in numbers]
     problem = problem.with_values(dict(zip(names, x.tolist(), strict=True)))
-    move = np.array([value - problem.value(name) for name, value in moved.items()])
-    sweeps = problem.sweeps([*names, *moved])
-
-    def there(data: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return data + slope[:, k:] @ move, slope[:, :k]
-
-    radii = there(*problem.radii_rows([*names, *moved]))
-    r, J = condensed(itertools.chain((there(*block[1:]) for block in sweeps()), [radii]))
+    sweeps = problem.sweeps(names)
+    r, J = condensed(itertools.chain((block[1:] for block in sweeps()), [problem.radii_rows(names)]))
     precision, away = _priors(numbers, x)
     information, gradient = J.T @ J + np.diag(precision), J.T @ r + away
     error = np.empty((len(problem.sigma), len(group)))
-    for rows, *block in sweeps():
+    for rows, data, slope in sweeps():
         own = np.tile(np.unique(group[rows], return_inverse=True)[1], len(problem.sigma))
-        data, slope = there(*block)
         found = left_out_errors(slope, data, information, gradient, own)
         error[:, rows] = found.reshape(len(problem.sigma), -1)
     return _judged_errors(problem, error, group)
@@ -340,14 +325,15 @@ def _without(model: NearSolution, dropped: Nuisance) -> NearSolution:
     return solved(NearSolution(model.problem.with_values(gone), numbers, kept))
 
 
-def solved(model: NearSolution) -> NearSolution:
-    """The model fitted again from where it is."""
+def solved(model: NearSolution, most: int | None = None) -> NearSolution:
+    """The model fitted again from where it is, in ``most`` steps at most if this is given."""
     numbers = model.problem.starting_here(model.numbers)
     slips = "Fx" in model.problem.sigma
+    usual = constants.REFIT_STEPS_UNDER_SLIP if slips else constants.REFIT_STEPS
     found = minimum(
         model.problem.free([number.name for number in numbers]),
         numbers,
-        max_steps=constants.REFIT_STEPS_UNDER_SLIP if slips else constants.REFIT_STEPS,
+        max_steps=most or usual,
         tolerance=constants.REFIT_TOLERANCE_UNDER_SLIP if slips else constants.REFIT_TOLERANCE,
     )
     return model._replace(problem=model.problem.with_values(found.values))

@@ -17,7 +17,6 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NearSolution, predicted_left_out, solved
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
-from mffit.fit.problem import FitProblem
 from mffit.least_squares import touches
 from mffit.left_out import Predicted
 from mffit.suspicion import parts_of_sweeps
@@ -52,42 +51,26 @@ def _pushed(fitted: Fitted, plan: FitPlan) -> list[str]:
 
 
 def _needless(fitted: Fitted, plan: FitPlan, names: Sequence[str], group: np.ndarray) -> list[str]:
-    """Those of the names without which left-out sweeps are predicted as well; found with some of the points.
-
-    The prediction to first order names the candidates, and refits confirm them: the way from a bound may be long.
-    """
+    """Those of the names without which left-out sweeps are predicted as well; found with some of the points."""
     stride = max(1, len(group) // constants.POINTS_OF_A_STAGE)
     part, group = fitted.problem.thinned(stride), group[::stride]
-    free = [number for number in fitted.numbers if number.name not in names]
-    inner = [number for number in free if number.name not in fitted.at_bound]
 
-    def predicted(here: FitProblem, back: Sequence[str]) -> Predicted:
-        """With some of the names at their expected values and the others where they are."""
-        expected = {name: plan.expected[name] for name in back}
-        return predicted_left_out(NearSolution(here, inner, ()), (), group, expected).by_sweep
+    def predicted(back: Sequence[str]) -> tuple[NearSolution, Predicted]:
+        """The fit with some of the names at their expected values and the others at their bounds."""
+        free = [number for number in fitted.numbers if number.name not in names]
+        problem = part.with_values({name: plan.expected[name] for name in back})
+        near = solved(NearSolution(problem, free, ()), most=constants.STEPS_BACK_FROM_A_BOUND)
+        inner = [number for number in free if number.name not in fitted.at_bound]
+        return near, predicted_left_out(near._replace(numbers=inner), (), group).by_sweep
 
-    def refitted(here: FitProblem, back: Sequence[str]) -> FitProblem:
-        there = here.with_values({name: plan.expected[name] for name in back})
-        return solved(NearSolution(there, free, ())).problem
-
-    first, likely = predicted(part, ()), list[str]()
+    near, first = predicted(())
+    part = near.problem
+    found: list[str] = []
     for name in names:
-        if _as_good(predicted(part, [*likely, name]), first):
-            likely.append(name)
-    if not likely:
-        return []
-    part = refitted(part, ())
-    first, found = predicted(part, ()), list[str]()
-    for name in likely:
-        near = refitted(part, [*found, name])
-        if _as_good(predicted(near, ()), first):
-            found, part = [*found, name], near
+        near, there = predicted([*found, name])
+        if there.total < (1.0 + LEAST_PREDICTED_SHARE) * first.total and not first.raised(there):
+            found, part = [*found, name], near.problem
     return found
-
-
-def _as_good(prediction: Predicted, first: Predicted) -> bool:
-    """Whether left-out sweeps are predicted as well as at first."""
-    return prediction.total < (1.0 + LEAST_PREDICTED_SHARE) * first.total and not first.raised(prediction)
 
 
 def _said(names: Sequence[str]) -> str:
