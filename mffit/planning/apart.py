@@ -41,11 +41,11 @@ class FittedApart:
         sigma = found.search.problem.sigma if found.search else {}
         side = float(np.median(sigma["Fy"])) if "Fy" in sigma else 1.0
         noise = {name: float(np.median(sigma[name])) if name in sigma else side for name in ("Fx", "Fy")}
-        self._lags = [
+        self.lags = [
             _OfSteps(one, self.tyre, self.nominal, noise[one.direction.force]) for one in found.relaxation
         ]
-        known = [scale for lag in self._lags if (scale := lag.noisier_than_expected)]
-        for lag in self._lags:  # a run like those that were made is as exact as they are
+        known = [scale for lag in self.lags if (scale := lag.noisier_than_expected)]
+        for lag in self.lags:  # a run like those that were made is as exact as they are
             lag.noise *= lag.noisier_than_expected or (float(np.median(known)) if known else 1.0)
         self._radius = np.diag(self._spread_of_radius() ** -2.0)
         rolling, u = found.radii.rolling, found.radii.rms.get("RL")
@@ -59,7 +59,7 @@ class FittedApart:
         """Standard uncertainty of each relaxation length over the length, rms over three loads."""
         runs = list(runs)
         by_load = _by_load(self.loads / self.nominal - 1.0)
-        return [_rms(by_load, lag.information(runs), np.ones(len(self.loads))) for lag in self._lags]
+        return [_rms(by_load, lag.information(runs), np.ones(len(self.loads))) for lag in self.lags]
 
     def u_loaded_radius(self, runs: Iterable[PlannedRun]) -> float:
         """Standard uncertainty of the loaded radius over the deflection, rms over three loads and pressures."""

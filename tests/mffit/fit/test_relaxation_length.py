@@ -113,6 +113,17 @@ def test_offset_and_gain_of_a_run_do_not_matter(recorded, truth, found):
         assert other.length[:2] == pytest.approx(run.length[:2], rel=1e-3)
 
 
+def test_a_tyre_that_is_not_round_does_not_matter(recorded, truth, found):
+    samples = recorded["kappa"]
+    speed = (1.0 + samples.kappa) * samples.V / np.array([float(truth.state(x).Re) for x in samples.Fz])
+    uneven = samples.replace(omega=speed, Fx=samples.Fx + 60.0 * np.cos(speed.cumsum() / 20.0))
+    again = relaxation(
+        {"kappa": uneven}, Simulation.of(truth.replace(**UNKNOWN), turn_slip=False), NONE_KNOWN
+    )
+    for run, other in zip(found[SLIP].runs, again[SLIP].runs, strict=True):
+        assert other.length.value == pytest.approx(run.length.value, abs=run.length.u)
+
+
 @pytest.fixture
 def one_run(recorded):
     return {"alpha": recorded["alpha"].select(recorded["alpha"].sweep == 1)}
