@@ -40,7 +40,7 @@ def read_base(config: Config) -> Tyre | None:
     path = config.folder / config.tyre.base
     if not path.is_file():
         raise InputError(
-            f"the base file {path} does not exist: correct [tyre] base or remove it",
+            f"the base file {path} {'is a folder' if path.is_dir() else 'does not exist'}: correct [tyre] base or remove it",
             file=config.path,
             key="tyre.base",
         )

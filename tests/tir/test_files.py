@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -528,6 +529,8 @@ def test_values_of_missing_keys_can_be_given_on_reading(tmp_path):
     assert tyre.status["UNLOADED_RADIUS"].startswith("given")
     tyre.write(path)
     assert tir.read(path)["UNLOADED_RADIUS"] == 0.2998
+    with pytest.raises(tir.TirError, match="the given UNLOADED_RADIUS is nan"):
+        tir.read(path, UNLOADED_RADIUS=math.nan)
     other = tir.read(path, UNLOADED_RADIUS=0.4)
     assert other["UNLOADED_RADIUS"] == 0.2998
     assert any("the given 0.4 is not used" in problem.sentence for problem in other.problems)
