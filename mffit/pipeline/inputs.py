@@ -48,7 +48,7 @@ def read_base(config: Config) -> Tyre | None:
 
 
 def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:
-    """What a build says of a base file that was converted from another version of the formula."""
+    """Warnings about a base file that was converted from another version of the formula."""
     if base is None or ORIGIN not in base.provenance:
         return ()
     missed = base.provenance.get(MISFIT, "its misfit is not stated")
