@@ -232,7 +232,7 @@ def _refuse_truncated(values, document: Document) -> None:
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
         remedy = (
-            f"add {homes}"
+            f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...)"
             if coefficients
             else "the file is truncated, is for another tyre model, or is not a property file"
         )
