@@ -161,7 +161,9 @@ def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
-    out, notes, warnings = list(sweeps), [], []
+    out = list(sweeps)
+    notes: list[str] = []
+    warnings: list[str] = []
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
         zero = slip_zero(_joined_readings(sweeps[k] for k in rows))
