@@ -328,6 +328,7 @@ def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
         One of the files is there already, or the folder cannot be written to.
     """
     must_be_new(folder, contents)
+    is_new = not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():
@@ -335,6 +336,10 @@ def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
     except (FileExistsError, NotADirectoryError):
         raise InputError("is a file; name a folder", file=folder) from None
     except OSError as error:
+        for name in contents:
+            (folder / name).unlink(missing_ok=True)
+        if is_new and folder.is_dir():
+            folder.rmdir()
         raise InputError(
             f"cannot be written to ({error.strerror}); name another folder", file=folder
         ) from None

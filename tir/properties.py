@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from tir.codegen.program import Switches, trace
 from tir.document import Document, FileLine, read_document
@@ -91,13 +92,8 @@ def interpret(document: Document, lacking: Mapping[str, float | str] = MappingPr
         values[line.key] = value
         if STATUS.match(line.comment):
             status[line.key] = line.comment
-    added = Tyre.from_values(lacking).present - values.keys()
-    for name in lacking:
-        if name in added:
-            values[name], status[name] = lacking[name], "given when the file was read"
-        else:
-            sentence = f"{name} is in the file, {values[name]}: the given {lacking[name]} is not used"
-            problems.append(Problem("warning", sentence, name))
+    added = add_given(values, lacking, problems)
+    status |= dict.fromkeys(added, "given when the file was read")
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
@@ -115,6 +111,28 @@ def interpret(document: Document, lacking: Mapping[str, float | str] = MappingPr
         problems=tuple(problems),
         document=document,
     )
+
+
+def add_given(
+    values: dict[str, Any], given: Mapping[str, float | str], problems: list[Problem]
+) -> frozenset[str]:
+    """Add given values of keys that a file lacks; returns their names. A value that the file has itself stays, with a problem.
+
+    Raises
+    ------
+    TirError
+        If a name is unknown, or a value is no finite number where one is needed.
+    """
+    added = Tyre.from_values(given).present - values.keys()
+    for name, value in given.items():
+        if not isinstance(value, str) and not math.isfinite(value):
+            raise TirError(f"the given {name} is {value}, which no formula can use: give a number", name=name)
+        if name in added:
+            values[name] = value
+        else:
+            sentence = f"{name} is in the file, {values[name]}: the given {value} is not used"
+            problems.append(Problem("warning", sentence, name))
+    return added
 
 
 def parameter_of(line: FileLine) -> Parameter | None:
@@ -214,7 +232,7 @@ def _refuse_truncated(values, document: Document) -> None:
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
         remedy = (
-            f"add {homes}"
+            f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...)"
             if coefficients
             else "the file is truncated, is for another tyre model, or is not a property file"
         )

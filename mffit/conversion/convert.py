@@ -151,10 +151,15 @@ def write(found: Conversion, out: str | Path) -> None:
     Raises
     ------
     InputError
-        If the path is the old file, or another file.
+        If the path is the old file, another file or a folder, or if it cannot be written.
     """
     out = Path(out)
-    if out.exists() and MARK not in out.read_bytes():
-        raise InputError("exists already and was not made by mffit convert; give another name", file=out)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    found.tyre.write(out)
+    if out.is_dir():
+        raise InputError("is a folder; name the file to write", file=out)
+    try:
+        if out.exists() and MARK not in out.read_bytes():
+            raise InputError("exists already and was not made by mffit convert; give another name", file=out)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        found.tyre.write(out)
+    except OSError as error:
+        raise InputError(f"cannot be written ({error.strerror}); give another name", file=out) from None

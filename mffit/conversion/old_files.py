@@ -12,7 +12,16 @@ from typing import Any
 from tir import Problem, TirError
 from tir.document import Document, FileLine, read_document
 from tir.parameters import BY_NAME
-from tir.properties import OLD_FITTYPS, OLD_FORMATS, number_of, parameter_of, units_of, unquoted, value_of
+from tir.properties import (
+    OLD_FITTYPS,
+    OLD_FORMATS,
+    add_given,
+    number_of,
+    parameter_of,
+    units_of,
+    unquoted,
+    value_of,
+)
 from tir.units import factor
 
 OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
@@ -86,8 +95,7 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
             values[line.key] = _own_number(line, document) * factor(OWN[line.key][1], words)
         else:
             unused.append(line.key)
-    for name, value in given.items():
-        values.setdefault(name, value)
+    add_given(values, given, problems)
     missing = [name for name in NEEDED if name not in values]
     if missing:
         raise TirError(

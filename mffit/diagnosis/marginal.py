@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.linalg import LinAlgError, cho_solve, cholesky, solve_triangular
 from scipy.linalg.lapack import dpotri
 
 from mffit.diagnosis import constants
@@ -77,7 +77,7 @@ class MarginalChannel:
     def likelihood(self, parts: MarginalParts) -> float:
         """Logarithm of the marginal likelihood, with the prior of the scale; of some whole sweeps if there are many."""
         r, A, log = self._white(parts, *self._sample)
-        root = _factor(A)
+        root = lower_factor(A)
         b = solve_triangular(root, A.T @ r, lower=True, check_finite=False)
         log += float(np.sum(np.log(np.diag(root))))
         prior = parts.log_scale / math.log(constants.STATED_NOISE_FACTOR)
@@ -92,7 +92,7 @@ class MarginalChannel:
         correlation = Correlation.along(chains, [(np.ones(len(rows), bool), memory, parts.independent)])
         white = correlation.in_order(z)
         r, A = white[:, 0], white[:, 1:]
-        root = _factor(A)
+        root = lower_factor(A)
         log = float(np.sum(np.log(np.diag(root))) + np.sum(np.log(u)) + correlation.log)
         inverse = dpotri(root, lower=1)[0] if len(root) else root
         inverse = np.tril(inverse) + np.tril(inverse, -1).T
@@ -124,7 +124,7 @@ class MarginalChannel:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
         rows, chains, columns = self._chained(np.arange(len(self.chain)))
         r, A, _ = self._white(parts, rows, chains, columns)
-        root = _factor(A)
+        root = lower_factor(A)
         left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
         B = solve_triangular(root, A.T, lower=True, check_finite=False)
         variance = np.maximum(1.0 - np.sum(B * B, axis=0), 1e-3)
@@ -186,9 +186,14 @@ class MarginalChannel:
         return sizes
 
 
-def _factor(A: np.ndarray) -> np.ndarray:
-    """Lower Cholesky factor of A'A + 1."""
-    return cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
+def lower_factor(A: np.ndarray) -> np.ndarray:
+    """Lower Cholesky factor of A'A + 1, also where A is so large that rounding loses the 1 (a model far from the readings)."""
+    ones = np.eye(A.shape[1])
+    try:
+        return cholesky(A.T @ A + ones, lower=True, check_finite=False)
+    except LinAlgError:  # slower, and never without a factor
+        upper = np.linalg.qr(np.vstack([A, ones]), mode="r")
+        return (upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T
 
 
 def _some_sweeps(chain: np.ndarray) -> np.ndarray:

@@ -168,7 +168,7 @@ def _between_sweeps(
 
 
 def _sigma(log_chance: float) -> float:
-    """Standard deviations of a two-sided normal chance; also far out, where the chance is no number any more."""
+    """Standard deviations of a two-sided normal chance, also where the chance itself underflows."""
     if log_chance >= 0.0:
         return 0.0
     if log_chance > -600.0:

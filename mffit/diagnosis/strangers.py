@@ -103,7 +103,7 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
 def offsets_or_memory(
     noise: Noise, candidates: Sequence[Effect], named: Collection[str]
 ) -> list[OffsetsOrMemory]:
-    """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
+    """The channels whose correlated errors may as well be offsets of runs, if none of these (ids) is ``named``."""
     found = []
     for channel in noise.channels:
         scatter = noise.scatter[channel]

@@ -418,7 +418,7 @@ def _number(name: str, value: float, u: float) -> str:
 
 
 def structure(found: Structure) -> str:
-    """Over which conditions the residuals of which channel are not random; empty for random ones."""
+    """The conditions over which the residuals of each channel are not random; empty for random ones."""
     by_channel: dict[str, list[str]] = {}
     for comparison in found.found:
         by_channel.setdefault(comparison.channel, []).append(comparison.word)

@@ -99,7 +99,7 @@ def _wider_of(one: Intervals, other: Intervals) -> dict[str, tuple[float, float]
 
 
 def _half_width(interval: tuple[float, float] | None) -> float:
-    """The standard uncertainty of which this is the 95 % interval; 0 without one."""
+    """The standard uncertainty that belongs to a 95 % interval; 0 without one."""
     return 0.0 if interval is None else (interval[1] - interval[0]) / (2.0 * COVERAGE_FACTOR_95)
 
 

@@ -41,7 +41,7 @@ ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
 STARTS_OF_A_STAGE: Mapping[str, Sequence[Mapping[str, float]]] = {
     "Fx": ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4}),
 }
-"""Further starting values of single stages, of which the best end is taken: a shape factor has valleys of its own."""
+"""Further starting values of single stages; the best end is taken, because a shape factor can have several minima."""
 SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in values)
 """Coefficients of the shape of a curve, which can compensate for each other."""
 

@@ -117,12 +117,19 @@ def _otherwise_sentences(files: Files, name: str) -> list[str]:
             f"this limit it would reproduce all tested camber to {there.straight['Fy'].rms:.0f} N rms, and lack {loss[1]:.0%} "
             f"instead of {loss[0]:.0%} of the camber stiffness at zero."
         ]
+    beyond = []
+    if files.wide_limit is not None:
+        beyond = [
+            f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
+            f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
+        ]
     other = "road" if files.weight == "everything" else "everything"
     Fy, would = here.straight["Fy"], there.straight["Fy"]
     return [
+        *beyond,
         f'With [normal] weight = "{other}" {name} would be off by {would.ridden:.1f} instead of {Fy.ridden:.1f} N rms where '
         f"vehicles are ridden (much lean and much sideslip apart), by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
-        f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero."
+        f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero.",
     ]
 
 

@@ -1,4 +1,4 @@
-"""What the difference of forward and backward zeros says of the sideslip axis: misalignment and ply-steer."""
+"""Misalignment of the sideslip axis and ply-steer from the difference of forward and backward zeros."""
 
 from __future__ import annotations
 

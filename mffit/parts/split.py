@@ -29,7 +29,7 @@ class Parts(Brief):
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
     def among(self, points: Points, rows: np.ndarray) -> Parts:
-        """The parts of more ``points`` (n,), of which these are some (mask (n,)); the others have no mirror."""
+        """The parts of a larger set of ``points`` (n,) that contains these (mask (n,)); the others have no mirror."""
 
         def spread(name: str, others: Any) -> np.ndarray:
             own = getattr(self, name)

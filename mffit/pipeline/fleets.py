@@ -87,7 +87,7 @@ def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
 
 
 def _plainly_named(found: Sequence[Information]) -> list[Information]:
-    """The same with plain names for zeros of which there is one for all tyres: one set-up, declared as such."""
+    """The same, with plain names for zeros that all tyres share: one set-up, declared as such."""
     zeros = {name for one in found for name in one.names if OF_RUN in name and not of_run(name)}
     setups = {name.partition(OF_RUN)[2] for name in zeros}
     if len(setups) != 1:

@@ -40,7 +40,7 @@ def read_base(config: Config) -> Tyre | None:
     path = config.folder / config.tyre.base
     if not path.is_file():
         raise InputError(
-            f"the base file {path} does not exist: correct [tyre] base or remove it",
+            f"the base file {path} {'is a folder' if path.is_dir() else 'does not exist'}: correct [tyre] base or remove it",
             file=config.path,
             key="tyre.base",
         )
@@ -48,7 +48,7 @@ def read_base(config: Config) -> Tyre | None:
 
 
 def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:
-    """What a build says of a base file that was converted from another version of the formula."""
+    """Warnings about a base file that was converted from another version of the formula."""
     if base is None or ORIGIN not in base.provenance:
         return ()
     missed = base.provenance.get(MISFIT, "its misfit is not stated")

@@ -18,7 +18,7 @@ from mffit.sweeps import formats
 BACKWARD = re.compile(
     r"backward|reverse|r(?:ü|ue)ckw(?:ä|ae)rts|(?<![a-z])(?:bwd|rev)(?![a-z])", re.IGNORECASE
 )
-"""Words in the name of a file of which the wheel rolled backwards."""
+"""Words in the name of a file that was recorded rolling backwards."""
 
 
 class DiscPath(NamedTuple):

@@ -151,7 +151,7 @@ def _has_other_units(found: Mapping[str, FoundChannel], chosen: Mapping[str, Cho
 def _american(
     found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], sign: FoundChannel
 ) -> dict[str, Choice]:
-    """American units of the columns of which no column of the same kind states a unit."""
+    """American units of the columns whose kind has no stated unit in any column."""
     settled = {column.channel.unit for column in found.values() if column.unit}
     moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
     arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0

@@ -218,7 +218,7 @@ async def _content(request: Request) -> dict[str, Any]:
 
 
 async def _body(request: Request, most: int) -> bytes | None:
-    """The body of a request; None if it is larger than ``most`` bytes, of which no more are kept."""
+    """The body of a request; None if it is larger than ``most`` bytes; no more than these are kept."""
     found = bytearray()
     async for chunk in request.stream():
         found += chunk

@@ -316,3 +316,21 @@ def test_inputs_of_the_same_name_in_two_folders_both_count(project):
     assert len(hashes) == len(project.tables)
     assert {"0/sideslip.csv", "1/sideslip.csv"} <= set(hashes)
     assert hashes["0/sideslip.csv"] != hashes["1/sideslip.csv"]
+
+
+def test_new_files_leave_nothing_behind_where_the_disk_fills_up(tmp_path, monkeypatch):
+    """The second file finds no space: neither the first nor the folder stays."""
+    from mffit.output import new_files
+
+    write = Path.write_bytes
+
+    def until_full(path, content):
+        if path.name == "b.csv":
+            write(path, content[:1])
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", until_full)
+    with pytest.raises(InputError, match="No space left"):
+        new_files(tmp_path / "new", {"a.csv": "a", "b.csv": "bb"})
+    assert not (tmp_path / "new").exists()

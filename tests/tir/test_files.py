@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -521,13 +522,15 @@ def test_a_condition_names_only_inputs_that_it_depends_on(tyre):
 def test_values_of_missing_keys_can_be_given_on_reading(tmp_path):
     path = tmp_path / "student.tir"
     path.write_text(re.sub(r"(?m)^UNLOADED_RADIUS .*\n", "", TEXT))
-    with pytest.raises(tir.TirError, match="lacks UNLOADED_RADIUS"):
+    with pytest.raises(tir.TirError, match=r"lacks UNLOADED_RADIUS.* tir.read\(path, UNLOADED_RADIUS"):
         tir.read(path)
     tyre = tir.read(path, UNLOADED_RADIUS=0.2998)
     assert tyre == tir.read(VECTORS / "moto_front.tir")
     assert tyre.status["UNLOADED_RADIUS"].startswith("given")
     tyre.write(path)
     assert tir.read(path)["UNLOADED_RADIUS"] == 0.2998
+    with pytest.raises(tir.TirError, match="the given UNLOADED_RADIUS is nan"):
+        tir.read(path, UNLOADED_RADIUS=math.nan)
     other = tir.read(path, UNLOADED_RADIUS=0.4)
     assert other["UNLOADED_RADIUS"] == 0.2998
     assert any("the given 0.4 is not used" in problem.sentence for problem in other.problems)

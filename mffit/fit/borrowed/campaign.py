@@ -54,7 +54,7 @@ class FittedCampaign(NamedTuple):
 
     @property
     def groups(self) -> dict[str, tuple[str, ...]]:
-        """The groups of which it determined at least one coefficient, with all their coefficients."""
+        """The groups in which it determined at least one coefficient, with all their coefficients."""
         return {
             words: names
             for words, names in GROUPS.items()

@@ -26,7 +26,7 @@ FIRST = "Mx"
 MORE = tuple(stage.name for stage in STAGES if stage.if_predicted and stage.channels == ("Mx",))
 """Stages of further terms, which describe nearly the same: one of them at most is taken."""
 AWAY_FROM_ZERO = {"QSX2": 0.1, "QSX10": 0.1, "QSX11": 1.0}
-"""Starting values of factors of a product, of which all would start at 0 otherwise."""
+"""Starting values of the factors of a product: if all started at 0, none would have a derivative."""
 
 
 class Overturning(NamedTuple):

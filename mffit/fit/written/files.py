@@ -32,6 +32,9 @@ class Files:
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
     weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.written.road.weights`
     camber_limit: float | None = None  #: to which the file for turn slip off is held [rad]
+    wide_limit: float | None = (
+        None  #: asked for, but beyond the range of camber in the files, so without effect [rad]
+    )
     otherwise: FileFigures | None = None
     """The file for turn slip off with the other weight, or where it is held to some camber, without that limit."""
     sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
@@ -73,7 +76,8 @@ def make_files(
     )
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
-    camber = config.normal.camber_max if disc else None
+    asked = config.normal.camber_max if disc else None
+    camber = None if asked is None or asked >= written["CAMMAX"] else asked
     fits = _Derivation(config, model, points, tested, written, C_gamma, known.hand)
     changed = fits.changed(only)
     template = base or Tyre.from_values({})
@@ -89,11 +93,12 @@ def make_files(
     by_use = {
         use: figures(use, values, camber if use == "normal" else None) for use, values in changed.items()
     }
-    otherwise = fits.otherwise(changed["normal"]) if disc and only is None else None
+    otherwise = fits.otherwise(changed["normal"], camber) if disc and only is None else None
     return Files(
         by_use=by_use,
         weight=config.normal.weight,
         camber_limit=camber,
+        wide_limit=asked if camber is None else None,
         otherwise=None if otherwise is None else figures("normal", otherwise, None),
         tested=tested,
         written=written,
@@ -129,12 +134,11 @@ class _Derivation(NamedTuple):
             )  # fmt: skip
         return changed if only is None else {only: changed[only]}
 
-    def otherwise(self, normal: Mapping[str, float]) -> dict[str, float]:
+    def otherwise(self, normal: Mapping[str, float], camber: float | None) -> dict[str, float]:
         """The file for turn slip off without its limit of camber, or with the other weight if it has none."""
-        normal_table = self.config.normal
-        if normal_table.camber_max is not None:
+        if camber is not None:
             return self._normal(None)
-        other = "road" if normal_table.weight == "everything" else "everything"
+        other = "road" if self.config.normal.weight == "everything" else "everything"
         ranges = (self.tested, self.written, self._terms)
         return side_force_for(other, self.model, normal, *ranges, symmetric=self._symmetric, hand=self.hand)
 

@@ -321,3 +321,8 @@ def test_writing_over_another_file_is_refused(converted, tmp_path):
     with pytest.raises(InputError, match="give another name"):
         write(converted, other)
     assert other.read_text() == "mine"
+    for place, said in ((tmp_path, "is a folder"), (other / "new.tir", "cannot be written")):
+        with pytest.raises(InputError, match=said):
+            write(converted, place)
+    found = read_old(OLD, {"UNLOADED_RADIUS": 0.4}).problems
+    assert any("the given 0.4 is not used" in problem.sentence for problem in found)

@@ -9,6 +9,7 @@ import pytest
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.chains import MemorySpan
+from mffit.diagnosis.marginal import lower_factor
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
@@ -242,3 +243,15 @@ def test_whitened_readings_have_unit_covariance(share, span):
     assert noise.whiten(np.empty((60, 0))).shape == (59, 0)  # LAPACK once wrote beyond it
     rows = np.array([2, 3, 7, 33, 50])
     assert noise.error_of_sum(rows) ** 2 == pytest.approx(covariance[np.ix_(rows, rows)].sum())
+
+
+def test_columns_of_any_size_have_a_factor():
+    """A model far from the readings: rounding in A'A loses the 1 that makes it positive definite."""
+    rng = np.random.default_rng(5)
+    A = rng.normal(size=(40, 1)) @ rng.normal(size=(1, 6)) * 1e10
+    root = lower_factor(A)
+    assert np.all(np.diag(root) > 0.0)
+    assert np.allclose(root, np.tril(root))
+    assert np.allclose(root @ root.T, A.T @ A + np.eye(6), rtol=1e-9, atol=0.0)
+    small = rng.normal(size=(40, 6))
+    assert np.allclose(lower_factor(small) @ lower_factor(small).T, small.T @ small + np.eye(6))

@@ -9,6 +9,7 @@ import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
+from mffit.config.models import NormalTable
 from mffit.fit import ranges
 from mffit.fit.comments import file_comments
 from mffit.fit.known import Known, given_values
@@ -80,8 +81,22 @@ def files(tmp_path_factory):
     loaded, _ = points.load(settings)
     known = Known(truth().values, {row.name: "base" for row in TABLE})
     known = known.having(ranges.covered_ranges(loaded), "range").having(given_values(settings.tyre), "given")
-    made = make_files(settings, known, loaded, truth(), {})
+    asked = settings.model_copy(update={"normal": NormalTable(camber_max_deg=65.0)})  # beyond the range
+    made = make_files(asked, known, loaded, truth(), {})
     return made.annotated(file_comments(made, known.origin, {})), known.origin
+
+
+def test_a_limit_of_camber_beyond_the_range_has_no_effect_and_says_so(files):
+    made, _ = files
+    assert made.camber_limit is None
+    assert {file.tyre["CAMMAX"] for file in made.by_use.values()} == {made.written["CAMMAX"]}
+    said = " ".join(file_sentences(made, {"turn-slip": "a.tir", "normal": "b.tir"}))
+    end = np.degrees(made.written["CAMMAX"])
+    assert (
+        f"camber_max_deg = 65 has no effect, because the camber range of the files ends at {end:.0f} deg"
+        in said
+    )
+    assert 'With [normal] weight = "road"' in said
 
 
 def test_the_turn_slip_file_is_the_model_and_states_no_misfit(files):
