@@ -95,7 +95,7 @@ class Parameter:
     @property
     def of_slip(self) -> bool:
         """Whether it acts only where longitudinal slip was run, alone or with sideslip."""
-        return any(need.word in ("kappa", "combined") for need in self.needs)
+        return any(need.word in ("kappa", "combined", "side_force") for need in self.needs)
 
 
 def _load() -> tuple[Parameter, ...]:

@@ -66,6 +66,17 @@ ODD_SWEEP_RATIO = Real(
     5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
 )
 SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
+VARIANCE_OF_LOG_ROBUST = Real(
+    1.36,
+    "-",
+    "Variance of the logarithm of the median absolute value of n normal readings, times n.",
+)
+CAMPAIGNS_APART = Real(
+    4.0,
+    "-",
+    "Standard errors by which the scatter of two campaigns over their stated one must differ to have a scale of its own: "
+    "chance 6e-5, beside what smooth misfit leaves.",
+)
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
 MEMORY_BOUNDS = Series(

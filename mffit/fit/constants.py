@@ -276,6 +276,7 @@ DRAWN_LIMIT_MARGINS = Real(2.0, "-", "Violation of a limit, over the margin, tha
 
 # Ranges of the written file
 SINGLE_PRESSURE_SPREAD = Real(0.05, "-", "Relative spread of pressures up to which they count as one.")
+SINGLE_LOAD_SPREAD = Real(0.02, "-", "Relative spread of loads up to which they count as one in a sentence.")
 SINGLE_PRESSURE_COVER = Real(
     0.1, "-", "Relative distance from a single pressure that the written range covers."
 )

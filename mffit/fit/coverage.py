@@ -43,6 +43,7 @@ class Design:
     speeds: int
     slip: bool  #: longitudinal slip was run
     combined: bool  #: longitudinal slip and sideslip together
+    side_force: bool  #: longitudinal slip where there is side force, of sideslip or of camber
     both_sides: bool  #: sideslip to both sides
     measured: tuple[str, ...]  #: channels with readings
     curved: bool  #: path curvature present
@@ -69,6 +70,7 @@ def design(points: Points, side: str) -> Design:
         speeds=levels.count(points.V, levels.SPEED),
         slip=bool(np.any(driven)),
         combined=bool(np.any(driven & slipping)),
+        side_force=bool(np.any(driven & (slipping | cambered))),
         both_sides=len(np.unique(np.sign(points.alpha[slipping]))) > 1,
         measured=points.measured,
         curved=curved,
@@ -151,6 +153,10 @@ def _unmet(need: Need, seen: Design) -> str:
         "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
         "kappa": (seen.slip, "no sweep varies longitudinal slip"),
         "combined": (seen.combined, "no sweep combines longitudinal slip and sideslip"),
+        "side_force": (
+            seen.side_force,
+            "no sweep combines longitudinal slip and side force, from sideslip or camber",
+        ),
         "both_sides": (seen.both_sides, "sideslip was run to one side only"),
         "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
         "curvature": (seen.curved, "the path is straight, so spin is not excited"),

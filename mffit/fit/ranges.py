@@ -46,6 +46,12 @@ def single_pressure(ranges: Mapping[str, float]) -> bool:
     return high - low < constants.SINGLE_PRESSURE_SPREAD * high
 
 
+def single_load(ranges: Mapping[str, float]) -> bool:
+    """Whether only one load was run."""
+    low, high = ranges["FZMIN"], ranges["FZMAX"]
+    return high - low < constants.SINGLE_LOAD_SPREAD * high
+
+
 def covered_ranges(points: Points) -> dict[str, float]:
     """The tested ranges for the fit's own limits; a single pressure is widened to either side."""
     ranges = tested_ranges(points)

@@ -32,6 +32,7 @@ def with_remarks(
     return replace(
         found,
         bands=bands,
+        band_of_combined=combined,
         bands_note=note,
         explanations=(*found.explanations, *(f"{text[0].upper()}{text[1:]}." for text in remarks if text)),
         warnings=(*([moved] if warned else []), *found.warnings),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
-from mffit.fit.bands import BandsByPressure
+from mffit.fit.bands import BandOfCombined, BandsByPressure
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.borrowed.campaign import Joined
 from mffit.fit.borrowed.sister import Lent
@@ -53,6 +53,7 @@ class FitResult(Brief):
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
     bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
+    band_of_combined: BandOfCombined | None = None  #: where slip was run at one sideslip only
     bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one

@@ -14,7 +14,7 @@ from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
 from mffit.fit.priors import Prior
-from mffit.fit.ranges import single_pressure
+from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures
@@ -167,8 +167,10 @@ def ranges_sentence(files: Files) -> str:
         if "KPUMAX" in tested
         else ""
     )
+    one = single_load(tested)
+    loads = f"{tested['FZMAX']:.0f} N only" if one else f"{tested['FZMIN']:.0f} to {tested['FZMAX']:.0f} N"
     return (
-        f"Tested: {tested['FZMIN']:.0f} to {tested['FZMAX']:.0f} N, sideslip to {np.degrees(tested['ALPMAX']):.1f} deg, "
+        f"Tested: {loads}, sideslip to {np.degrees(tested['ALPMAX']):.1f} deg, "
         f"camber to {np.degrees(tested['CAMMAX']):.1f} deg, {pressures}{slip}. The ranges in the file are wider where the model "
         "stays plausible, because simulators limit their inputs to them: "
         f"{written['FZMIN']:.0f} to {written['FZMAX']:.0f} N, {np.degrees(written['ALPMAX']):.0f} deg of sideslip, "

@@ -71,6 +71,8 @@ def campaigns_of(
                 posterior=fit.posterior,
                 shared=shared_conditions(points, result.points),
                 rig=_rig_in(row.toml, fit.rig),
+                misfit=fit.headline,
+                combined=fit.band_of_combined,
             )
         )
     return tuple(out), tuple(built), tuple(warned)

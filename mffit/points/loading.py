@@ -250,7 +250,7 @@ def _thin(points: Points, config: Config) -> list[str]:
     """Sentences about what the data lack."""
     out = []
     if not np.any(np.isfinite(points.Mz)):
-        out.append("Mz_Nm was not measured: only Fy is fitted")
+        out.append("Mz_Nm was not measured: the coefficients of the self-aligning moment are held")
     one_side = len(np.unique(np.sign(points.phi_t))) == 1
     if config.rig.on_disc and one_side and not np.any(points.direction < 0):
         out.append(

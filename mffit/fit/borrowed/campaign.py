@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.bands import BandOfCombined
 from mffit.fit.borrowed.sister import BY_FRICTION, LENT, OVER_SLIP
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.known import DETERMINED, Known
@@ -24,6 +25,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import DIRECTIONS
 from mffit.fit.upright import sideways
 from mffit.fit.wheel.vertical import OF_RADII
+from mffit.fit.wording import combined_sentence
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
@@ -51,6 +53,8 @@ class FittedCampaign(NamedTuple):
     """Loads (n,) [N] and pressure [Pa] at which both campaigns swept the sideslip angle upright; None without any."""
     rig: Mapping[str, tuple[float, float]] = MappingProxyType({})
     """Errors of its rig with standard errors; numbers of the campaign or of its set-ups, as joined points call them."""
+    misfit: str = ""  #: of its own fit, by channel, in words
+    combined: BandOfCombined | None = None  #: of its own fit, where slip was run at one sideslip only
 
     @property
     def groups(self) -> dict[str, tuple[str, ...]]:
@@ -249,4 +253,7 @@ def campaign_sentence(joined: Joined) -> str:
             f"Grip here is {to_uncertainty(grip.value, grip.u)} +- {to_uncertainty(grip.u, grip.u)} times that there, from the "
             f"lateral friction at {loads} N, {shared[1] / 1e3:.0f} kPa, and longitudinal friction is scaled by it"
         )
-    return ascii_only(f"From the campaign {joined.campaign.name}: {', '.join(joined.groups)}. {rests}.")
+    own = f" Its own fit leaves {joined.campaign.misfit}." if joined.campaign.misfit else ""
+    between = combined_sentence(joined.campaign.combined) if joined.campaign.combined else ""
+    own += f" There {between}." if between else ""
+    return ascii_only(f"From the campaign {joined.campaign.name}: {', '.join(joined.groups)}. {rests}.{own}")

@@ -53,7 +53,7 @@ LENT = tuple(
     row.name
     for row in TABLE
     if row.section == "LONGITUDINAL_COEFFICIENTS"
-    or any(need.word == "combined" for need in row.needs)
+    or any(need.word in ("combined", "side_force") for need in row.needs)
     or row.name.startswith(("RVY", "SSZ"))
 )
 """Every coefficient of longitudinal and combined slip."""

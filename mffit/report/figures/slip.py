@@ -126,9 +126,11 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
     return min(0.0, float(alpha.min())), max(0.0, float(alpha.max()))
 
 
-def _reach_of_combined(view: BuildView) -> float:
-    """Largest sideslip [rad], to either side, at which longitudinal slip was run."""
-    return float(np.max(np.abs(view.felt.alpha[~view.points.free_rolling]), initial=0.0))
+def _beyond_combined(view: BuildView, alpha: np.ndarray) -> np.ndarray:
+    """Mask (m,) of the sideslips [rad] that are larger than any at which longitudinal slip was run, to the same side."""
+    run = view.felt.alpha[~view.points.free_rolling]
+    room = constants.UPRIGHT_ENOUGH_TO_DRAW.rad
+    return (alpha < np.min(run, initial=0.0) - room) | (alpha > np.max(run, initial=0.0) + room)
 
 
 def friction_ellipse(view: BuildView) -> Sheet:
@@ -192,7 +194,7 @@ def _limit(view: BuildView, curve: Curve) -> list[Ribbon | Trace]:
     """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
     ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
-    beyond = np.abs(alpha) > _reach_of_combined(view) * (1.0 + 1e-6)
+    beyond = _beyond_combined(view, alpha)
     if not np.any(beyond):
         return [ribbon, whole]
     ends = np.flatnonzero(np.diff(beyond)) + 1

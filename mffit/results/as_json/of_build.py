@@ -13,7 +13,7 @@ from mffit import fleet as combining
 from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
-from mffit.fit.bands import BandsByPressure
+from mffit.fit.bands import BandOfCombined, BandsByPressure
 from mffit.fit.borrowed.campaign import Joined
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.influences.between_runs import BetweenRuns
@@ -123,7 +123,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "confounded": [
             picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
         ],
-        "bands": _bands(found.bands) if found.bands is not None else None,
+        "bands": _bands(found.bands, found.band_of_combined) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
             picked(stage, "name", "parameters")
@@ -353,8 +353,11 @@ def _scatter(found: SetupScatter | None) -> dict[str, Any] | None:
     }
 
 
-def _bands(found: BandsByPressure) -> dict[str, Any]:
-    """Rms half widths of the 95 % bands of Fy at the usual pressure and at the others, and what widens the latter."""
+def _bands(found: BandsByPressure, combined: BandOfCombined | None) -> dict[str, Any]:
+    """Rms half widths of the 95 % bands of Fy at the usual pressure and at the others, what widens the latter, and of Fx.
+
+    Those of Fx are at the one sideslip at which longitudinal slip was run, and halfway to it.
+    """
     return {
         "pressure_kPa": found.main / 1e3,
         "Fy_N": found.half,
@@ -362,6 +365,13 @@ def _bands(found: BandsByPressure) -> dict[str, Any]:
         "other_Fy_N": found.half_of_others if found.others else None,
         "unseen": found.unseen or None,
         "share": found.share,
+        "combined": None
+        if combined is None
+        else {
+            "sideslip_deg": math.degrees(combined.sideslip),
+            "Fx_N": combined.half_at,
+            "halfway_Fx_N": combined.half_between,
+        },
     }
 
 

@@ -84,6 +84,13 @@ def test_the_ratio_of_grips_is_found_with_its_uncertainty(built):
     assert found["loads_N"] == pytest.approx([900.0, 1400.0, 2100.0])
 
 
+def test_the_fit_of_the_other_campaign_is_stated_with_what_it_leaves_open(built):
+    """Its misfit, which the table of this campaign lacks, and that slip was run at 4 deg of sideslip only."""
+    (said,) = (text for text in built[0].fit.explanations if text.startswith("From the campaign"))
+    assert "Its own fit leaves Fx rmse" in said
+    assert "There longitudinal slip with sideslip was run at 4.0 deg only" in said
+
+
 def test_the_joined_file_has_the_forces_of_the_tyre_on_the_surface_of_the_disc(built):
     true, found = tir.read(SAMPLE / "true.tir"), built[0].tyre
     Fz, kappa = np.meshgrid([900.0, 1400.0, 2100.0], [-0.15, -0.05, 0.03, 0.1])

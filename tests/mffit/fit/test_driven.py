@@ -144,7 +144,14 @@ def test_what_is_missing_for_longitudinal_slip_is_said():
     assert straight["Fx"].supported
     assert straight["combined-Fx"].missing == ("no sweep combines longitudinal slip and sideslip",)
     # A driven wheel that runs straight on has a side force and a moment of their own.
-    assert straight["combined-Fy"].free == ("RVY1", "RVY2", "RVY3", "RVY5", "RVY6")
+    of_thrust = ("RBY1", "RCY1", "REY1", "REY2", "RHY1", "RHY2")
+    own = ("RVY1", "RVY2", "RVY3", "RVY5", "RVY6")
+    assert straight["combined-Fy"].free == (*of_thrust, *own)
+    upright = belt.programme(sideslips=(0.0,))
+    upright = upright.select(upright.gamma == 0.0)
+    assert {row.stage: row for row in coverage(upright, "left")}["combined-Fy"].free == tuple(
+        name for name in own if name != "RVY3"
+    )
     assert straight["combined-Mz"].free == ("SSZ1", "SSZ3", "SSZ4")
     right = {row.stage: row for row in coverage(belt.programme(sideslips=(0.0, 2.0, 5.0)), "left")}
     assert "RHX1" in right["combined-Fx"].free  # the sweeps of sideslip go to both sides
@@ -154,6 +161,18 @@ def test_what_is_missing_for_longitudinal_slip_is_said():
     }
     held = {row.stage: row for row in coverage(rolling.replace(Fx=0.0), "left")}
     assert held["Fx"].missing == ("no sweep varies longitudinal slip",)
+
+
+def test_slip_without_sideslip_is_fitted_to_the_noise():
+    """A side force of its own, the loss of camber thrust, and the moment of a driven wheel that runs straight on."""
+    points = belt.programme(sideslips=(0.0,))
+    found = belt.fitted(points.select((np.abs(points.Fz - 1400.0) < 1.0) & (points.p == 250e3)))
+    for name, noise in belt.NOISE.items():
+        assert 0.8 < found.channels[name].rmse / noise < 1.15, name
+    true = belt.truth()
+    for name in ("RVY1", "SSZ1", "RBY1"):
+        row = found.coefficients[name]
+        assert abs(row.value - true[name]) < 3.3 * row.stderr, name
 
 
 def test_a_coefficient_at_its_bound_for_nothing_is_put_back(points, found):

@@ -116,6 +116,11 @@ def test_slip_is_stated_with_the_sideslips_at_which_it_was_run(degrees, words):
     assert words in ranges_sentence(made)
 
 
+@pytest.mark.parametrize(("lowest", "words"), [(2060.0, "Tested: 2100 N only,"), (2050.0, "2050 to 2100 N")])
+def test_loads_within_two_per_cent_are_one(lowest, words):
+    assert words in ranges_sentence(Files({}, TESTED | {"FZMIN": lowest}, WRITTEN, {}, {}))
+
+
 @pytest.mark.parametrize(("lowest", "words"), [(286e3, "286 kPa only"), (284e3, "284 to 300 kPa")])
 def test_pressures_within_five_per_cent_are_one(lowest, words):
     assert words in ranges_sentence(Files({}, TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {}))

@@ -220,7 +220,10 @@ def test_a_flat_track_needs_no_mirrors_and_no_zero(project):
     [
         (lambda p: p.keep("sideslip_1500.csv", "camber_1500.csv", "backward_1500.csv"), "one load"),
         (lambda p: p.keep(*(n for n in p.tables if "backward" not in n)), "no backward runs"),
-        (lambda p: [t.pop("Mz_Nm") for t in p.tables.values()], "Mz_Nm was not measured"),
+        (
+            lambda p: [t.pop("Mz_Nm") for t in p.tables.values()],
+            "Mz_Nm was not measured: the coefficients of the self-aligning moment",
+        ),
     ],
 )
 def test_thin_programmes_cause_warnings_only(project, spoil, said):
