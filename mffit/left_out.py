@@ -37,6 +37,14 @@ class Predicted:
         looked_at = range(len(change)) if channels is None else channels
         return any(_z(change[k]) < -constants.WORSE_PREDICTION for k in looked_at)
 
+    def keeps(self, other: Predicted, share: float) -> bool:
+        """Whether ``other`` predicts every channel as well: no misfit larger by this share, none worse beyond chance.
+
+        Each channel counts by itself: in the sum over several channels, a clear loss in one of them is small.
+        """
+        before, after = np.sum(self.chi2, axis=0), np.sum(other.chi2, axis=0)
+        return bool(np.all(after <= (1.0 + share) * before)) and not self.raised(other)
+
 
 def left_out_errors(
     slopes: np.ndarray,

@@ -54,7 +54,8 @@ class Design:
 def design(points: Points, side: str) -> Design:
     """The numbers of levels that were run."""
     curved = bool(np.any(points.phi_t != 0.0))
-    load = np.where(_straight_on(points), levels.NO_LEVEL, levels.nearest_labels(points.Fz, levels.LOAD))
+    held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    load = np.where(_straight_on(points), levels.NO_LEVEL, held)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_sides = len(np.unique(np.sign(points.phi_t))) > 1
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
@@ -62,7 +63,7 @@ def design(points: Points, side: str) -> Design:
     slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
     driven = ~points.free_rolling
     return Design(
-        loads=levels.count(points.Fz, levels.LOAD),
+        loads=len(np.unique(held[held >= 0])),
         pressures=levels.count(points.p, levels.PRESSURE),
         pressure_loads=sum(n > 1 for n in pressures_at),
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),

@@ -74,10 +74,11 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     """
     held = np.array(values, dtype=float)
     scaled = _scaled(values, kind)
-    for k in np.unique(sweep):
-        rows = np.flatnonzero((sweep == k) & np.isfinite(scaled))
+    known = np.flatnonzero(np.isfinite(scaled))
+    order = known[np.lexsort((held[known], sweep[known]))]  # sweep after sweep, each with rising values
+    for rows in np.split(order, np.flatnonzero(np.diff(sweep[order])) + 1):
         if len(rows) and _is_held(scaled[rows]):
-            held[rows] = np.median(held[rows])
+            held[rows] = 0.5 * (held[rows[(len(rows) - 1) // 2]] + held[rows[len(rows) // 2]])
     return nearest_labels(held, kind)
 
 
@@ -87,12 +88,14 @@ def labels_of_setting(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) ->
 
 
 def _is_held(scaled: np.ndarray) -> bool:
-    """Whether values (n,) in tolerances wander about one value, instead of stepping from one to another."""
+    """Whether rising values (n,) in tolerances wander about one value, instead of stepping from one to another."""
+    if scaled[-1] - scaled[0] < constants.HELD_SPAN:
+        return True
     low, high = np.percentile(scaled, constants.PERCENTILES_OF_HELD)
     if high - low < constants.HELD_SPAN:
         return True
-    inside = np.sort(scaled[(scaled >= low) & (scaled <= high)])
-    steady = bool(np.diff(inside).max() < constants.GAP_OF_A_STEP)
+    inside = scaled[(scaled >= low) & (scaled <= high)]
+    steady = len(inside) > 1 and bool(np.diff(inside).max() < constants.GAP_OF_A_STEP)
     return steady and bool(high - low < constants.LONGEST_HELD_SPAN)
 
 

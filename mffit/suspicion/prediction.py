@@ -111,7 +111,7 @@ def _conditions(points: Points) -> Iterator[Group]:
 
 def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
     """Each sweep with the rows (m,) of one of its conditions, and whether camber is one of the conditions."""
-    load = levels.nearest_labels(points.Fz, levels.LOAD)
+    load = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
     pressure = levels.nearest_labels(points.p, levels.PRESSURE)
     camber = levels.nearest_labels(points.gamma, levels.CAMBER)
     for sweep in _sweeps(points):

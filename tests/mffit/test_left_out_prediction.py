@@ -53,6 +53,23 @@ def test_a_prediction_is_better_if_sweeps_agree_that_it_is(after, better):
     assert found is better
 
 
+@pytest.mark.parametrize(
+    ("change", "kept"),
+    [
+        ([0.0, 0.01 * 10.0], True),  # 1 % of one channel
+        ([-2.0, 0.01 * 10.0], True),
+        ([-2.0, 0.04 * 10.0], False),  # a gain in one channel does not pay for the other
+    ],
+)
+def test_each_channel_must_be_predicted_as_well(change, kept):
+    scatter = 4.0 * np.resize([[1.0, -1.0], [-1.0, 1.0]], BEFORE.shape)  # so that nothing is beyond chance
+    after = Predicted(BEFORE + change + scatter)
+    assert Predicted(BEFORE).keeps(after, 0.02) is kept
+    assert not Predicted(BEFORE).keeps(
+        Predicted(BEFORE + np.array([0.0, 0.15])), 0.02
+    )  # little, but in every sweep
+
+
 def test_more_candidates_need_a_clearer_fall():
     assert needed_fall(1) == pytest.approx(2.326, abs=1e-3)
     assert needed_fall(10) > needed_fall(2) > needed_fall(1)

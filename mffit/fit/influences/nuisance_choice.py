@@ -19,7 +19,6 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, condensed, minimum
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
-from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
@@ -46,7 +45,7 @@ class NuisanceChoice:
     """What a fit models beside coefficients and declared rig errors."""
 
     verdicts: tuple[Verdict, ...]
-    near: Simulation  #: with what is modelled, near the best fit
+    near: NearSolution  #: with what is modelled, but for the numbers of every run; coefficients at a bound are held there
     scatter: Mapping[str, float] = field(default_factory=dict)
     """Standard deviation among the runs of every number that each of them has."""
 
@@ -100,15 +99,16 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
             open_.append(nuisance)
     of_runs = [nuisance for nuisance in (*demanded, *open_) if nuisance.per_run]
     common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
-    near, scatter = first.simulation, dict[str, float]()
+    scatter = dict[str, float]()
+    numbers = [number for number in first.numbers if number.name not in first.at_bound]
+    model = NearSolution(at_reference(config, first.problem), numbers, ())
     if any(common) or of_runs:
-        judged, model = _judged(config, first, *common)
+        judged, model = _judged(config, model, *common)
         for nuisance in of_runs:
             verdict, scatter = _of_runs(config, model, nuisance, demanded=nuisance in demanded)
             judged[nuisance.id] = verdict
         verdicts |= judged
-        near = model.problem.simulation
-    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), near, scatter)
+    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), model, scatter)
 
 
 def reference_temperature(config: Any, points: Points) -> float:
@@ -125,12 +125,10 @@ def at_reference(config: Any, problem: FitProblem) -> FitProblem:
 
 
 def _judged(
-    config: Any, first: Fitted, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
+    config: Any, model: NearSolution, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
 ) -> tuple[dict[str, Verdict], NearSolution]:
-    """The verdicts on demanded influences and candidates, and the fit with what is modelled."""
-    numbers = [number for number in first.numbers if number.name not in first.at_bound]
-    group = parts_of_sweeps(first.problem.points)
-    model = NearSolution(at_reference(config, first.problem), numbers, ())
+    """The verdicts on demanded influences and candidates, and the fit with what is modelled; ``model`` is the one without any."""
+    group = parts_of_sweeps(model.problem.points)
     base = predicted_left_out(model, (), group)
     here = base
     if demanded:
@@ -140,7 +138,7 @@ def _judged(
     needed, left = needed_fall(len(candidates)), list(candidates)
     tried: dict[str, _Prediction] = {}
 
-    channels = list(first.problem.sigma)
+    channels = list(model.problem.sigma)
 
     def better(before: _Prediction, after: _Prediction, about: Collection[str] = ()) -> bool:
         least = LEAST_PREDICTED_SHARE * before.by_sweep.total

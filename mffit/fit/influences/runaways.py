@@ -6,37 +6,37 @@ noise, such a coefficient takes up some of the misfit and ends at its bound.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.nuisance_choice import NearSolution, predicted_left_out, solved
+from mffit.fit.influences.nuisance_choice import NearSolution, NuisanceChoice, predicted_left_out, solved
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import polish
 from mffit.least_squares import touches
 from mffit.left_out import Predicted
 from mffit.suspicion import parts_of_sweeps
 
 
-def with_runaways_put_back(fitted: Fitted, plan: FitPlan) -> tuple[Fitted, FitPlan]:
-    """The fit and its plan with coefficients held at their expected values that end at a bound of the table for nothing.
+def without_runaways(fitted: Fitted, plan: FitPlan, choice: NuisanceChoice) -> FitPlan:
+    """The plan with coefficients held at their expected values that end at a bound of the table for nothing.
 
-    One after the other is put back if left-out sweeps are then predicted as well as before. Bounds that somebody set stay.
+    One after the other is held if left-out sweeps are then predicted as well as before, both without and with the influences that
+    are modelled: each of the two fits gives a file. Bounds that somebody set stay.
     """
     group = parts_of_sweeps(fitted.problem.points)
     names = _pushed(fitted, plan)
     if not names or len(np.unique(group)) < FEWEST_SWEEPS_TO_PREDICT:
-        return fitted, plan
-    found = _needless(fitted, plan, names, group)
-    if not found:
-        return fitted, plan
-    plan = plan.without(found, _said(found))
-    here = fitted.problem.with_values({name: plan.expected[name] for name in found})
-    return replace(polish(here, plan), stages=fitted.stages, attempts=fitted.attempts), plan
+        return plan
+    names = _needless(NearSolution(fitted.problem, fitted.numbers, ()), plan, names, fitted.at_bound, group)
+    if choice.near.chosen:
+        own = {number.name for number in fitted.numbers}
+        added = [number for number in choice.near.numbers if number.name not in own]
+        near = choice.near._replace(numbers=[*fitted.numbers, *added])
+        names = _needless(near, plan, names, fitted.at_bound, group)
+    return plan.without(names, _said(names)) if names else plan
 
 
 def _pushed(fitted: Fitted, plan: FitPlan) -> list[str]:
@@ -50,26 +50,33 @@ def _pushed(fitted: Fitted, plan: FitPlan) -> list[str]:
     return sorted(cost, key=lambda name: cost[name])
 
 
-def _needless(fitted: Fitted, plan: FitPlan, names: Sequence[str], group: np.ndarray) -> list[str]:
-    """Those of the names without which left-out sweeps are predicted as well; found with some of the points."""
+def _needless(
+    model: NearSolution, plan: FitPlan, names: Sequence[str], held: Collection[str], group: np.ndarray
+) -> list[str]:
+    """Those of the names without which left-out sweeps are predicted as well; found with some of the points.
+
+    In ``model`` the names are at their bounds; numbers in ``held``, at a bound or limit, do not move with a left-out sweep.
+    """
+    if not names:
+        return []
+    model = model._replace(numbers=[number for number in model.numbers if number.name not in names])
     stride = max(1, len(group) // constants.POINTS_OF_A_STAGE)
-    part, group = fitted.problem.thinned(stride), group[::stride]
+    group = group[::stride]
 
-    def predicted(back: Sequence[str]) -> tuple[NearSolution, Predicted]:
-        """The fit with some of the names at their expected values and the others at their bounds."""
-        free = [number for number in fitted.numbers if number.name not in names]
-        problem = part.with_values({name: plan.expected[name] for name in back})
-        near = solved(NearSolution(problem, free, ()), most=constants.STEPS_BACK_FROM_A_BOUND)
-        inner = [number for number in free if number.name not in fitted.at_bound]
-        return near, predicted_left_out(near._replace(numbers=inner), (), group).by_sweep
+    def predicted(there: NearSolution) -> Predicted:
+        inner = [number for number in there.numbers if number.name not in held]
+        return predicted_left_out(there._replace(numbers=inner), (), group).by_sweep
 
-    near, first = predicted(())
-    part = near.problem
+    def settled(there: NearSolution) -> NearSolution:
+        return solved(there, most=constants.STEPS_BACK_FROM_A_BOUND)
+
+    model = settled(model._replace(problem=model.problem.thinned(stride)))
+    first = predicted(model)
     found: list[str] = []
     for name in names:
-        near, there = predicted([*found, name])
-        if there.total < (1.0 + LEAST_PREDICTED_SHARE) * first.total and not first.raised(there):
-            found, part = [*found, name], near.problem
+        back = settled(model._replace(problem=model.problem.with_values({name: plan.expected[name]})))
+        if first.keeps(predicted(back), LEAST_PREDICTED_SHARE):
+            found, model = [*found, name], back
     return found
 
 

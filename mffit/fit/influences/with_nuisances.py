@@ -13,7 +13,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
-from mffit.fit.influences.runaways import with_runaways_put_back
+from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish, with_equally_good
 from mffit.fit.problem import FitProblem
@@ -57,8 +57,13 @@ def fit_with_nuisances(
     ] = {}  # fits to some of the points, which restarts of the fit to all do not change
 
     def extended(fitted: Fitted) -> NuisanceFit:
-        fitted, known = with_runaways_put_back(fitted, plan)
         choice = choose(config, fitted)
+        known, near = without_runaways(fitted, plan, choice), choice.near.problem
+        held = {name: plan.expected[name] for name in plan.free if name not in known.free}
+        if held:
+            again = polish(fitted.problem.with_values(held), known)
+            fitted = replace(again, stages=fitted.stages, attempts=fitted.attempts)
+            near = near.with_values(held)
 
         def refit(rows: np.ndarray) -> Fitted:
             part, key = problem.select(rows), (rows.tobytes(), *known.free)
@@ -68,7 +73,7 @@ def fit_with_nuisances(
 
         if choice.modelled:
             progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-        full = _polished(config, problem, known, choice, choice.modelled, fitted, choice.near)
+        full = _polished(config, problem, known, choice, choice.modelled, fitted, near.simulation)
         if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
             return NuisanceFit(full, full, choice, refit, known)
         # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.

@@ -294,7 +294,7 @@ def test_a_change_over_the_distance_is_found_if_it_is_asked_for(warmed, key):
     name = key.replace("_", "-")
     assert [row.nuisance.id for row in asked.verdicts if row.modelled] == [name]
     number = "wear_per_km" if key == "wear" else "warm_up"
-    assert asked.near.faults[number] == pytest.approx(-0.02 if key == "wear" else 0.08, rel=0.25)
+    assert asked.near.problem.value(number) == pytest.approx(-0.02 if key == "wear" else 0.08, rel=0.25)
     silent = choose(with_setting(warmed[0], temperature=False), changed)
     assert verdict(silent, name).reason == f"[fit] {key} = false"
 

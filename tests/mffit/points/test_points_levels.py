@@ -164,6 +164,15 @@ def test_a_load_that_wanders_within_its_sweep_is_one_level():
     assert np.isnan(levels.median_of_labels(np.array([np.nan, 1.0]), np.array([levels.NO_LEVEL, 0]))[0])
 
 
+@pytest.mark.parametrize("loads", [(500.0, 900.0), (500.0, 700.0, 900.0), (500.0,), (500.0, np.nan)])
+def test_a_sweep_of_a_few_points_has_the_levels_of_its_loads(loads):
+    """Two or three points are too few to wander; unsorted rows of several sweeps keep their order."""
+    Fz = np.array([*loads, 2000.0, *loads[::-1]])
+    sweep = np.array([*[3] * len(loads), 1, *[2] * len(loads)])
+    found = levels.labels_of_sweeps(Fz, sweep, levels.LOAD)
+    assert np.array_equal(found, levels.nearest_labels(Fz, levels.LOAD))
+
+
 def test_loads_that_wander_while_braking_are_one_level_and_steps_are_not():
     """Sweeps whose load wanders by 16 % about 500 to 540 N are one level; a sweep of two loads a quarter apart has two."""
     rng = np.random.default_rng(7)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit.fit.coverage import design
 from mffit.points import make_points
 from mffit.suspicion.constants import MOST_POINTS_SHOWN
-from mffit.suspicion.prediction import Group, Leverage, groups, predictions
+from mffit.suspicion.prediction import Group, Leverage, groups, parts_of_sweeps, predictions
 
 
 def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.ndarray, np.ndarray]:
@@ -76,6 +77,19 @@ def test_files_are_sweeps_and_a_file_of_everything_is_split_into_conditions():
         alpha, gamma, Fz, **common, sweep=sweep, file=sweep, sweep_names=names, files=tuple(f"{n}.csv" for n in names)
     )  # fmt: skip
     assert [g.name for g in groups(many)] == list(names)
+
+
+def test_a_sweep_whose_load_wanders_is_one_group():
+    """At 500 N the load follows the braking force by 16 % to either side; parts of one sweep do not predict each other."""
+    kappa = np.tile(np.linspace(-0.15, 0.15, 31), 4)
+    Fz = np.repeat([500.0, 520.0, 540.0, 2000.0], 31) * (1.0 + 0.16 * kappa / 0.15)
+    sweep = np.repeat(np.arange(4), 31)
+    points = make_points(
+        0.03, 0.0, Fz, kappa=kappa, p=83e3, V=11.0, phi_t=0.0, Fy=1.0, Mz=1.0, sweep=sweep,
+        sweep_names=("a", "b", "c", "d"), files=("x",),
+    )  # fmt: skip
+    assert np.array_equal(parts_of_sweeps(points), sweep)
+    assert design(points, "left").loads == 2
 
 
 def test_a_sweep_of_camber_is_one_group():
