@@ -192,8 +192,8 @@ def lower_factor(A: np.ndarray) -> np.ndarray:
     try:
         return cholesky(A.T @ A + ones, lower=True, check_finite=False)
     except LinAlgError:  # slower, and never without a factor
-        upper = np.linalg.qr(np.vstack([A, ones]), mode="r")
-        return (upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T
+        _, upper = np.linalg.qr(np.vstack([A, ones]))
+        return np.asarray((upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T)
 
 
 def _some_sweeps(chain: np.ndarray) -> np.ndarray:
