@@ -138,7 +138,7 @@ def fit(
             *unmodelled_sentences(found),
         ),
         warnings=(
-            *warnings(full, doubts, outlying, files.untested, plan.cover),
+            *warnings(fitted, full, doubts, outlying, files.untested, plan.cover),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,

@@ -274,13 +274,14 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
 
 
 def warnings(
+    plain: Fitted,
     fitted: Fitted,
     doubts: Sequence[Doubt],
     outlying: Sequence[Outlier],
     untested: Mapping[str, str],
     coverage: Sequence[StageCoverage] = (),
 ) -> tuple[str, ...]:
-    """All warnings of a fit, the most important first; ``untested`` is that of the files."""
+    """All warnings of the fits without and with influences, the most important first; ``untested`` is that of the files."""
     out = [
         f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
         for word, origin in untested.items()
@@ -288,10 +289,7 @@ def warnings(
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)
         out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
-    plausible = sorted(fitted.at_bound - fitted.hand.bounded.keys())
-    if plausible:
-        names = ", ".join(plausible)
-        out.append(f"at the bound of plausible values: {names}; check the sweeps that determine them")
+    out += _at_bounds(plain, fitted)
     out += by_hand_warnings(fitted, coverage)
     out += [doubt.sentence for doubt in doubts]
     if outlying:
@@ -325,3 +323,14 @@ def _contradiction(name: str, points: Quantity, prior: Prior, apart: float) -> s
         f"the points alone give {name} = {points.value:.4g} +- {points.u:.2g}, {apart:.1f} standard deviations from the "
         f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
     )
+
+
+def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
+    """Coefficients at a bound of the table or at a limit of the curves, in the plain file and, if others, in that at temperature."""
+    names, special = (", ".join(sorted(fit.at_bound - fit.hand.bounded.keys())) for fit in (plain, full))
+    if not names and not special:
+        return []
+    also = "" if special == names else f", in the fit with temperature: {special or 'none'}"
+    return [
+        f"at a bound or limit of plausible values: {names or 'none'}{also}; check the sweeps that determine them"
+    ]

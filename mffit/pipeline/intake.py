@@ -83,9 +83,14 @@ def init_from(
 
 def _check_tyre(name: str | None, radius: float | None, load: float | None, pressure: float | None) -> None:
     """Refuse missing values and values that the configuration would refuse, under the names of their options."""
-    for value, option in ((radius, "unloaded-radius M"), (load, "nominal-load N")):
-        if value is None:
-            raise InputError(f"the recordings do not contain it: give --{option}")
+    asked = (
+        (radius, "the free radius", "--unloaded-radius M"),
+        (load, "the nominal load", "--nominal-load N"),
+    )
+    lacking = [(word, option) for value, word, option in asked if value is None]
+    if lacking:
+        words, options = (" and ".join(column) for column in zip(*lacking, strict=True))
+        raise InputError(f"recordings do not contain {words} of the tyre: give {options}")
     given = {"name": name, "unloaded_radius": radius, "nominal_load": load, "nominal_pressure": pressure}
     tyre = {"name": "tyre", **STAND_IN, **{key: value for key, value in given.items() if value is not None}}
     try:
