@@ -32,6 +32,7 @@ class Fitted:
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
     held_rig: Mapping[str, float]  #: the same of rig errors that it took as absent
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
+    at_limit: frozenset[str]  #: those of them that only a physical limit holds
     regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     cost: float  #: sum of squares of data, priors and broken limits

@@ -83,6 +83,7 @@ def _fitted(
         held=given.held,
         held_rig=given.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
+        at_limit=solution.at_limit - solution.at_bound,
         regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
         scale=scale,
         cost=solution.cost,

@@ -326,11 +326,22 @@ def _contradiction(name: str, points: Quantity, prior: Prior, apart: float) -> s
 
 
 def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
-    """Coefficients at a bound of the table or at a limit of the curves, in the plain file and, if others, in that at temperature."""
-    names, special = (", ".join(sorted(fit.at_bound - fit.hand.bounded.keys())) for fit in (plain, full))
-    if not names and not special:
-        return []
-    also = "" if special == names else f", in the fit with temperature: {special or 'none'}"
-    return [
-        f"at a bound or limit of plausible values: {names or 'none'}{also}; check the sweeps that determine them"
-    ]
+    """What bounds and physical limits hold in the plain file and, where it differs, in the file at temperature."""
+    said, special = (_held_by_bounds(fit) for fit in (plain, full))
+    if special == said:
+        return [f"{said}; check the sweeps that determine them"] if said else []
+    at_temperature = f"in the fit with temperature: {special or 'none'}"
+    return [f"{said}; {at_temperature}" if said else at_temperature]
+
+
+def _held_by_bounds(fitted: Fitted) -> str:
+    """The coefficients at a bound of the table and those at a limit; bounds that somebody set do not count."""
+    at_bound = fitted.at_bound - fitted.hand.bounded.keys()
+    words = (
+        ("at the bound of plausible values", at_bound - fitted.at_limit),
+        (
+            "at a limit of the curves, such as E <= 1",
+            at_bound & fitted.at_limit,
+        ),
+    )
+    return "; ".join(f"{word}: {', '.join(sorted(names))}" for word, names in words if names)

@@ -96,4 +96,4 @@ def _statuses(coefficients: Mapping[str, Coefficient]) -> str:
         counts[c.status] = counts.get(c.status, 0) + 1
     text = "coefficients: " + ", ".join(f"{n} {status}" for status, n in counts.items())
     bound = [name for name, c in coefficients.items() if c.at_bound]
-    return text + (f"; at a bound: {' '.join(bound)}" if bound else "")
+    return text + (f"; at a bound or limit: {' '.join(bound)}" if bound else "")

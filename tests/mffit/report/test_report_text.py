@@ -55,7 +55,7 @@ def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result
 def test_build_summary_gives_misfits_and_statuses(result):
     summary = text.build_summary(result)
     assert f"{result.fit.channels['Fy'].rmse:.2f}" in summary
-    assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound: PHYP2" in summary
+    assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound or limit: PHYP2" in summary
     assert "turn slip on" in summary
 
 
