@@ -31,11 +31,20 @@ class Predicted:
         """By how many standard errors over the groups ``other`` predicts better."""
         return _z(np.sum(self.chi2 - other.chi2, axis=1))
 
-    def raised(self, other: Predicted, channels: Collection[int] | None = None) -> bool:
-        """Whether ``other`` predicts one of the channels, or of these by number, worse beyond chance."""
+    def raised(
+        self, other: Predicted, channels: Collection[int] | None = None, loss: np.ndarray | float = 0.0
+    ) -> bool:
+        """Whether ``other`` predicts one of the channels, or of these by number, worse beyond chance and by more than ``loss``.
+
+        The loss [-] is one of chi-square, for each channel (c,) or all of them.
+        """
         change = (self.chi2 - other.chi2).T
+        allowed = np.broadcast_to(loss, len(change))
         looked_at = range(len(change)) if channels is None else channels
-        return any(_z(change[k]) < -constants.WORSE_PREDICTION for k in looked_at)
+        return any(
+            _z(change[k]) < -constants.WORSE_PREDICTION and -float(np.sum(change[k])) > allowed[k]
+            for k in looked_at
+        )
 
     def keeps(self, other: Predicted, share: float) -> bool:
         """Whether ``other`` predicts every channel as well: no misfit larger by this share, none worse beyond chance.
@@ -102,13 +111,15 @@ def improves(
     least: float,
     needed: float,
     channels: Collection[int] | None = None,
+    loss: np.ndarray | float = 0.0,
 ) -> bool:
     """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse.
 
-    With ``channels`` only these, by number, must not be worse; the others count in the sum.
+    With ``channels`` only these, by number, must not be worse; the others count in the sum. A channel may lose ``loss``, one
+    for each (c,) or for all.
     """
     gain = float(np.sum(before.chi2 - after.chi2))
-    return bool(gain > least and before.falls(after) > needed and not before.raised(after, channels))
+    return bool(gain > least and before.falls(after) > needed and not before.raised(after, channels, loss))
 
 
 def _z(change: np.ndarray) -> float:

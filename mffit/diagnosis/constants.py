@@ -325,6 +325,12 @@ AS_GOOD_SHARE = Real(
     "-",
     "Share of what the best effect explains from which another explains as much, far above the noise.",
 )
+SAME_RESIDUALS = Real(
+    0.5,
+    "-",
+    "Squared cosine between the changes by two effects from which they explain the same residuals. Effects of different "
+    "channels have about 0, those that sweeps hardly separate nearly 1.",
+)
 MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
 BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
 FEWEST_IN_A_BIN = Count(4, "-", "Fewest readings of a bin.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import chdtrc, fdtrc, ndtri
@@ -35,6 +35,8 @@ class OneStep:
     ]  #: value and standard error by name, as the readings alone have them
     share: float  #: of the sum of squares of the residuals that the effect removes
     known: bool = False  #: whether the fit had its numbers with a prior, which they then contradict
+    change: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False, compare=False)
+    """(m,) of the residuals by these numbers, in units of their uncertainty"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +90,10 @@ def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEff
 
 
 def _as_good(other: OneStep, best: OneStep, left: Remainder) -> bool:
-    """Whether another effect explains the residuals as well as the best one."""
+    """Whether another effect explains the same residuals as well as the best one."""
+    a, b = other.change, best.change
+    if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
+        return False
     if left.at_noise:
         return other.log_chance < best.log_chance + constants.AS_GOOD_AS_BEST
     return other.share > constants.AS_GOOD_SHARE * best.share
@@ -138,7 +143,7 @@ def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.nda
     }
     total = max(float(left.residual @ left.residual), 1e-12)
     known = bool(numbers) and all(name in left.expected for name in numbers)
-    return OneStep(effect, chance, numbers, min(explained / total, 1.0), known)
+    return OneStep(effect, chance, numbers, min(explained / total, 1.0), known, own @ amount)
 
 
 def _estimate(left: Remainder, free: Free, by: float, u: float) -> tuple[float, float]:

@@ -56,7 +56,7 @@ class LeftOutPrediction:
 def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:
     """Forward steps: add the effect that predicts left-out sweeps best, while they improve beyond chance.
 
-    An effect that predicts a channel worse is never added. One that a later effect makes needless is dropped for good.
+    An effect that predicts a channel clearly worse is never added. One that a later effect makes needless is dropped for good.
     """
     current, left = prediction.problem.null, list(candidates)
     needed = needed_fall(len(candidates))
@@ -78,13 +78,18 @@ def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Eff
 def _best_addition(
     prediction: LeftOutPrediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
 ) -> Effect | None:
-    """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance."""
+    """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance.
+
+    A channel counts as predicted worse only from a loss as large as a gain must be: coefficients that are estimated beside an
+    effect of one channel change the others a little, and of some hundred sweeps all by the same amount.
+    """
     before = prediction.of(current)
-    most, best = constants.LEAST_PREDICTED_SHARE * float(prediction.beyond_noise(before).sum()), None
+    enough = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before)
+    most, best = float(enough.sum()), None
     for effect, groups in prediction.problem.columns(current.state, candidates).items():
         for columns in groups:
             after = prediction.of(current, columns)
-            if improves(before, after, least=most, needed=needed):
+            if improves(before, after, least=most, needed=needed, loss=enough):
                 most, best = before.total - after.total, effect
     return best
 

@@ -11,6 +11,30 @@ _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 _zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)
 FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
 
+
+def _crosstalk(force: str, moment: str, *, spread: float, appearance: Appearance) -> RigError:
+    """The error by which part of a force appears in a moment, with an arm [m] of usual size ``spread``."""
+    return _of_reading(
+        name=f"crosstalk_{force}_{moment}_m",
+        shown_in=("mm", 1e3),
+        unit="m",
+        meaning=f"reported {moment} = {moment} + crosstalk_{force}_{moment} {force}",
+        acts_on=(moment,),
+        formula=lambda arm, reading, at: reading + arm * at.true[force],
+        reads=(force,),
+        spread=spread,
+        lower=-0.1,
+        upper=0.1,
+        seen_as=(appearance,),
+        declared=Declared(
+            key=f"u_{force}_into_{moment}_m",
+            unit="m",
+            default=0.0,
+            source=f"crosstalk of {force} into {moment}",
+        ),
+    )
+
+
 GAIN = _of_reading(
     name="gain",
     unit="-",
@@ -260,58 +284,54 @@ LONGITUDINAL_DRAG = _of_reading(
         ),
     ),
 )
-FX_INTO_MZ = _of_reading(
-    name="crosstalk_Fx_Mz_m",
-    shown_in=("mm", 1e3),
-    unit="m",
-    meaning="reported Mz = Mz + crosstalk_Fx_Mz Fx",
-    acts_on=("Mz",),
-    formula=lambda arm, Mz, at: Mz + arm * at.true["Fx"],
-    reads=("Fx",),
+FX_INTO_MZ = _crosstalk(
+    "Fx",
+    "Mz",
     spread=0.002,
-    lower=-0.1,
-    upper=0.1,
-    seen_as=(
-        Appearance(
-            id="crosstalk-fx-mz",
-            name="crosstalk of Fx into Mz",
-            physics="Part of the longitudinal force appears in the moment channel, as if it had an arm.",
-            parity="odd in slip",
-            needs=("drive", "moment"),
-            confusable_with=("longitudinal-arm",),
-            remedy="calibrate the cross terms of the load cell or move its origin to the middle of the wheel; or subtract "
-            "{value} m times Fx from Mz",
-            axes=("Fx", "Mz"),
-        ),
+    appearance=Appearance(
+        id="crosstalk-fx-mz",
+        name="crosstalk of Fx into Mz",
+        physics="Part of the longitudinal force appears in the moment channel, as if it had an arm.",
+        parity="odd in slip",
+        needs=("drive", "moment"),
+        confusable_with=("longitudinal-arm",),
+        remedy="calibrate the cross terms of the load cell or move its origin to the middle of the wheel; or subtract "
+        "{value} m times Fx from Mz",
+        axes=("Fx", "Mz"),
     ),
-    declared=Declared(key="u_Fx_into_Mz_m", unit="m", default=0.0, source="crosstalk of Fx into Mz"),
 )
-FY_INTO_MX = _of_reading(
-    name="crosstalk_Fy_Mx_m",
-    shown_in=("mm", 1e3),
-    unit="m",
-    meaning="reported Mx = Mx + crosstalk_Fy_Mx Fy",
-    acts_on=("Mx",),
-    formula=lambda arm, Mx, at: Mx + arm * at.true["Fy"],
-    reads=("Fy",),
-    spread=0.003,
-    lower=-0.1,
-    upper=0.1,
-    seen_as=(
-        Appearance(
-            id="crosstalk-fy-mx",
-            name="crosstalk of Fy into Mx",
-            physics="Part of the side force appears in the overturning moment, as if the origin of the load cell were above or "
-            "below the road.",
-            parity="as Fy",
-            needs=("overturning", "slip"),
-            confusable_with=("overturning-arm", "overturning-side-force"),
-            remedy="calibrate the cross terms of the load cell or correct the height of its origin; or subtract {value} m times "
-            "Fy from Mx",
-            axes=("Fy", "Mx"),
-        ),
+FX_INTO_MX = _crosstalk(
+    "Fx",
+    "Mx",
+    spread=0.002,  # half a degree times a wheel's radius of 0.25 m
+    appearance=Appearance(
+        id="crosstalk-fx-mx",
+        name="crosstalk of Fx into Mx",
+        physics="Part of the longitudinal force appears in the overturning moment, as if the axes of the load cell were turned "
+        "against those of the wheel, so that it reads a share of the drive or brake torque.",
+        parity="odd in slip",
+        needs=("drive", "overturning"),
+        remedy="calibrate the cross terms of the load cell or turn its axes into those of the wheel; or subtract {value} m "
+        "times Fx from Mx",
+        axes=("Fx", "Mx"),
     ),
-    declared=Declared(key="u_Fy_into_Mx_m", unit="m", default=0.0, source="crosstalk of Fy into Mx"),
+)
+FY_INTO_MX = _crosstalk(
+    "Fy",
+    "Mx",
+    spread=0.003,
+    appearance=Appearance(
+        id="crosstalk-fy-mx",
+        name="crosstalk of Fy into Mx",
+        physics="Part of the side force appears in the overturning moment, as if the origin of the load cell were above or "
+        "below the road.",
+        parity="as Fy",
+        needs=("overturning", "slip"),
+        confusable_with=("overturning-arm", "overturning-side-force"),
+        remedy="calibrate the cross terms of the load cell or correct the height of its origin; or subtract {value} m times "
+        "Fy from Mx",
+        axes=("Fy", "Mx"),
+    ),
 )
 
 FORCE_ERRORS = (
@@ -322,6 +342,7 @@ FORCE_ERRORS = (
     MOMENT_ZERO,
     LONGITUDINAL_GAIN,
     FX_INTO_MZ,
+    FX_INTO_MX,
     FY_INTO_MX,
     LONGITUDINAL_DRAG,
     LONGITUDINAL_ZERO,

@@ -111,7 +111,7 @@ YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
 CELL = (
     "gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm",
-    "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
+    "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
@@ -223,7 +223,10 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     return true._replace(
         Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
         Mz=surroundings * true.Mz + faults["M0_Nm"] + faults["crosstalk_Fx_Mz_m"] * true.Fx,
-        Mx=faults["Mx0_Nm"] + true.Mx + faults["crosstalk_Fy_Mx_m"] * true.Fy,
+        Mx=true.Mx
+        + faults["Mx0_Nm"]
+        + faults["crosstalk_Fx_Mx_m"] * true.Fx
+        + faults["crosstalk_Fy_Mx_m"] * true.Fy,
         My=faults["My0_Nm"] + true.My,
         Fx=faults["Fx0_N"] + faults["gain_Fx"] * true.Fx - np.sign(settings.Vx) * faults["drag_Fx_N"],
         Fz=settings.Fz,

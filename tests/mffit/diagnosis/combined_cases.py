@@ -58,6 +58,7 @@ HIDDEN = {
     "overturning-camber": Hidden(tyre={"QSX2": 0.3}),
     "overturning-side-force": Hidden(tyre={"QSX3": 0.025}),
     "overturning-arm": Hidden(tyre={"QSX13": 0.02}),
+    "crosstalk-fx-mx": Hidden(faults={"crosstalk_Fx_Mx_m": 0.006}),
 }
 
 

@@ -14,6 +14,7 @@ from mffit.diagnosis.one_step import best_effect
 from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
 from mffit.diagnosis.remains import odd_sweep
 from mffit.diagnosis.structure import structure
+from mffit.effects import CATALOG
 
 DRAWS = 120
 
@@ -92,6 +93,21 @@ def test_structure_is_found_over_the_condition_that_causes_it(left, drawn, condi
     assert found.chance < 1e-4
     assert over in {c.over for c in found.found}
     assert "Fy" in wording.structure(found)
+
+
+def test_an_effect_that_explains_other_residuals_is_no_rival(left):
+    """Crosstalk in Fy and a zero of Mz explain as much, each in its channel; the twin of one explains the same as it."""
+    by_id = {effect.id: effect for effect in CATALOG}
+    both, nothing = replace(left, residual=np.zeros(len(left.residual))), np.zeros(len(left.points))
+    for shape in ((left.points.Fz, nothing), (nothing, nothing + 1.0)):
+        both = with_shape(both, np.concatenate(shape) / left.sigma)
+    of_fy, of_mz = by_id["crosstalk-fz-fy"], by_id["loadcell-offset-mz"]
+    for effect in (of_fy, of_mz):
+        other = of_mz if effect is of_fy else of_fy
+        twin = replace(effect, id="twin")
+        found = best_effect(both, (effect, twin))
+        assert [one.effect.id for one in found.rivals] == ["twin"]
+        assert best_effect(both, (effect, other)).rivals == ()
 
 
 def test_neighbours_that_agree_are_found_along_the_sweeps(left, drawn):

@@ -22,6 +22,8 @@ DRIVEN = {
     "RVY6": 12.0, "SSZ1": 0.01, "SSZ2": 0.03, "QSX1": 0.004, "QSX2": 0.4, "QSX3": 0.06,
 }  # fmt: skip
 NOISE = {"Fx": 12.0, "Fy": 8.0, "Mz": 1.0, "Mx": 2.0}
+MX_ZERO, FX_INTO_MX = 30.0, 0.003
+"""Errors of the rig [Nm], [m]."""
 LOADS, SIDESLIPS = (900.0, 1400.0, 2100.0), (-5.0, -2.0, 0.0, 2.0, 5.0)
 SLIP = np.sin(np.linspace(0.0, 2.0 * np.pi, 33))
 
@@ -64,7 +66,7 @@ def programme(
     readings = {
         name: getattr(found, name) + sigma * noise.standard_normal(len(Fz)) for name, sigma in NOISE.items()
     }
-    readings["Mx"] += 30.0  # the zero of the rig
+    readings["Mx"] += MX_ZERO + FX_INTO_MX * found.Fx
     return make_points(
         alpha, gamma, Fz, kappa=kappa, p=p, V=16.0, phi_t=0.0, sweep=sweep.astype(int),
         sweep_names=[f"sweep {k}" for k in range(len(sweeps))],
@@ -81,7 +83,7 @@ def config() -> Any:
                 "name": "belt", "unloaded_radius": 0.2992, "width": 0.12, "rim_radius": 0.2159, "nominal_load": 1400,
                 "nominal_pressure": 250,
             },
-            "rig": {"type": "flat-track", "axes": "iso"},
+            "rig": {"type": "flat-track", "axes": "iso", "u_Fx_into_Mx_m": 0.005},
             "sweep": [{"file": "any.csv"}],
         }
     )  # fmt: skip

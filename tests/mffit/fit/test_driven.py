@@ -36,7 +36,14 @@ def found(points):
 def test_every_channel_is_fitted_to_its_noise(found):
     for name, noise in belt.NOISE.items():
         assert found.channels[name].rmse == pytest.approx(noise, rel=0.05)
-    assert found.rig["Mx0_Nm"][0] == pytest.approx(30.0, abs=4.0 * found.rig["Mx0_Nm"][1])
+
+
+def test_the_errors_of_the_rig_in_mx_are_recovered(found):
+    """The declared crosstalk of Fx to a tenth of a millimetre: no coefficient of the tyre has its shape."""
+    for name, true in {"Mx0_Nm": belt.MX_ZERO, "crosstalk_Fx_Mx_m": belt.FX_INTO_MX}.items():
+        value, u = found.rig[name]
+        assert value == pytest.approx(true, abs=4.0 * u)
+    assert found.rig["crosstalk_Fx_Mx_m"][1] < 1e-4
 
 
 def test_the_forces_of_the_tyre_are_recovered_over_the_tested_range(found):

@@ -27,6 +27,7 @@ SIZES = {
     "T_ref_degC": 40.0,
     "backlash_deg": 0.3,
     "crosstalk_Fx_Mz_m": 0.02,
+    "crosstalk_Fx_Mx_m": 0.02,
 }
 """Sizes of those whose double usual size would be no sensible one."""
 BESIDE = {"T_ref_degC": {"k_T_per_K": 0.002}}

@@ -51,13 +51,14 @@ def test_slip_sideslip_and_camber_are_run_as_a_grid(table):
 def test_every_channel_is_that_of_the_tyre_with_its_faults(table, tyre):
     faults = {
         "kappa_0": 0.004, "gain_Fx": 1.02, "Fx0_N": -14.0, "Mx0_Nm": -35.0, "My0_Nm": 0.6, "M0_Nm": 0.8,
-        "crosstalk_Fx_Mz_m": 0.002, "crosstalk_Fy_Mx_m": -0.003, "drag_Fx_N": 9.0,
+        "crosstalk_Fx_Mz_m": 0.002, "crosstalk_Fx_Mx_m": 0.004, "crosstalk_Fy_Mx_m": -0.003,
+        "drag_Fx_N": 9.0,
     }  # fmt: skip
     row = table({"kappa": 0.05, "alpha_deg": 3, "gamma_deg": 2}, faults=faults).iloc[0]
     true = tyre(LOAD, np.radians(3.0), np.radians(2.0), 0.054, Vx=SPEED, p=240e3)
     assert row["Fx_N"] == pytest.approx(1.02 * true.Fx - 14.0 - 9.0, abs=0.01)
     assert row["Fy_N"] == pytest.approx(true.Fy, abs=0.01)
-    assert row["Mx_Nm"] == pytest.approx(true.Mx - 35.0 - 0.003 * true.Fy, abs=1e-3)
+    assert row["Mx_Nm"] == pytest.approx(true.Mx - 35.0 + 0.004 * true.Fx - 0.003 * true.Fy, abs=1e-3)
     assert row["My_Nm"] == pytest.approx(true.My + 0.6, abs=1e-3)
     assert row["Mz_Nm"] == pytest.approx(true.Mz + 0.8 + 0.002 * true.Fx, abs=1e-3)
     state = tyre.state(LOAD, kappa=0.054, Vx=SPEED, p=240e3)
