@@ -115,8 +115,8 @@ class Knowledge:
         return tuple(c for c in self._sigma if c in self.problem.channels or c in added)
 
     def _spread_of_unseen(self, found: FitResult) -> dict[str, float]:
-        """Standard deviation of the coefficients that only further runs of longitudinal slip would free."""
-        if self.config.rig.on_disc:
+        """Standard deviation of the coefficients that only a run of longitudinal slip would free; empty once one was made."""
+        if self.config.rig.on_disc or "Fx" in self.problem.channels:
             return {}
         runs = [run for run in candidates(self.config, self.points) if run.points is not None]
         known = found.tyre.values

@@ -92,9 +92,9 @@ def swept(points: Points) -> Points:
 
 
 def largest_slip(points: Points) -> float:
-    """Largest longitudinal slip of the driven wheel; a usual one where it was not driven."""
-    driven = points.kappa[~points.free_rolling]
-    return float(np.max(np.abs(driven))) if len(driven) else float(constants.PLAN_LARGEST_SLIP)
+    """Largest longitudinal slip of sweeps; a usual one where none was run."""
+    largest = float(np.max(np.abs(points.kappa[~points.free_rolling]), initial=0.0))
+    return largest if largest > constants.PLAN_SMALLEST_SLIP_SWEPT else float(constants.PLAN_LARGEST_SLIP)
 
 
 class _Programme:
