@@ -96,9 +96,9 @@ def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str
         else f"everything tested to {np.degrees(limit):.0f} deg of camber"
     )
     return (
-        f"{name} reproduces the fitted model on a straight path to {Fy.weighted:.0f} N and {Mz.weighted:.1f} Nm rms in the "
-        f"conditions that vehicles reach ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over {everything}, {Fy.largest:.0f} N "
-        "at most). The reason is that camber changes the grip through spin, for which the formula without spin has no "
+        f"{name} reproduces the fitted model on a straight path to {Fy.ridden:.0f} N and {Mz.ridden:.1f} Nm rms where "
+        f"vehicles are ridden, much lean and much sideslip apart ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over {everything}, "
+        f"{Fy.largest:.0f} N at most). The reason is that camber changes the grip through spin, for which the formula without spin has no "
         "term. For an upright wheel the two files are equal."
     )
 
@@ -128,7 +128,7 @@ def _otherwise_sentences(files: Files, name: str) -> list[str]:
     return [
         *beyond,
         f'With [normal] weight = "{other}" {name} would be off by {would.ridden:.1f} instead of {Fy.ridden:.1f} N rms where '
-        f"vehicles are ridden (much lean and much sideslip apart), by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
+        f"vehicles are ridden, by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
         f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero.",
     ]
 

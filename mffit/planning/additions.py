@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Literal, NamedTuple
 
 from mffit.errors import InputError
@@ -75,6 +75,46 @@ _RIG_MEASUREMENTS = tuple(
     )
     for error, declared in DECLARED
     if declared.measurement is not None
+)
+
+_STEPS = (
+    Addition(
+        id="steps",
+        title="recording of steps of the sideslip angle",
+        reason=(
+            "The distance over which the side force follows a step is the relaxation length: roll at "
+            f"{constants.PLAN_STEP_SPEED:g} m/s, step within a fraction of a second, hold each angle for "
+            f"{constants.PLAN_STEP_HOLD:g} s, and record at 20 Hz."
+        ),
+        lines=(LineOfPoints("alpha", constants.PLAN_STEPS),),
+        belt_only=True,
+        steps="alpha",
+    ),
+    Addition(
+        id="slip-steps",
+        title="recording of steps of longitudinal slip",
+        reason=(
+            "The distance over which the longitudinal force follows a step of slip is the relaxation length over slip: roll at "
+            f"{constants.PLAN_STEP_SPEED:g} m/s, let the drive of the wheel change its speed by "
+            f"{constants.PLAN_STEPS_OF_SLIP[1]:.1%} within a fraction of a second, hold it for {constants.PLAN_STEP_HOLD:g} s, "
+            "and record at 20 Hz."
+        ),
+        lines=(LineOfPoints("kappa", constants.PLAN_STEPS_OF_SLIP, absolute=True),),
+        belt_only=True,
+        measures=("Fx",),
+        steps="kappa",
+    ),
+)
+_STEPS_AT_PRESSURES = tuple(
+    replace(
+        steps,
+        id=f"{steps.id}-pressure",
+        title=f"{steps.title} at another pressure",
+        reason=f"A second pressure shows how the stiffness of the carcass changes with it. {steps.reason}",
+        loads="nominal",
+        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
+    )
+    for steps in _STEPS
 )
 
 ADDITIONS = (
@@ -230,32 +270,8 @@ ADDITIONS = (
         rolling=True,
         measures=("RL", "omega"),
     ),
-    Addition(
-        id="steps",
-        title="recording of steps of the sideslip angle",
-        reason=(
-            "The distance over which the side force follows a step is the relaxation length: roll at "
-            f"{constants.PLAN_STEP_SPEED:g} m/s, step within a fraction of a second, hold each angle for "
-            f"{constants.PLAN_STEP_HOLD:g} s, and record at 20 Hz."
-        ),
-        lines=(LineOfPoints("alpha", constants.PLAN_STEPS),),
-        belt_only=True,
-        steps="alpha",
-    ),
-    Addition(
-        id="slip-steps",
-        title="recording of steps of longitudinal slip",
-        reason=(
-            "The distance over which the longitudinal force follows a step of slip is the relaxation length over slip: roll at "
-            f"{constants.PLAN_STEP_SPEED:g} m/s, let the drive of the wheel change its speed by "
-            f"{constants.PLAN_STEPS_OF_SLIP[1]:.1%} within a fraction of a second, hold it for {constants.PLAN_STEP_HOLD:g} s, "
-            "and record at 20 Hz."
-        ),
-        lines=(LineOfPoints("kappa", constants.PLAN_STEPS_OF_SLIP, absolute=True),),
-        belt_only=True,
-        measures=("Fx",),
-        steps="kappa",
-    ),
+    *_STEPS,
+    *_STEPS_AT_PRESSURES,
 )
 """In the order in which they are tried; of equally good ones with as many points the first is taken."""
 BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS}

@@ -32,6 +32,9 @@ PLAN_LEANED_SLIP_CAMBERS = Series((4.0,), "deg", "Cambers at which a sweep of lo
 PLAN_LARGEST_SLIP = Real(
     0.15, "-", "Largest longitudinal slip that is proposed where none was run: beyond the peak of dry tyres."
 )
+PLAN_SMALLEST_SLIP_SWEPT = Real(
+    0.05, "-", "Programmes with less slip have no sweep of slip: steps go to 0.025."
+)
 PLAN_STEPS = Series(
     (0.0, 1.0, 0.0, -1.0, 0.0),
     "deg",

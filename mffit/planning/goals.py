@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
+from mffit.fit.relaxation import DIRECTIONS
 from mffit.quantities import CHANNELS, DIRECT
 from mffit.rig import SIMULATED
 from mffit.rig_errors import UNITS
@@ -16,6 +17,8 @@ from tir.parameters import BY_NAME
 EPSILON, JOINT, BANDS, TIE, FILE = "eps_gamma", "eps_gamma:joint", "bands", "tie", "file"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT", FILE)
 """How goals are written; the name of a coefficient is a goal too."""
+CARCASS = tuple(name for direction in DIRECTIONS for name in direction.names)
+"""Coefficients that only steps determine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +79,11 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
         effect = effect_named(rest)
         number = effect.free[0].name
         return Goal(TIE, effect.id, UNITS[number] if number in UNITS else BY_NAME[number].unit)
-    if text in BY_NAME and BY_NAME[text].stage:
+    if text in CARCASS or (text in BY_NAME and BY_NAME[text].stage):
         return Goal("coefficient", text, BY_NAME[text].unit)
     if text == "PECP1":
         return read_goal(EPSILON, on_disc=on_disc)
-    known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
+    known = [*GOALS, *CARCASS, *(row for row in BY_NAME if BY_NAME[row].stage)]
     near = difflib.get_close_matches(text, known, n=1)
     hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
     raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that is fitted{hint}')

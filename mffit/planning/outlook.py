@@ -14,13 +14,14 @@ from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult, Posterior
 from mffit.fit.posterior import spread_through
+from mffit.fit.ranges import tested_ranges
 from mffit.measured import Measured
 from mffit.planning import constants
 from mffit.planning.apart import FittedApart
-from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
+from mffit.planning.goals import BANDS, CARCASS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
-from mffit.planning.runs import PlannedRun
+from mffit.planning.runs import PlannedRun, largest_slip, swept
 from mffit.points import Points, main_pressure, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Simulation
@@ -56,11 +57,13 @@ class Outlook:
         if config.rig.on_disc:
             outliers = np.isin(np.arange(len(points)), [o.row for o in found.outliers])
             self._near = points.select(self._decides_epsilon(points) & ~outliers)
+        self._tested = tested_ranges(swept(points))
         self.draws = 0
         self._direct, self._cache = direct, dict[tuple[str, ...], DirectU | None]()
         self._curves = self._band_slopes((goal.name,)) if goal.kind == BANDS else None
         self._file = self._every_band() if goal.kind == FILE else None
-        self.apart = FittedApart(config, found) if goal.kind == FILE else None
+        apart = goal.kind == FILE or goal.name in CARCASS
+        self.apart = FittedApart(config, found, self._tested) if apart else None
 
     def u(self, runs: Sequence[PlannedRun]) -> float:
         """Uncertainty of the goal in its unit; infinite if the goal is not measured at all."""
@@ -72,6 +75,8 @@ class Outlook:
         if self.effect is not None:
             return self.knowledge.u_of_effect(runs, self.effect, _rivals(self.effect))
         posterior = self.knowledge.posterior(runs, self._u_pecp1(runs))
+        if self.apart is not None and self.goal.name:
+            return self.apart.u_carcass(self.goal.name, runs, posterior)
         if self._file is not None and self.apart is not None:
             names, by_channel = self._file
             parts = [_spread(posterior, names, slopes) for slopes in by_channel]
@@ -175,14 +180,11 @@ class Outlook:
 
     def _band_conditions(self, *, slip: bool) -> Points:
         """Operating conditions of the bands."""
-        assert self.found.files is not None
-        tested = self.found.files.tested
+        tested = self._tested
         loads = [tested["FZMIN"], float(self.found.tyre["FNOMIN"]), tested["FZMAX"]]
         n = int(constants.PLAN_BAND_ANGLES)
         steer, camber = (np.linspace(-tested[end], tested[end], n) for end in ("ALPMAX", "CAMMAX"))
-        drive = np.linspace(-1.0, 1.0, n) * (
-            float(np.max(np.abs(self.points.kappa))) or float(constants.PLAN_LARGEST_SLIP)
-        )
+        drive = np.linspace(-1.0, 1.0, n) * largest_slip(self.points)
         none = np.zeros(n)
         lines = [(steer, none, none), (none, camber, none)]
         if slip:

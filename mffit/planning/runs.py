@@ -83,6 +83,20 @@ def candidates(config: Config, points: Points, r_e: float | None = None) -> tupl
     return tuple(found)
 
 
+def swept(points: Points) -> Points:
+    """Points at which the wheel was steered, leaned or driven; all of them if it only rolled straight."""
+    steered = np.abs(points.alpha) > constants.PLAN_COUPLED_SIDESLIP.rad
+    leaned = np.abs(points.gamma) > constants.PLAN_SMALLEST_CAMBER_SWEPT.rad
+    found = steered | leaned | ~points.free_rolling
+    return points.select(found) if np.any(found) else points
+
+
+def largest_slip(points: Points) -> float:
+    """Largest longitudinal slip of sweeps; a usual one where none was run."""
+    largest = float(np.max(np.abs(points.kappa[~points.free_rolling]), initial=0.0))
+    return largest if largest > constants.PLAN_SMALLEST_SLIP_SWEPT else float(constants.PLAN_LARGEST_SLIP)
+
+
 class _Programme:
     """What has been run, and new set-points like it."""
 
@@ -90,18 +104,14 @@ class _Programme:
         main = main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
         self.config = config
         self.points, self.main = points, points.select(main if np.any(main) else np.ones(len(points), bool))
-        level = levels.labels(self.main.Fz, levels.LOAD)
-        self.loads = sorted(
-            float(np.mean(self.main.Fz[level == k])) for k in range(level.max(initial=-1) + 1)
-        )
+        Fz = swept(self.main).Fz
+        level = levels.labels(Fz, levels.LOAD)
+        self.loads = sorted(float(np.mean(Fz[level == k])) for k in range(level.max(initial=-1) + 1))
         self.load = min(self.loads, key=lambda load: abs(load - config.tyre.nominal_load))
         self.largest = {
             name: float(np.degrees(np.max(np.abs(getattr(self.main, name))))) for name in ("alpha", "gamma")
         }
-        driven = not np.all(points.free_rolling)
-        self.largest["kappa"] = (
-            float(np.max(np.abs(points.kappa))) if driven else float(constants.PLAN_LARGEST_SLIP)
-        )
+        self.largest["kappa"] = largest_slip(points)
         self.pressure = float(np.mean(self.main.p))
         self.phi_t = main_path(self.main)
 

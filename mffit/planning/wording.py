@@ -93,7 +93,8 @@ def promise(plan: Plan) -> str:
     elif kind == FILE:
         estimate = (
             "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values (rms over sideslip, camber and "
-            "slip at three loads), of both relaxation lengths, and of the loaded radius over the deflection: the rms of these. "
+            "slip at three loads), and of both relaxation lengths and the loaded radius over the deflection (also at three "
+            "pressures): the rms of these, over the loads at which the wheel has been steered, leaned or driven so far. "
             "What was not measured counts with its prior."
         )
     elif kind == TIE:

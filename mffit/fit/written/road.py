@@ -70,7 +70,7 @@ CORNER = {
 
 
 def weights(road: Road, tested: Mapping[str, float], weight: str = "everything") -> np.ndarray:
-    """Weight (n,) of each condition: conditions that vehicles reach count more than the corners of the ranges.
+    """Weight (n,) of each condition: the corners of the ranges count less than the rest.
 
     A wheel with much camber has little sideslip and a wheel with much sideslip has little camber; both at once is a fall. Inside
     the tested ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in

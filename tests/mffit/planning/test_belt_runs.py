@@ -57,7 +57,15 @@ def goal():
 
 @pytest.fixture(scope="module")
 def plan(first, goal):
-    return plan_of(first, goal, runs=3)
+    return plan_of(first, goal, runs=4)
+
+
+@pytest.fixture(scope="module")
+def longer(first, plan, tmp_path_factory):
+    """The same project with the runs of the plan."""
+    added = simulated(first.config, [step.run for step in plan.steps])
+    folder = tmp_path_factory.mktemp("longer")
+    return built(folder, added, Fx_N=12.0, RL_m=0.0003, omega_radps=0.02)
 
 
 def test_what_was_never_run_gains_most(plan):
@@ -71,9 +79,8 @@ def test_what_was_never_run_gains_most(plan):
     assert max(alone[kind] for kind in ("drive", "combined", "rolling")) < alone["sideslip"]
 
 
-def test_the_runs_are_made_as_proposed_and_are_as_good(first, plan, goal, tmp_path):
+def test_the_runs_are_made_as_proposed_and_are_as_good(first, plan, longer, goal):
     runs = [step.run for step in plan.steps]
-    longer = built(tmp_path, simulated(first.config, runs), Fx_N=12.0, RL_m=0.0003, omega_radps=0.02)
     for run in runs:
         if not run.addition.steps:
             name = [k for k, file in enumerate(longer.points.files) if file.startswith(run.name)]
@@ -86,11 +93,25 @@ def test_the_runs_are_made_as_proposed_and_are_as_good(first, plan, goal, tmp_pa
     found = [direction.found for direction in longer.fit.relaxation]
     assert "LATERAL_STIFFNESS" in found[0] or "LONGITUDINAL_STIFFNESS" in found[1]
     assert "VERTICAL_STIFFNESS" in longer.fit.radii.found
-    expected = FittedApart(first.config, first.fit).lags
+    expected = FittedApart(first.config, first.fit, first.fit.files.tested).lags
     for forecast, relaxation in zip(expected, longer.fit.relaxation, strict=True):
         for step in relaxation.runs:
-            assert step.length.u / step.length.value == pytest.approx(forecast.u_of_step(step.load), rel=0.5)
-    assert plan_of(longer, goal, runs=0).now == pytest.approx(plan.then, rel=0.6)
+            assert step.length.u / step.length.value == pytest.approx(
+                forecast.u_of_step(step.load, step.pressure), rel=0.5
+            )
+    assert plan_of(longer, goal, runs=0).now == pytest.approx(plan.then, rel=0.1)
+
+
+@pytest.mark.parametrize(("direction", "kind"), [(0, "steps-pressure"), (1, "slip-steps-pressure")])
+def test_steps_at_another_pressure_are_proposed_for_what_only_they_show(longer, direction, kind):
+    """The stiffness itself is as certain as the build states, the term over pressure is the prior's before this run."""
+    relaxation = longer.fit.relaxation[direction]
+    nominal, *_, over_pressure = relaxation.direction.names
+    now = plan_of(longer, read_goal(nominal, on_disc=False), runs=0).now
+    assert now == pytest.approx(relaxation.found[nominal].u, rel=0.05)
+    found = plan_of(longer, read_goal(over_pressure, on_disc=False), runs=1)
+    assert [step.run.addition.id for step in found.steps] == [kind]
+    assert found.then < 0.5 * found.now
 
 
 def test_sheets_and_goal(first, plan):
