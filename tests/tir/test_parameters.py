@@ -78,10 +78,12 @@ def test_every_row_is_sound():
 
 
 def _sound_tie(row: dict[str, str]) -> None:
-    tie, _, spread = row["tied"].partition(":")
-    assert tie in ("", "base", "disc"), row["name"]
-    assert (float(spread or 0.0) > 0.0) == (tie == "disc"), row["name"]
-    assert not tie or row["stage"], f"{row['name']} is tied, and no stage frees it"
+    for tie in row["tied"].split():
+        where, _, spread = tie.partition(":")
+        assert where in ("disc", "side"), row["name"]
+        assert float(spread) > 0.0, row["name"]
+        assert row["stage"], f"{row['name']} is tied, and no stage frees it"
+        assert where != "side" or "both_sides" in row["needs"], f"{row['name']} is not held by one side"
 
 
 def _sound_needs(row: dict[str, str]) -> None:
