@@ -41,6 +41,7 @@ class Design:
     cambers: int
     coupled: bool  #: sideslip and camber together
     speeds: int
+    sideslips: int
     slip: bool  #: longitudinal slip was run
     combined: bool  #: longitudinal slip and sideslip together
     side_force: bool  #: longitudinal slip where there is side force, of sideslip or of camber
@@ -71,6 +72,7 @@ def design(points: Points, side: str) -> Design:
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
         coupled=bool(np.any(cambered & slipping)),
         speeds=levels.count(points.V, levels.SPEED),
+        sideslips=levels.count(points.alpha, levels.SIDESLIP),
         slip=bool(np.any(driven)),
         combined=bool(np.any(driven & slipping)),
         side_force=bool(np.any(driven & (slipping | cambered))),
@@ -162,7 +164,7 @@ def _missing(row: Parameter, seen: Design) -> str:
 
 
 def _sides(row: Parameter, seen: Design) -> bool:
-    """Whether an asymmetry is seen: from both sides, conicity from both flanks of the tyre; on a disc a small prior decides it."""
+    """Whether an asymmetry is seen: from both sides, conicity from both flanks; on a disc a small prior decides it."""
     small = seen.curved and row.disc_spread is not None
     return small or seen.both_sides or (row.conicity and seen.both_flanks)
 
@@ -183,6 +185,7 @@ def _unmet(need: Need, seen: Design, row: Parameter) -> str:
             "sideslip was run to one side only, which does not show how the other one differs: run sideslip of the other sign",
         ),
         "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
+        "sideslips": (seen.sideslips, f"{need.levels} sideslips are needed, {seen.sideslips} run"),
         "curvature": (seen.curved, "the path is straight, so spin is not excited"),
         "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),
         "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),

@@ -24,11 +24,12 @@ NEEDS = (
     "curvature",
     "kappa",
     "speeds",
+    "sideslips",
     "loads",
     "pressures",
     "pressure_loads",
 )
-COUNTED = {"speeds", "loads", "pressures", "pressure_loads"}
+COUNTED = {"speeds", "sideslips", "loads", "pressures", "pressure_loads"}
 WORDS = {
     "kind": {"number", "text"},
     "divisor": {"", "yes"},
@@ -92,7 +93,7 @@ def _sound_needs(row: dict[str, str]) -> None:
         word, colon, levels = need.partition(":")
         assert word in NEEDS, f"{name}: needs {word!r}, not one of {NEEDS}"
         assert (word in COUNTED) == bool(colon), f"{name}: {need}; write a number after {COUNTED} only"
-        assert not colon or int(levels) in (2, 3), f"{name}: {need}; the number is 2 or 3"
+        assert not colon or int(levels) in (2, 3, 4), f"{name}: {need}; the number is 2 to 4"
         words.append(word)
     assert words == sorted(set(words), key=NEEDS.index), f"{name}: each need once, in the order of NEEDS"
     assert row["channel"] or not words, f"{name} needs data, and no channel"
