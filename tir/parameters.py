@@ -42,6 +42,7 @@ class Parameter:
     )
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
+    side_spread: float | None  #: the same for sideslip to one side only, where no data show it
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -105,7 +106,7 @@ def _load() -> tuple[Parameter, ...]:
 
 def _parameter(order: int, row: dict[str, str]) -> Parameter:
     number = row["kind"] == "number"
-    tie, _, spread = row["tied"].partition(":")
+    tied = dict(word.split(":") for word in row["tied"].split())
     return Parameter(
         name=row["name"],
         section=row["section"],
@@ -119,7 +120,8 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         stage=row["stage"],
         channel=row["channel"],
         symmetry=frozenset(row["symmetry"].split()),
-        disc_spread=float(spread) if tie == "disc" else None,
+        disc_spread=float(tied["disc"]) if "disc" in tied else None,
+        side_spread=float(tied["side"]) if "side" in tied else None,
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],
         equation=row["equation"],

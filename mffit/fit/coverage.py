@@ -41,10 +41,12 @@ class Design:
     cambers: int
     coupled: bool  #: sideslip and camber together
     speeds: int
+    sideslips: int
     slip: bool  #: longitudinal slip was run
     combined: bool  #: longitudinal slip and sideslip together
     side_force: bool  #: longitudinal slip where there is side force, of sideslip or of camber
     both_sides: bool  #: sideslip to both sides
+    both_flanks: bool  #: sideslip towards both flanks of the tyre: to both sides, or with the tyre turned on its rim or backwards
     measured: tuple[str, ...]  #: channels with readings
     curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
@@ -62,6 +64,7 @@ def design(points: Points, side: str) -> Design:
     cambered = np.abs(points.gamma) > constants.ZERO_CAMBER_LIMIT.rad
     slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
     driven = ~points.free_rolling
+    towards = np.sign(points.alpha)
     return Design(
         loads=len(np.unique(held[held >= 0])),
         pressures=levels.count(points.p, levels.PRESSURE),
@@ -69,15 +72,28 @@ def design(points: Points, side: str) -> Design:
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
         coupled=bool(np.any(cambered & slipping)),
         speeds=levels.count(points.V, levels.SPEED),
+        sideslips=levels.count(points.alpha, levels.SIDESLIP),
         slip=bool(np.any(driven)),
         combined=bool(np.any(driven & slipping)),
         side_force=bool(np.any(driven & (slipping | cambered))),
-        both_sides=len(np.unique(np.sign(points.alpha[slipping]))) > 1,
+        both_sides=_both_signs(towards[slipping]),
+        both_flanks=_both_signs((towards * points.direction * points.mount)[slipping]),
         measured=points.measured,
         curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
     )
+
+
+def _both_signs(signs: np.ndarray) -> bool:
+    """Whether signs (n,) are positive and negative."""
+    return len(np.unique(signs)) > 1
+
+
+def side_run(points: Points) -> bool:
+    """Whether sideslip was run, and to one side only."""
+    seen = points.alpha[np.abs(points.alpha) > constants.COUPLED_ALPHA.rad]
+    return len(np.unique(np.sign(seen))) == 1
 
 
 def _straight_on(points: Points) -> np.ndarray:
@@ -144,10 +160,16 @@ def _missing(row: Parameter, seen: Design) -> str:
         )
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
-    return next((reason for need in row.needs if (reason := _unmet(need, seen))), "")
+    return next((reason for need in row.needs if (reason := _unmet(need, seen, row))), "")
 
 
-def _unmet(need: Need, seen: Design) -> str:
+def _sides(row: Parameter, seen: Design) -> bool:
+    """Whether an asymmetry is seen: from both sides, conicity from both flanks; on a disc a small prior decides it."""
+    small = seen.curved and row.disc_spread is not None
+    return small or seen.both_sides or (row.conicity and seen.both_flanks)
+
+
+def _unmet(need: Need, seen: Design, row: Parameter) -> str:
     """The sentence about an unmet need of a coefficient; empty if the data meet it."""
     run, sentence = {
         "camber": (seen.cambers - 1, "no camber was run"),
@@ -158,8 +180,12 @@ def _unmet(need: Need, seen: Design) -> str:
             seen.side_force,
             "no sweep combines longitudinal slip and side force, from sideslip or camber",
         ),
-        "both_sides": (seen.both_sides, "sideslip was run to one side only"),
+        "both_sides": (
+            _sides(row, seen),
+            "sideslip was run to one side only, which does not show how the other one differs: run sideslip of the other sign",
+        ),
         "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
+        "sideslips": (seen.sideslips, f"{need.levels} sideslips are needed, {seen.sideslips} run"),
         "curvature": (seen.curved, "the path is straight, so spin is not excited"),
         "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),
         "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),

@@ -12,7 +12,7 @@ import numpy as np
 from mffit.config.constants import PLAUSIBLE_CONICITY
 from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.coverage import StageCoverage, coverage
+from mffit.fit.coverage import StageCoverage, coverage, side_run
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
@@ -114,7 +114,8 @@ def fit_plan(
     channels = fitted_channels(cover, points)
     rig = rig_numbers(config, measured, points.used_setups, channels)
     staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
-    scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
+    unseen = {name for row in cover for name in row.held if side_run(points)}
+    scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)), unseen=unseen)
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
         scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))
     scatter |= {name: prior.spread for name, prior in fleet.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,21 +25,27 @@ class Prior(NamedTuple):
     spread: float  #: 1 sigma
 
 
-def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> float:
+def scatter(name: str, expected: float, *, from_base: bool, curved: bool, unseen_side: bool = False) -> float:
     """Standard deviation of this tyre's coefficient around the expected value.
 
-    A base file's 0 counts as not stated.
+    A base file's 0 counts as not stated. An asymmetry of which the data show one side only (``unseen_side``) is one of this
+    tyre alone, on which the base file says nothing.
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]
+    if unseen_side and (alone := BY_NAME[name].side_spread) is not None:
+        return alone
     share = constants.LEAST_SPREAD_BASE_FILE if from_base and expected else constants.LEAST_SPREAD_DEFAULT
     return max(constants.SIMILAR_TYRES_SPREAD * abs(expected), share * BY_NAME[name].width)
 
 
-def scatters(names: Mapping[str, float], origin: Mapping[str, str], *, curved: bool) -> dict[str, float]:
-    """Standard deviation of every named coefficient around its expected value."""
+def scatters(
+    names: Mapping[str, float], origin: Mapping[str, str], *, curved: bool, unseen: Collection[str] = ()
+) -> dict[str, float]:
+    """Standard deviation of every named coefficient around its expected value; ``unseen`` as in :func:`scatter`."""
     return {
-        n: scatter(n, value, from_base=origin[n] in FROM_BASE, curved=curved) for n, value in names.items()
+        n: scatter(n, value, from_base=origin[n] in FROM_BASE, curved=curved, unseen_side=n in unseen)
+        for n, value in names.items()
     }
 
 

@@ -24,11 +24,12 @@ NEEDS = (
     "curvature",
     "kappa",
     "speeds",
+    "sideslips",
     "loads",
     "pressures",
     "pressure_loads",
 )
-COUNTED = {"speeds", "loads", "pressures", "pressure_loads"}
+COUNTED = {"speeds", "sideslips", "loads", "pressures", "pressure_loads"}
 WORDS = {
     "kind": {"number", "text"},
     "divisor": {"", "yes"},
@@ -78,10 +79,12 @@ def test_every_row_is_sound():
 
 
 def _sound_tie(row: dict[str, str]) -> None:
-    tie, _, spread = row["tied"].partition(":")
-    assert tie in ("", "base", "disc"), row["name"]
-    assert (float(spread or 0.0) > 0.0) == (tie == "disc"), row["name"]
-    assert not tie or row["stage"], f"{row['name']} is tied, and no stage frees it"
+    for tie in row["tied"].split():
+        where, _, spread = tie.partition(":")
+        assert where in ("disc", "side"), row["name"]
+        assert float(spread) > 0.0, row["name"]
+        assert row["stage"], f"{row['name']} is tied, and no stage frees it"
+        assert where != "side" or "both_sides" in row["needs"], f"{row['name']} is not held by one side"
 
 
 def _sound_needs(row: dict[str, str]) -> None:
@@ -90,7 +93,7 @@ def _sound_needs(row: dict[str, str]) -> None:
         word, colon, levels = need.partition(":")
         assert word in NEEDS, f"{name}: needs {word!r}, not one of {NEEDS}"
         assert (word in COUNTED) == bool(colon), f"{name}: {need}; write a number after {COUNTED} only"
-        assert not colon or int(levels) in (2, 3), f"{name}: {need}; the number is 2 or 3"
+        assert not colon or int(levels) in (2, 3, 4), f"{name}: {need}; the number is 2 to 4"
         words.append(word)
     assert words == sorted(set(words), key=NEEDS.index), f"{name}: each need once, in the order of NEEDS"
     assert row["channel"] or not words, f"{name} needs data, and no channel"

@@ -84,6 +84,35 @@ def test_what_is_missing_holds_its_coefficients(sweeps, changes, names, sentence
     assert any(sentence in found[name] for name in names)
 
 
+ASYMMETRIES = {"PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QEZ4", "QBZ4", "QDZ3"}
+
+
+def test_sideslip_to_one_side_shows_no_asymmetry():
+    """One curve is a symmetric tyre's with a larger friction as well as a conical tyre's with a smaller one."""
+    both = programme(*FULL, phi_t=0.0, backward=False)
+    one = both.select(np.flatnonzero(both.alpha > -0.01))
+    found = held(one)
+    assert set(found) >= ASYMMETRIES
+    assert not ASYMMETRIES & set(held(both))
+    assert all("run sideslip of the other sign" in found[name] for name in ASYMMETRIES)
+    assert "PHY1" not in found, "the force at zero sideslip shows it"
+
+
+def test_a_tyre_turned_on_its_rim_shows_its_conicity_from_one_side():
+    one = programme(*FULL, phi_t=0.0, backward=False)
+    one = one.select(np.flatnonzero(one.alpha > -0.01))
+    turned = one.replace(mount=np.where(one.p < 240e3, -1, 1))
+    assert {"QHZ1", "QEZ4"} <= set(held(turned)), "ply-steer stays as it is when a tyre is turned on its rim"
+    assert not {"PVY1", "PVY2", "PEY3"} & set(held(turned))
+
+
+def test_a_disc_keeps_its_small_prior_of_conicity():
+    one = programme(*FULL)
+    one = one.select(np.flatnonzero(one.alpha > -0.01))
+    assert "PVY1" not in held(one)
+    assert "QEZ4" in held(one)
+
+
 def test_a_symmetric_tyre_has_no_odd_terms():
     found = held(programme(*FULL), side="symmetric")
     listed = {row.stage for row in coverage(programme(*FULL), "symmetric")}
