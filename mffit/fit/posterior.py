@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -42,10 +43,13 @@ class Posterior(Brief):
         own = across @ slope.T + beside.covariance[np.ix_(new, new)]
         return Posterior((*self.names, *names), np.block([[self.covariance, across.T], [across, own]]))
 
-    def without(self, names: Collection[str]) -> Posterior:
-        """The posterior of the other numbers, which contains the uncertainty of these."""
+    def given(self, names: Collection[str]) -> Posterior:
+        """The posterior of the other numbers if these were exactly known."""
+        known = [i for i, name in enumerate(self.names) if name in names]
         rows = [i for i, name in enumerate(self.names) if name not in names]
-        return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)])
+        across = self.covariance[np.ix_(rows, known)]
+        part = across @ np.linalg.solve(self.covariance[np.ix_(known, known)], across.T)
+        return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)] - part)
 
     def shifted(self, shift: np.ndarray) -> Posterior:
         """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""
@@ -96,6 +100,12 @@ def beside_held(
     known = np.diag(np.array(list(held.values())) ** 2)
     whole = np.block([[covariance + shift @ known @ shift.T, shift @ known], [known @ shift.T, known]])
     return Posterior((*free, *held), whole)
+
+
+def widened(interval: tuple[float, float], value: float, reach: float) -> tuple[float, float]:
+    """The 95 % interval of a number with one more independent error, which moves its value by ``reach`` to either side."""
+    low, high = interval
+    return value - math.hypot(value - low, reach), value + math.hypot(high - value, reach)
 
 
 def spread_through(slopes: np.ndarray, covariance: np.ndarray) -> np.ndarray:

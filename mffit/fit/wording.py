@@ -19,6 +19,7 @@ from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
+from mffit.rig_errors import WORDS, ZEROS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity
@@ -270,6 +271,24 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
     return (
         f"{begins} a turn-slip force of {zeros.expected:.0f} N on this path, and {to_uncertainty(force.value, force.u)} +- "
         f"{to_uncertainty(force.u, force.u)} N was measured; the fit moved {' and '.join(moved)}{rest}"
+    )
+
+
+def zeros_of_rig_sentence(held: Mapping[str, float], bands: BandsByPressure) -> str:
+    """Which coefficients contain the zeros of the rig, how much of the bands this is, and what helps; empty without such zeros.
+
+    ``held`` has the standard uncertainties of rig errors that the fit took as absent.
+    """
+    zeros = [
+        f"{held[error.name]:.2g} {error.unit} ({WORDS[error.name]})" for error in ZEROS if error.name in held
+    ]
+    if not zeros:
+        return ""
+    return (
+        "on a flat track with one set-up, ply-steer, conicity and residual torque (PHY, PVY, QHZ, QDZ6, QDZ7) contain the zeros of "
+        f"the rig: standard uncertainties of {', '.join(zeros)} are part of their errors and of the bands, which for Fy are "
+        f"{bands.half:.2g} N wide to either side (rms) instead of {bands.half_on_exact_rig:.2g} N; if the rig is better, state it "
+        "with smaller u_ keys in [rig], and sweeps of further set-ups (key setup) separate the zeros from the tyre"
     )
 
 

@@ -26,7 +26,8 @@ class Information:
     To first order around the build's solution.
     """
 
-    names: tuple[str, ...]  #: free coefficients and rig errors
+    names: tuple[str, ...]
+    """Free coefficients and rig errors, and those that the build held with a known spread: tyres on one rig may share them."""
     values: np.ndarray  #: (k,) solution of the build
     matrix: np.ndarray  #: (k, k) of the points alone
     vector: np.ndarray  #: (k,)
@@ -51,6 +52,7 @@ def information(fitted: Fitted) -> Information | None:
             prior.setdefault(name, (value, fitted.held.get(name, math.inf)))
     if "PECP2" in prior and "PECP2" not in {n.name for n in fitted.numbers}:
         prior["PECP2"] = (0.0, scatter("PECP2", 0.0, from_base=False, curved=False))
+    prior |= {name: (fitted.problem.value(name), u) for name, u in fitted.held_rig.items()}
     for name in MEASURED:
         if name in prior:
             prior[name] = (prior[name][0], math.inf)
