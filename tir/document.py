@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import Counter
 from collections.abc import Iterable
@@ -114,13 +115,23 @@ def read_document(path: str | Path) -> Document:
     """
     path = Path(path)
     try:
-        raw = path.read_bytes()
+        raw = _pipe_content(path) if path.is_fifo() else path.read_bytes()
     except OSError as error:
         raise TirError(
             f"cannot be read ({(error.strerror or 'error').lower()}): check the path", path=path
         ) from error
     text, encoding = _decode(raw, path)
     return parse_document(text, encoding=encoding, path=str(path))
+
+
+def _pipe_content(path: Path) -> bytes:
+    """What is written into a named pipe; a TirError if nothing writes into it, because opening it would wait for ever."""
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as stream:
+        first = stream.raw.read(1)  # None: a program has opened it and has not written yet
+        if first == b"":
+            raise TirError("is a pipe into which no program writes: give a file", path=path)
+        os.set_blocking(stream.fileno(), True)
+        return (first or b"") + stream.read()
 
 
 def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Document:

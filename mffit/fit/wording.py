@@ -99,8 +99,8 @@ def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str
     return (
         f"{name} reproduces the fitted model on a straight path to {Fy.ridden:.0f} N and {Mz.ridden:.1f} Nm rms where "
         f"vehicles are ridden, much lean and much sideslip apart ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over {everything}, "
-        f"{Fy.largest:.0f} N at most). The reason is that camber changes the grip through spin, for which the formula without spin has no "
-        "term. For an upright wheel the two files are equal."
+        f"{Fy.largest:.0f} N at most). The reason is that camber changes the grip through spin, for which the formula without "
+        "spin has no term. For an upright wheel the two files are equal."
     )
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
+import sys
 import time
+import types
 from pathlib import Path
 
 import click
@@ -14,6 +16,7 @@ from disc_project import disc_project
 from small_plan import SMALL_PLAN
 
 import tir
+from mffit import __main__ as script
 from mffit.cli import commands, main
 from mffit.cli.console import progress
 
@@ -143,3 +146,15 @@ def test_names_of_programs_may_have_blanks_and_counts_are_grammatical(tmp_path, 
     with pytest.raises(SystemExit):
         main(["check", str(wrong)])
     assert "t.tir: 1 error, " in capsys.readouterr().out
+
+
+def test_an_interruption_during_the_imports_ends_like_a_later_one(monkeypatch, capsys):
+    class Interrupted(types.ModuleType):
+        def __getattr__(self, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "mffit.cli", Interrupted("mffit.cli"))
+    with pytest.raises(SystemExit) as ended:
+        script.main()
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "mffit: interrupted; nothing was written\n"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import threading
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -250,6 +252,19 @@ def test_a_pressure_unit_is_honoured(tmp_path, tyre):
     assert read_text(tmp_path, text)["NOMPRES"] == 250e3
     text = text.replace("kpascal", "bar").replace("= 250\n", "= 2.5\n")
     assert read_text(tmp_path, text)["INFLPRES"] == 250e3
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are a matter of Unix")
+def test_a_pipe_is_read_if_a_program_writes_into_it(tmp_path):
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    with pytest.raises(tir.TirError, match="no program writes"):
+        tir.read(path)
+    writer = os.open(path, os.O_RDWR)
+    late = threading.Timer(0.05, lambda: (os.write(writer, TEXT.encode()), os.close(writer)))
+    late.start()
+    assert tir.read(path)["PKY1"] == tir.read(VECTORS / "moto_front.tir")["PKY1"]
+    late.join()
 
 
 def test_a_missing_file_is_a_sentence(tmp_path):

@@ -180,7 +180,10 @@ def test_the_sentences_state_the_figures(files):
     made, _ = files
     said = " ".join(file_sentences(made, file_names("small", "turn-slip", True)))
     normal = made.by_use["normal"].straight
-    assert f"to {normal['Fy'].ridden:.0f} N and {normal['Mz'].ridden:.1f} Nm rms where vehicles are ridden" in said
+    assert (
+        f"to {normal['Fy'].ridden:.0f} N and {normal['Mz'].ridden:.1f} Nm rms where vehicles are ridden"
+        in said
+    )
     assert f"{made.stiffness_loss:.0%} less camber stiffness" in said
     assert "Give small.tir to a simulator that computes turn slip" in said
     assert "Tested: 900 to 2100 N, sideslip to 8.0 deg, camber to 45.0 deg, 250 kPa only." in said

@@ -11,6 +11,7 @@ from small_rigs import LOADS, disc, flat, simulated
 from mffit import config as configuration
 from mffit import points as ingestion
 from mffit.planning import ADDITIONS, candidates
+from mffit.planning.runs import swept
 from mffit.points import concatenate
 
 DOCS = Path(__file__).parents[3] / "docs" / "plan.md"
@@ -30,6 +31,19 @@ def programme(tmp_path_factory):
     simulated(disc(LOADS[:2], rolling_radius=[]), folder)
     config = configuration.load(folder / "tyre.toml")
     return config, ingestion.load(config)[0]
+
+
+@pytest.fixture
+def longer_programme(tmp_path):
+    """A flat track's programme with a rolling wheel at a higher load and points of a step of slip."""
+    simulated(flat(), tmp_path)
+    config = configuration.load(tmp_path / "tyre.toml")
+    points = ingestion.load(config)[0]
+    loads = {round(float(load)) for load in np.unique(np.round(points.Fz))}
+    some = points.select(np.arange(3))
+    rolling = some.replace(alpha=0.0, gamma=0.0, kappa=0.001, Fz=1.6 * np.max(points.Fz))
+    step = some.replace(alpha=0.0, gamma=0.0, kappa=0.025)
+    return config, concatenate([points, rolling, step]), loads
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +155,15 @@ def test_a_flat_track_has_no_runs_about_turn_slip(tmp_path):
     driven = {"drive", "combined", "drive-camber", "drive-pressure", "rolling"}
     steps = {"steps", "slip-steps", "steps-pressure", "slip-steps-pressure"}
     assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load", *driven, *steps}
+
+
+def test_rolling_and_steps_are_no_sweeps_of_the_programme(longer_programme):
+    """A wheel that only rolled at other loads and a step of slip move neither the loads nor the slips that are proposed."""
+    config, points, kinds = longer_programme
+    assert np.ptp(points.Fz) > np.ptp(swept(points).Fz) > 0.0
+    assert {round(run.load) for run in candidates(config, points) if run.addition.id == "sideslip"} == kinds
+    drive = next(run for run in candidates(config, points) if run.addition.id == "drive")
+    assert np.max(np.abs(drive.points.kappa)) == pytest.approx(0.15)
 
 
 def test_runs_have_unique_names(programme):

@@ -11,6 +11,7 @@ import pytest
 import mffit
 from mffit import virtual_rig
 from mffit.errors import InputError
+from mffit.fit import Posterior
 from mffit.pipeline.planning import plan_of, sheet, simulated
 from mffit.planning import read_goal, wording
 from mffit.planning.apart import FittedApart
@@ -112,6 +113,16 @@ def test_steps_at_another_pressure_are_proposed_for_what_only_they_show(longer, 
     found = plan_of(longer, read_goal(over_pressure, on_disc=False), runs=1)
     assert [step.run.addition.id for step in found.steps] == [kind]
     assert found.then < 0.5 * found.now
+
+
+def test_the_stiffness_is_forecast_with_the_slip_stiffness_from_which_it_follows(longer):
+    """It is cornering stiffness over relaxation length: 10 % in PKY1 are 10 % in it."""
+    apart = FittedApart(longer.config, longer.fit, longer.fit.files.tested)
+    name, PKY1 = "LATERAL_STIFFNESS", float(longer.fit.tyre["PKY1"])
+    exact, unsure = (
+        apart.u_carcass(name, [], Posterior(("PKY1",), np.array([[u**2]]))) for u in (0.0, 0.1 * PKY1)
+    )
+    assert unsure == pytest.approx(np.hypot(exact, 0.1 * longer.fit.tyre[name]), rel=0.02)
 
 
 def test_sheets_and_goal(first, plan):
