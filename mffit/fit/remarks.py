@@ -11,6 +11,7 @@ from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.wording import bands_sentence, combined_sentence, zeros_of_rig_sentence, zeros_sentence
 from mffit.points import Points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS
 
@@ -22,7 +23,8 @@ def with_remarks(
     fitted, values = found.search, found.tyre.values
     assert fitted is not None
     tyre = Simulation(values, turn_slip=config.rig.on_disc)
-    zeros_of_rig = {error.name: fitted.rig[error.name] for error in ZEROS if error.name in fitted.rig}
+    sideways = (error.name for error in ZEROS if error.shows_in(SIDEWAYS))
+    zeros_of_rig = {name: fitted.rig[name] for name in sideways if name in fitted.rig}
     bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points, zeros_of_rig)
     why = why_held(bands.unseen, points, config.tyre.side or "left") or "these sweeps do not determine it"
     note = bands_sentence(bands, fitted.held, values, why)
