@@ -29,8 +29,8 @@ class BandsByPressure:
         ""  #: the coefficient without effect in these sweeps that widens them most; empty without one
     )
     share: float = 0.0  #: its share of the variance there
-    half_on_exact_rig: float = 0.0
-    """At the pressure of most sweeps, without the errors of the rig that the fit took as absent [N]."""
+    half_of_exact_zeros: float = 0.0
+    """Half width at the pressure of most sweeps if the zeros of the rig were exactly known [N]."""
 
     @property
     def wider(self) -> bool:
@@ -81,11 +81,11 @@ def bands_by_pressure(
     held: Collection[str],
     tyre: Simulation,
     points: Points,
-    held_rig: Collection[str] = (),
+    zeros: Collection[str] = (),
 ) -> BandsByPressure:
     """The bands of a fitted tyre on a straight path.
 
-    ``held`` names the coefficients that the fit took as exact, ``held_rig`` the rig errors that it took as absent.
+    ``held`` names the coefficients that the fit took as exact, ``zeros`` the zeros of the rig that it determined with the tyre.
     """
     main = float(np.median(points.p[main_pressure(points)]))
     nominal = float(tyre.values["NOMPRES"])
@@ -94,9 +94,9 @@ def bands_by_pressure(
         sorted({float(p) for p in pressures if abs(p - main) > constants.SINGLE_PRESSURE_SPREAD * main})
     )
     at_main = _over_tested(posterior, tyre, points, (main,))
-    half, on_exact_rig = (rms(_half(at_main, one)) for one in (posterior, posterior.given(held_rig)))
+    half, exact = (rms(_half(at_main, one)) for one in (posterior, posterior.given(zeros)))
     if not others:
-        return BandsByPressure(main, half, (), 0.0, half_on_exact_rig=on_exact_rig)
+        return BandsByPressure(main, half, (), 0.0, half_of_exact_zeros=exact)
     slopes = _over_tested(posterior, tyre, points, others)
     variance = float(np.mean(_half(slopes, posterior) ** 2))
     by_held = {
@@ -113,7 +113,7 @@ def bands_by_pressure(
         float(np.sqrt(variance)),
         unseen if share > constants.WIDENING_SHARE else "",
         share,
-        on_exact_rig,
+        exact,
     )
 
 

@@ -26,10 +26,9 @@ def contradicted_priors(fitted: Fitted) -> Iterator[Contradiction]:
     """The priors set by hand that differ from the points by more than chance explains.
 
     The posterior of one number is the mean of prior and points, weighted by their information, so that the part of the points
-    follows from posterior and prior. Errors of the rig that the fit took as absent are no part of this mean; they make its
-    value of the points uncertain.
+    follows from posterior and prior.
     """
-    stderr, of_rig = fitted.on_exact_rig.stderr, fitted.u_of_held_rig
+    stderr = fitted.posterior.stderr
     for name, prior in fitted.hand.priors.items():
         if name not in fitted.values or name in fitted.at_bound:
             continue
@@ -37,7 +36,7 @@ def contradicted_priors(fitted: Fitted) -> Iterator[Contradiction]:
         if not both > (1.0 + constants.LEAST_INFORMATION_OF_POINTS) * own:
             continue
         value = (both * fitted.values[name] - own * prior.expected) / (both - own)
-        u = math.hypot((both - own) ** -0.5, of_rig[name] * both / (both - own))
+        u = (both - own) ** -0.5
         apart = abs(value - prior.expected) / math.hypot(u, prior.spread)
         if apart > constants.CONTRADICTED_PRIOR:
             yield Contradiction(name, Quantity(value, u, BY_NAME[name].unit), prior, apart)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -23,7 +22,7 @@ class Fitted:
     values: Mapping[str, float]  #: coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
-    posterior: Posterior  #: of tyre and rig, held values and held errors of the rig included
+    posterior: Posterior  #: of tyre and rig, held values included
     stderr: Mapping[str, float]
     """Standard uncertainty of every number: of the posterior, or from its 95 % interval where a bent valley makes this wider."""
     intervals: Mapping[str, tuple[float, float]]
@@ -31,8 +30,7 @@ class Fitted:
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
-    held_rig: Mapping[str, float]
-    """The same of rig errors that it took as absent. All points share them, so no sweep contradicts another because of them."""
+    held_rig: Mapping[str, float]  #: the same of rig errors that it took as absent
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
     at_limit: frozenset[str]  #: those of them that only a physical limit holds
     regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
@@ -41,17 +39,6 @@ class Fitted:
     stages: tuple[StageRecord, ...] = ()
     attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
-
-    @property
-    def on_exact_rig(self) -> Posterior:
-        """The posterior if the rig errors that the fit took as absent are absent: what the points and the priors decide."""
-        return self.posterior.given(self.held_rig)
-
-    @property
-    def u_of_held_rig(self) -> dict[str, float]:
-        """The part of every number's standard uncertainty that these rig errors cause."""
-        whole = self.posterior.stderr
-        return {n: math.sqrt(max(whole[n] ** 2 - u**2, 0.0)) for n, u in self.on_exact_rig.stderr.items()}
 
     @property
     def simulation(self) -> Simulation:

@@ -143,7 +143,7 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
-        held_rig=held_rig(config, measured, points.used_setups),
+        held_rig=held_rig(config),
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),
     )
     return _by_hand(plan, known.hand)

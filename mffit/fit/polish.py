@@ -13,7 +13,7 @@ from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.other_ends import other_ends
 from mffit.fit.plan import FitPlan
-from mffit.fit.posterior import joint, strongest_correlations, widened
+from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.profile import follow
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
@@ -49,20 +49,15 @@ def with_equally_good(fitted: Fitted) -> Fitted:
     if problem is not fitted.problem:
         moved = _fitted(problem, solution, numbers, fitted, fitted.scale)
         fitted = replace(moved, stages=fitted.stages, attempts=fitted.attempts)
-    inner = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
-    own = {name: max(u, _half_width(inner.get(name))) for name, u in fitted.on_exact_rig.stderr.items()}
-    of_rig = fitted.u_of_held_rig
-    intervals = {
-        name: widened(interval, solution.values[name], COVERAGE_FACTOR_95 * of_rig[name])
-        for name, interval in inner.items()
-    }
+    intervals = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
     stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in fitted.stderr.items()}
     return replace(
         fitted,
         intervals=intervals,
         stderr=stderr,
         rig={name: (v, stderr[name]) for name, (v, _) in fitted.rig.items()},
-        regularised=fitted.regularised | (_with_prior(numbers).keys() - _within_their_priors(own, numbers)),
+        regularised=fitted.regularised
+        | (_with_prior(numbers).keys() - _within_their_priors(stderr, numbers)),
     )
 
 
@@ -74,8 +69,8 @@ def _fitted(
     scale: Mapping[str, float],
 ) -> Fitted:
     """The record of a solution, at which ``problem`` is; ``given`` says what was held."""
-    posterior = joint(problem, solution, {**given.held, **given.held_rig})
-    stderr, own = posterior.stderr, posterior.given(given.held_rig).stderr
+    posterior = joint(problem, solution, {**given.held, **given.held_rig}).without(given.held_rig)
+    stderr = posterior.stderr
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
@@ -89,7 +84,7 @@ def _fitted(
         held_rig=given.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
         at_limit=solution.at_limit - solution.at_bound,
-        regularised=frozenset(_with_prior(numbers)) - _within_their_priors(own, numbers),
+        regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
         scale=scale,
         cost=solution.cost,
         hand=given.hand,

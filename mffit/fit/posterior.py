@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -42,6 +41,11 @@ class Posterior(Brief):
         across = slope @ self.covariance
         own = across @ slope.T + beside.covariance[np.ix_(new, new)]
         return Posterior((*self.names, *names), np.block([[self.covariance, across.T], [across, own]]))
+
+    def without(self, names: Collection[str]) -> Posterior:
+        """The posterior of the other numbers, which contains the uncertainty of these."""
+        rows = [i for i, name in enumerate(self.names) if name not in names]
+        return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)])
 
     def given(self, names: Collection[str]) -> Posterior:
         """The posterior of the other numbers if these were exactly known."""
@@ -100,12 +104,6 @@ def beside_held(
     known = np.diag(np.array(list(held.values())) ** 2)
     whole = np.block([[covariance + shift @ known @ shift.T, shift @ known], [known @ shift.T, known]])
     return Posterior((*free, *held), whole)
-
-
-def widened(interval: tuple[float, float], value: float, reach: float) -> tuple[float, float]:
-    """The 95 % interval of a number with one more independent error, which moves its value by ``reach`` to either side."""
-    low, high = interval
-    return value - math.hypot(value - low, reach), value + math.hypot(high - value, reach)
 
 
 def spread_through(slopes: np.ndarray, covariance: np.ndarray) -> np.ndarray:

@@ -11,7 +11,9 @@ from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.wording import bands_sentence, combined_sentence, zeros_of_rig_sentence, zeros_sentence
 from mffit.points import Points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
+from mffit.rig_errors import ZEROS
 
 
 def with_remarks(
@@ -21,14 +23,16 @@ def with_remarks(
     fitted, values = found.search, found.tyre.values
     assert fitted is not None
     tyre = Simulation(values, turn_slip=config.rig.on_disc)
-    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points, fitted.held_rig)
+    sideways = (error.name for error in ZEROS if error.shows_in(SIDEWAYS))
+    zeros_of_rig = {name: fitted.rig[name] for name in sideways if name in fitted.rig}
+    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points, zeros_of_rig)
     why = why_held(bands.unseen, points, config.tyre.side or "left") or "these sweeps do not determine it"
     note = bands_sentence(bands, fitted.held, values, why)
     moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
     warned = zeros is not None and zeros.contradicted and from_base
     combined = band_of_combined(fitted.posterior, tyre, points)
     between = combined_sentence(combined) if combined is not None else ""
-    of_rig = zeros_of_rig_sentence(fitted.held_rig, bands)
+    of_rig = zeros_of_rig_sentence(zeros_of_rig, bands) if zeros_of_rig and not config.rig.on_disc else ""
     remarks = [note, between, "" if warned else moved, of_rig]
     return replace(
         found,

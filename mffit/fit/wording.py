@@ -19,7 +19,7 @@ from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
-from mffit.rig_errors import WORDS, ZEROS
+from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity
@@ -274,21 +274,21 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
     )
 
 
-def zeros_of_rig_sentence(held: Mapping[str, float], bands: BandsByPressure) -> str:
-    """Which coefficients contain the zeros of the rig, how much of the bands this is, and what helps; empty without such zeros.
+def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: BandsByPressure) -> str:
+    """What the zeros of the rig on a flat track share with the tyre, how much of the bands this is, and what helps.
 
-    ``held`` has the standard uncertainties of rig errors that the fit took as absent.
+    ``zeros`` are the fitted ones with their standard uncertainties.
     """
-    zeros = [
-        f"{held[error.name]:.2g} {error.unit} ({WORDS[error.name]})" for error in ZEROS if error.name in held
-    ]
-    if not zeros:
-        return ""
+    found = ", ".join(
+        f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
+        for name, (value, u) in zeros.items()
+    )
     return (
-        "on a flat track with one set-up, ply-steer, conicity and residual torque (PHY, PVY, QHZ, QDZ6, QDZ7) contain the zeros of "
-        f"the rig: standard uncertainties of {', '.join(zeros)} are part of their errors and of the bands, which for Fy are "
-        f"{bands.half:.2g} N wide to either side (rms) instead of {bands.half_on_exact_rig:.2g} N; if the rig is better, state it "
-        "with smaller u_ keys in [rig], and sweeps of further set-ups (key setup) separate the zeros from the tyre"
+        f"on a flat track with one set-up, zeros of the rig ({found}) look almost like ply-steer, conicity and residual torque: "
+        "the fit divides their sum by what [rig] declares, and the coefficients PHY, PVY, QHZ, QDZ6 and QDZ7 are uncertain by "
+        f"the rest. The 95 % bands of Fy are +-{bands.half:.2g} N (rms), and would be +-{bands.half_of_exact_zeros:.2g} N with "
+        "exact zeros. Sweeps of the tyre turned on its rim (mount) separate conicity and residual torque from the zeros of "
+        "camber, Fy and Mz; further set-ups (setup) average all zeros, and smaller u_ keys in [rig] state a better rig"
     )
 
 

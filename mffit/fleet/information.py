@@ -26,8 +26,7 @@ class Information:
     To first order around the build's solution.
     """
 
-    names: tuple[str, ...]
-    """Free coefficients and rig errors, and those that the build held with a known spread: tyres on one rig may share them."""
+    names: tuple[str, ...]  #: free coefficients and rig errors
     values: np.ndarray  #: (k,) solution of the build
     matrix: np.ndarray  #: (k, k) of the points alone
     vector: np.ndarray  #: (k,)
@@ -52,7 +51,6 @@ def information(fitted: Fitted) -> Information | None:
             prior.setdefault(name, (value, fitted.held.get(name, math.inf)))
     if "PECP2" in prior and "PECP2" not in {n.name for n in fitted.numbers}:
         prior["PECP2"] = (0.0, scatter("PECP2", 0.0, from_base=False, curved=False))
-    prior |= {name: (fitted.problem.value(name), u) for name, u in fitted.held_rig.items()}
     for name in MEASURED:
         if name in prior:
             prior[name] = (prior[name][0], math.inf)

@@ -180,7 +180,7 @@ class Knowledge:
             tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)])),
             self.problem.channels,
         )
-        found = {n.name: n.spread for n in numbers} | held_rig(config, self.measured, self.points.used_setups)
+        found = {n.name: n.spread for n in numbers} | held_rig(config)
         return {
             **self.spread,
             **new,

@@ -1,10 +1,10 @@
 """Does a build with drive, brake and combined slip find the truth? `nice python tests/studies/slip_study.py 60`.
 
-Draws tyres around a car's and a motorcycle's file, rigs with all their errors from the declared uncertainties, that of the zero of
-Mz from its usual size, and the noise of every channel; builds each campaign, without a base file or with one up to 30 % off, and
+Draws tyres around a car's and a motorcycle's file, rigs with all errors from the declared uncertainties, the zero of Mz from
+its usual size, and the noise of every channel; builds each campaign, without a base file or with one up to 30 % off, and
 prints the tables of docs/recovery.md: misfit over noise, forces against the noise-free truth over the tested range, coverage of
 coefficients and bands, and the worst draws with their seeds. With ``--exact`` the zeros of the angles and of Fy and Mz are right,
-which on a flat track are not separable from ply-steer, conicity and residual torque.
+which on a flat track are hardly separable from ply-steer, conicity and residual torque.
 """
 
 from __future__ import annotations

@@ -42,9 +42,8 @@ def without_runaways(fitted: Fitted, plan: FitPlan, choice: NuisanceChoice) -> F
 def _pushed(fitted: Fitted, plan: FitPlan) -> list[str]:
     """Coefficients at a bound of the table, the one first whose return costs least."""
     own = set(plan.free) - plan.hand.bounded.keys()
-    stderr = fitted.on_exact_rig.stderr
     cost = {
-        n.name: abs(fitted.values[n.name] - n.expected) / stderr[n.name]
+        n.name: abs(fitted.values[n.name] - n.expected) / fitted.stderr[n.name]
         for n in fitted.numbers
         if n.name in own and touches(fitted.values[n.name], n.lower, n.upper)
     }

@@ -73,7 +73,7 @@ def at_temperature(
 def _moved(found: NuisanceFit) -> dict[str, tuple[float, float, float]]:
     """Coefficients that the temperature terms moved beyond their standard errors."""
     plain, full = found.plain, found.full
-    errors = full.on_exact_rig.stderr
+    errors = full.posterior.stderr
     moved = {
         name: (plain.values[name], value, errors[name])
         for name, value in full.values.items()

@@ -16,7 +16,6 @@ from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish, with_equally_good
-from mffit.fit.posterior import widened
 from mffit.fit.problem import FitProblem
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
@@ -134,9 +133,10 @@ def _doubted(plain: Fitted, full: Fitted) -> Fitted:
     shift = {name: plain.values[name] - full.values[name] for name in names if name in full.values}
     reach = {name: COVERAGE_FACTOR_95 * size for name, size in shift.items()}
     intervals = {
-        name: widened(interval, plain.values[name], reach[name])
-        for name, interval in plain.intervals.items()
+        name: (value - math.hypot(value - low, reach[name]), value + math.hypot(high - value, reach[name]))
+        for name, (low, high) in plain.intervals.items()
         if name in reach
+        for value in [plain.values[name]]
     }
     return replace(
         plain,

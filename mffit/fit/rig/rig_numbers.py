@@ -48,8 +48,8 @@ def rig_numbers(
 ) -> tuple[FreeNumber, ...]:
     """The declared rig errors with their priors, as far as they show in the ``channels`` of the fit.
 
-    With one set-up on a flat track, or on a disc without zeros, those of Fy and Mz and of the angles are left out: ply-steer and
-    conicity are free there and absorb zeros that are off (see :func:`held_rig`). With several ``setups``, every one has zeros of its own, and where
+    On a disc without zeros, those of Fy and Mz and of the angles are left out. On a flat track their priors divide what they have
+    in common with ply-steer, conicity and residual torque. With several ``setups``, every one has zeros of its own, and where
     repeated set-ups scatter more than declared, that scatter is the prior.
     """
     others = [
@@ -61,22 +61,19 @@ def rig_numbers(
     return (*_sideways(config, measured, setups), *others)
 
 
-def held_rig(config: Any, measured: Any, setups: Sequence[str] = ()) -> dict[str, float]:
-    """Standard uncertainty of the errors of a flat track that no reading separates from coefficients, by name.
+def held_rig(config: Any) -> dict[str, float]:
+    """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients, and that are no zeros.
 
     The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: a skew of the camber
-    axis is camber stiffness, and zeros are ply-steer, conicity and residual torque. Several ``setups`` separate the zeros, which
-    are numbers of the fit then; on a disc turn slip separates all of them.
+    axis is camber stiffness. On a disc, turn slip separates them, and they are numbers of the fit.
     """
     if config.rig.on_disc:
         return {}
-    zeros = {error.name for error in ZEROS}
-    found = _declared_sideways(config, measured, config.tyre.nominal_load)
-    if len(setups) > 1:
-        found = {name: prior for name, prior in found.items() if name not in zeros}
-    else:
-        found |= _undeclared_zeros()
-    return {name: prior.u for name, prior in found.items()}
+    return {
+        name: prior.u
+        for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
+        if prior.u > 0.0 and not BY_NAME[name].of_setup and not _of_other_channels(name)
+    }
 
 
 def _of_other_channels(name: str) -> bool:
@@ -88,14 +85,20 @@ def _sideways(config: Any, measured: Any, setups: Sequence[str]) -> tuple[FreeNu
     """The numbers of the errors that show in Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
-    if not several and not spin:
+    if config.rig.on_disc and not several and not spin:
         return ()
-    load = measured.F_phit_load if spin else config.tyre.nominal_load
-    declared = _declared_sideways(config, measured, load)
+    usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
+    declared = {
+        name: prior
+        for name, prior in declared_rig(
+            config.rig, measured.C_alpha.value if measured.C_alpha else usual
+        ).items()
+        if not _of_other_channels(name)
+    }
     if not spin:
         declared = {name: prior for name, prior in declared.items() if BY_NAME[name].of_setup}
-    if several:
-        return _of_setups(declared, measured, setups)
+    if several or not config.rig.on_disc:
+        return _of_setups(declared, measured, setups if several else ("",))
     if measured.misaligned and measured.alpha_M is not None:
         # A zero beyond the declared uncertainty shows that the declaration was too tight.
         value, u = declared.get("alpha_0_deg", Declaration(0.0, 0.0))
@@ -107,26 +110,18 @@ def _sideways(config: Any, measured: Any, setups: Sequence[str]) -> tuple[FreeNu
     return tuple(_number(name, prior) for name, prior in declared.items())
 
 
-def _declared_sideways(config: Any, measured: Any, load: float) -> dict[str, Declaration]:
-    """The declared errors that show in Fy and Mz; without a measured cornering stiffness, the usual one at a load [N]."""
-    C_alpha = measured.C_alpha.value if measured.C_alpha else USUAL_CORNERING_STIFFNESS * load
-    declared = declared_rig(config.rig, C_alpha)
-    return {name: prior for name, prior in declared.items() if not _of_other_channels(name)}
-
-
-def _undeclared_zeros() -> dict[str, Declaration]:
-    """Zeros that no key of [rig] declares, with their usual size: that of Mz."""
-    return {error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared}
-
-
 def _of_setups(
     declared: Mapping[str, Declaration], measured: Any, setups: Sequence[str]
 ) -> tuple[FreeNumber, ...]:
-    """The numbers of a rig that was set up several times."""
+    """The numbers of a rig that was set up several times, or once with the name ""."""
     zeros = {error.name for error in ZEROS}
+    # No key of [rig] declares the zero of Mz. On a disc with one set-up it goes into the residual torque.
+    undeclared = {
+        error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared
+    }
     found = [_number(name, prior) for name, prior in declared.items() if name not in zeros]
     scatter = measured.setup_scatter
-    for name, (value, u) in {**declared, **_undeclared_zeros()}.items():
+    for name, (value, u) in {**declared, **undeclared}.items():
         if name not in zeros:
             continue
         if scatter is not None and name == "F0_N":

@@ -361,7 +361,7 @@ def _bands(found: BandsByPressure, combined: BandOfCombined | None) -> dict[str,
     return {
         "pressure_kPa": found.main / 1e3,
         "Fy_N": found.half,
-        "Fy_on_exact_rig_N": found.half_on_exact_rig,
+        "Fy_exact_zeros_N": found.half_of_exact_zeros,
         "other_pressures_kPa": [p / 1e3 for p in found.others],
         "other_Fy_N": found.half_of_others if found.others else None,
         "unseen": found.unseen or None,

@@ -46,8 +46,9 @@ def test_a_stage_of_a_channel_brings_it_into_the_fit_if_it_was_measured(points):
 
 
 def test_the_zero_of_a_fitted_channel_is_free_on_a_flat_track_and_for_every_set_up():
-    assert rig_numbers(CONFIG, MEASURED) == ()
-    (number,) = rig_numbers(CONFIG, MEASURED, (), ("Fy", "Mx", "Mz"))
+    sideways = {n.name for n in rig_numbers(CONFIG, MEASURED)}
+    assert {"F0_N", "M0_Nm"} <= sideways
+    (number,) = (n for n in rig_numbers(CONFIG, MEASURED, (), ("Fy", "Mx", "Mz")) if n.name not in sideways)
     assert (number.name, number.start, number.spread) == ("Mx0_Nm", 0.0, 50.0)
     several = {n.name for n in rig_numbers(CONFIG, MEASURED, ("A", "B"), ("Fy", "Mx", "Mz"))}
     assert {"Mx0_Nm@A", "Mx0_Nm@B", "F0_N@A"} <= several

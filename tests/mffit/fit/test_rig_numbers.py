@@ -7,12 +7,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import small_rigs
 
 from mffit import config
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.plan import fit_plan
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros, rig_numbers
 from mffit.points import make_points
+from mffit.rig import Simulation
 from tir import Quantity
 from tir.parameters import TABLE
 
@@ -20,6 +22,7 @@ DOUBTS = {
     "u_loadcell_offset_N": 8.0, "u_camber_alignment_deg": 0.3, "u_slip_alignment_N": 20.0, "backlash_deg": 0.2,
     "u_backlash_deg": 0.05, "u_camber_skew_deg": 0.15,
 }  # fmt: skip
+AT_ZERO = make_points(0.0, 0.0, 1400.0, p=250e3, V=6.0, phi_t=0.0)
 ALPHA_M = Quantity(math.radians(0.7), math.radians(0.02), "rad")
 
 
@@ -140,10 +143,29 @@ def test_the_misalignment_of_a_set_up_is_its_own():
     assert found["alpha_0_deg@A"] == pytest.approx(math.degrees(20.0 / 18000.0))
 
 
-def test_a_straight_path_and_a_disc_without_zeros_have_none():
+def test_a_straight_path_has_its_zeros_and_a_disc_without_any_has_none():
     flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
-    assert rig_numbers(flat, direct()) == ()
+    found = {name: n.spread for name, n in by_name(flat, direct(setup_scatter=None, nominal=None)).items()}
+    angle = pytest.approx(math.degrees(20.0 / 18000.0))
+    assert found == {"F0_N": 8.0, "gamma_0_deg": 0.3, "alpha_0_deg": angle, "M0_Nm": 1.0}
     assert rig_numbers(rig(), direct(per_load=(SimpleNamespace(F_phit=None),))) == ()
+
+
+def test_on_a_flat_track_the_uncertainty_of_shifts_contains_the_zeros_of_the_rig(tmp_path):
+    """All four are half as large again as declared; without them among the errors PHY1 and QDZ6 would be 8 and 20 u away."""
+    off = {"alpha_0_deg": 0.11, "gamma_0_deg": 0.75, "F0_N": 15.0, "M0_Nm": 1.5}
+    build, true = small_rigs.built(small_rigs.flat(faults=off), tmp_path), small_rigs.truth()
+    assert build.trusted
+    for name in ("PHY1", "PVY1", "PVY2", "QHZ1", "QDZ6", "QDZ7"):
+        row = build.fit.coefficients[name]
+        assert abs(row.value - true[name]) < 2.5 * row.stderr
+    for name, size in off.items():
+        value, u = build.fit.rig[name]
+        assert abs(value - size) < 2.5 * u
+    assert any("ply-steer, conicity and residual torque" in text for text in build.fit.explanations)
+    assert build.fit.bands.half_of_exact_zeros < build.fit.bands.half
+    Fy = build.fit.posterior.band(Simulation.of(build.fit.tyre), AT_ZERO).Fy
+    assert abs(build.fit.tyre(1400.0, Vx=6.0).Fy - true(1400.0, Vx=6.0).Fy) < 1.3 * Fy[0]
 
 
 def test_zeros_show_the_rigs_errors_without_camber_sweeps_too():
