@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
+from mffit.fit.coverage import side_run
 from mffit.fit.posterior import Posterior, spread_through
 from mffit.fit.ranges import sideslips_with_slip, tested_ranges
 from mffit.points import Points, levels, main_pressure, make_points
@@ -50,6 +51,30 @@ class BandOfCombined:
     def wider(self) -> bool:
         """Whether the fit knows Fx clearly less well between the sideslips than at them."""
         return self.half_between > constants.WIDER_BANDS * self.half_at
+
+
+@dataclass(frozen=True, slots=True)
+class BandOfOtherSide:
+    """Rms half width of the 95 % band of Fy over the tested loads, where sideslip was run to one side only."""
+
+    sideslip: float  #: the largest that was run [rad]
+    half: float  #: there [N]
+    half_opposite: float  #: at the same angle to the other side [N]
+
+
+def band_of_other_side(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfOtherSide | None:
+    """The band of Fy at the largest sideslip and opposite to it; None if both sides were run, and on a curved path."""
+    if not side_run(points) or np.any(points.phi_t):
+        return None
+    alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
+    tested = tested_ranges(points)
+    Fz = np.linspace(tested["FZMIN"], tested["FZMAX"], int(constants.BAND_GRID[0]))
+    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
+    half, opposite = (
+        rms(posterior.band(tyre, make_points(a, 0.0, Fz, p=p, V=V, phi_t=0.0), ("Fy",)).Fy)
+        for a in (alpha, -alpha)
+    )
+    return BandOfOtherSide(alpha, half, opposite)
 
 
 def band_of_combined(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfCombined | None:

@@ -5,11 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from mffit.fit.bands import band_of_combined, bands_by_pressure
+from mffit.fit.bands import band_of_combined, band_of_other_side, bands_by_pressure
 from mffit.fit.coverage import why_held
 from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import TurningZeros
-from mffit.fit.wording import bands_sentence, combined_sentence, zeros_of_rig_sentence, zeros_sentence
+from mffit.fit.wording import (
+    bands_sentence,
+    combined_sentence,
+    other_side_sentence,
+    zeros_of_rig_sentence,
+    zeros_sentence,
+)
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
@@ -32,8 +38,10 @@ def with_remarks(
     warned = zeros is not None and zeros.contradicted and from_base
     combined = band_of_combined(fitted.posterior, tyre, points)
     between = combined_sentence(combined) if combined is not None else ""
+    opposite = band_of_other_side(fitted.posterior, tyre, points)
+    other = other_side_sentence(opposite) if opposite is not None else ""
     of_rig = zeros_of_rig_sentence(zeros_of_rig, bands) if zeros_of_rig and not config.rig.on_disc else ""
-    remarks = [note, between, "" if warned else moved, of_rig]
+    remarks = [note, between, other, "" if warned else moved, of_rig]
     return replace(
         found,
         bands=bands,

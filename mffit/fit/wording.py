@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.bands import BandOfCombined, BandsByPressure
+from mffit.fit.bands import BandOfCombined, BandOfOtherSide, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
@@ -189,6 +189,16 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
         return f"at sideslips of {degrees[0]:g} to {degrees[-1]:g} deg"
     *others, last = (f"{alpha:g}" for alpha in degrees)
     return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
+
+
+def other_side_sentence(band: BandOfOtherSide) -> str:
+    """How well the side force is known on the side to which no sideslip was run, and what to run."""
+    alpha = round(float(np.degrees(band.sideslip)), 1)
+    return (
+        "sideslip was run to one side only: the file takes the tyre as symmetric where only both sides would show more; "
+        f"the 95 % band of Fy is +-{band.half:.0f} N at {alpha:.1f} deg (rms over load), and +-{band.half_opposite:.0f} N at "
+        f"{-alpha:.1f} deg; sweeps of sideslip of the other sign would narrow it"
+    )
 
 
 def combined_sentence(band: BandOfCombined) -> str:

@@ -66,7 +66,7 @@ class SideDraw(Draw):
     at_bound: tuple[str, ...] = ()
 
 
-def one(seed: int, off: float) -> SideDraw:
+def one(seed: int, off: float, size: float) -> SideDraw:
     """Draw, simulate and build one campaign."""
     rng = np.random.default_rng(17_000 + seed)
     vehicle = list(VEHICLES.values())[seed % 2]
@@ -74,7 +74,7 @@ def one(seed: int, off: float) -> SideDraw:
     true = _drawn(tir.read(vehicle.true).replace(**UNSETTLED, LONGVL=SPEED), off, rng)
     base = _drawn(true, 0.3, rng) if kind.base else None
     sizes = {n: BY_NAME[n].side_spread or ASYMMETRY * float(true[n]) for n in STAGED if n in ODD_TERMS}
-    true = true.replace(**{n: size * rng.standard_normal() for n, size in sizes.items()})
+    true = true.replace(**{n: size * x * rng.standard_normal() for n, x in sizes.items()})
     content = {
         "faults": {"draw": True, **RIGHT},
         "noise": dict(vehicle.noise),
@@ -166,10 +166,11 @@ def main() -> None:
     ask.add_argument("builds", type=int, nargs="?", default=60)
     ask.add_argument("--first", type=int, default=0)
     ask.add_argument("--off", type=float, default=0.12, help="largest relative distance of a coefficient")
+    ask.add_argument("--size", type=float, default=1.0, help="factor on the asymmetries")
     given = ask.parse_args()
     draws = []
     for seed in range(given.first, given.first + given.builds):
-        draws.append(one(seed, given.off))
+        draws.append(one(seed, given.off, given.size))
         print(f"seed {seed} {draws[-1].seconds:.1f} s", file=sys.stderr, flush=True)
     print("\n".join(lines(draws)))
 

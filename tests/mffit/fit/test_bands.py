@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 import small_rigs
 
-from mffit.fit.bands import BandOfCombined, BandsByPressure, band_of_combined, bands_by_pressure
+from mffit.fit.bands import (
+    BandOfCombined,
+    BandsByPressure,
+    band_of_combined,
+    band_of_other_side,
+    bands_by_pressure,
+)
 from mffit.fit.posterior import Posterior
-from mffit.fit.wording import bands_sentence, combined_sentence
+from mffit.fit.wording import bands_sentence, combined_sentence, other_side_sentence
 from mffit.points import make_points
 from mffit.rig import Simulation
 from tests.mffit.fit import combined_programme as belt
@@ -96,3 +102,29 @@ def test_what_one_sideslip_leaves_open_is_said_with_both_bands():
     assert "+-61 N at 2.0 deg" in said
     assert "+-9 N at 4.0 deg" in said
     assert combined_sentence(BandOfCombined(np.radians(4.0), 9.0, 10.0)) == ""
+
+
+def test_the_side_that_was_not_run_shares_what_friction_and_conicity_leave_open():
+    """Friction and conicity that make up for each other far out on the tested side add up on the other one."""
+    tyre = small_rigs.truth()
+    points = make_points(
+        np.linspace(0.0, 0.15, 16), 0.0, np.tile([900.0, 1400.0], 8), p=250e3, V=10.0, phi_t=0.0
+    )
+    far = {
+        name: tyre.replace(**{name: tyre[name] + 1e-4})(1400.0, 0.15, phi_t=0.0, Vx=10.0, p=250e3).Fy
+        for name in ("PVY1", "PDY1")
+    }
+    still = tyre(1400.0, 0.15, phi_t=0.0, Vx=10.0, p=250e3).Fy
+    u = 0.045
+    together = np.array([u, -u * (far["PVY1"] - still) / (far["PDY1"] - still)])
+    posterior = Posterior(("PVY1", "PDY1"), np.outer(together, together))
+    simulation = Simulation.of(tyre, turn_slip=False)
+    band = band_of_other_side(posterior, simulation, points)
+    assert band is not None
+    assert band.half < 0.1 * band.half_opposite
+    assert band.half_opposite == pytest.approx(
+        2 * 1.96 * u * np.sqrt((900.0**2 + 1150.0**2 + 1400.0**2) / 3), rel=0.1
+    )
+    assert f"+-{band.half_opposite:.0f} N at -8.6 deg" in other_side_sentence(band)
+    both = points.replace(alpha=np.linspace(-0.1, 0.1, 16))
+    assert band_of_other_side(posterior, simulation, both) is None

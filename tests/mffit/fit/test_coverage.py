@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.fit.coverage import coverage, design
+from mffit.fit.priors import scatter
 from mffit.fit.stages import ODD_TERMS, SMALL_ON_A_DISC, WITH_CAMBER
 from mffit.points import Points, make_points
 from tir.parameters import TABLE
@@ -104,6 +105,14 @@ def test_a_tyre_turned_on_its_rim_shows_its_conicity_from_one_side():
     turned = one.replace(mount=np.where(one.p < 240e3, -1, 1))
     assert {"QHZ1", "QEZ4"} <= set(held(turned)), "ply-steer stays as it is when a tyre is turned on its rim"
     assert not {"PVY1", "PVY2", "PEY3"} & set(held(turned))
+
+
+def test_unseen_conicity_is_as_large_as_among_tyres_whatever_the_base_file_says():
+    """Conicity is one of the single tyre; on a disc it is known to be small."""
+    common = {"expected": 0.012, "from_base": True}
+    assert scatter("PVY1", **common, curved=False, unseen_side=True) == pytest.approx(0.045)
+    assert scatter("PVY1", **common, curved=False) == pytest.approx(0.015)
+    assert scatter("PVY1", **common, curved=True, unseen_side=True) == pytest.approx(0.003)
 
 
 def test_a_disc_keeps_its_small_prior_of_conicity():
