@@ -27,9 +27,10 @@ class Predicted:
         """Sum over groups and channels."""
         return float(np.sum(self.chi2))
 
-    def falls(self, other: Predicted) -> float:
-        """By how many standard errors over the groups ``other`` predicts better."""
-        return _z(np.sum(self.chi2 - other.chi2, axis=1))
+    def falls(self, other: Predicted, channel: int | None = None) -> float:
+        """By how many standard errors over the groups ``other`` predicts better, in all channels or in one by number."""
+        change = self.chi2 - other.chi2
+        return _z(np.sum(change, axis=1) if channel is None else change[:, channel])
 
     def raised(
         self, other: Predicted, channels: Collection[int] | None = None, loss: np.ndarray | float = 0.0

@@ -110,6 +110,7 @@ def judged(
     """Compare a chosen effect with its absence and with others in its place.
 
     What is left in one channel says nothing against an effect that explains another: every channel has formulae of its own.
+    So a rival must be no worse in the channel that the effect explains most, too.
     """
     without, present = prediction.without(chosen, effect), prediction.of(chosen)
     removed = np.maximum(np.sum(prediction.of(without).chi2 - present.chi2, axis=0), 0.0)
@@ -119,6 +120,6 @@ def judged(
     others = [e for e in rivals if e not in chosen.effects]
     for rival, groups in prediction.problem.columns(without.state, others).items():
         near = min((prediction.of(without, columns) for columns in groups), key=lambda p: p.total)
-        if near.falls(present) < constants.WORSE_PREDICTION:
+        if max(near.falls(present), near.falls(present, most)) < constants.WORSE_PREDICTION:
             tied.append(prediction.joint.fit((*without.effects, rival), without.numbers))
     return Judged(taken / max(taken + left, 1e-9), tuple(tied))

@@ -111,3 +111,10 @@ def test_the_share_is_that_of_the_channel_that_an_effect_explains_most():
     found = judged(predictions, predictions.fit((A,)), A, (A,))
     assert found.confidence == pytest.approx(0.75)
     assert found.tied == ()
+
+
+def test_an_effect_is_tied_with_those_that_explain_the_same_channel():
+    """All three lower the sum as much, b in the other channel."""
+    predictions = Tabulated(SWEEPS, _=(500.0, 500.0), a=(500.0, 250.0), b=(250.0, 500.0), c=(500.0, 250.0))
+    found = judged(predictions, predictions.fit((A,)), A, (A, B, C))
+    assert [tied.effects for tied in found.tied] == [(C,)]

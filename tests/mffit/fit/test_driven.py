@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mffit.diagnosis.one_step import best_effect
+from mffit.diagnosis.remainder import remainder
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
 from mffit.fit.driven_start import driven_starts, peak_curvature
@@ -44,6 +46,23 @@ def test_the_errors_of_the_rig_in_mx_are_recovered(found):
         value, u = found.rig[name]
         assert value == pytest.approx(true, abs=4.0 * u)
     assert found.rig["crosstalk_Fx_Mx_m"][1] < 1e-4
+
+
+def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
+    """At the same coefficients with a rig without it."""
+    fit, name = found.search, "crosstalk_Fx_Mx_m"
+    unaware = replace(
+        fit, problem=fit.problem.with_values({name: 0.0}), numbers=[n for n in fit.numbers if n.name != name]
+    )
+    best = best_effect(remainder(unaware))
+    assert best.best.effect.id == "crosstalk-fx-mx"
+    assert best.significant
+    assert not best.rivals
+    value, u = best.best.numbers[name]
+    assert value == pytest.approx(belt.FX_INTO_MX, abs=4.0 * u)
+    after = best_effect(remainder(fit))
+    assert after.best.effect.id != "crosstalk-fx-mx"
+    assert not after.significant
 
 
 def test_the_forces_of_the_tyre_are_recovered_over_the_tested_range(found):
