@@ -340,6 +340,13 @@ RIG_ERROR_REACH = Real(
     8.0, "-", "Standard uncertainties that a rig error may move; beyond them the declaration is wrong."
 )
 
+FLAT_TRACK_ZERO_REACH = Real(
+    3.0,
+    "-",
+    "Standard uncertainties that a zero of a flat track with one set-up may move. Ply-steer and conicity take up a larger one; "
+    "beyond it, what looks like a zero is misfit of the formula that follows the sweeps.",
+)
+
 LEAST_CONICITY = Real(
     1e-5, "-", "Smallest prior standard deviation of PVY1, where [rig] declares none: the fit divides by it."
 )

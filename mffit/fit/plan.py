@@ -112,7 +112,8 @@ def fit_plan(
     """
     cover = coverage(points, config.tyre.side or "left", known.hand.held, predicting)
     channels = fitted_channels(cover, points)
-    rig = rig_numbers(config, measured, points.used_setups, channels)
+    turned = len(np.unique(points.mount)) > 1
+    rig = rig_numbers(config, measured, points.used_setups, channels, turned=turned)
     staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
     unseen = {name for row in cover for name in row.held if side_run(points)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)), unseen=unseen)
@@ -143,7 +144,7 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
-        held_rig=held_rig(config),
+        held_rig=held_rig(config, points.used_setups, turned=turned),
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),
     )
     return _by_hand(plan, known.hand)

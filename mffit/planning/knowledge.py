@@ -48,6 +48,7 @@ class Knowledge:
         self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
         self.spread = {n.name: n.spread for n in search.numbers} | {**search.held, **search.held_rig}
+        self._held_rig = search.held_rig.keys()
         self._unseen = self._spread_of_unseen(found)
         self.spread = self._unseen | self.spread
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
@@ -174,15 +175,16 @@ class Knowledge:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
         # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
         misaligned = alignment_verdict(config, row).beyond
-        numbers = rig_numbers(
-            config,
-            replace(self.measured, nominal=row, misaligned=misaligned),
-            tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)])),
-            self.problem.channels,
-        )
-        found = {n.name: n.spread for n in numbers} | held_rig(config)
+        setups = tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)]))
+        mounts = [self.points.mount, *(run.points.mount for run in runs if run.points is not None)]
+        turned = len(np.unique(np.concatenate(mounts))) > 1
+        measured = replace(self.measured, nominal=row, misaligned=misaligned)
+        numbers = rig_numbers(config, measured, setups, self.problem.channels, turned=turned)
+        held = held_rig(config, setups, turned=turned)
+        found = {n.name: n.spread for n in numbers} | held
+        separated = self._held_rig - held.keys()
         return {
-            **self.spread,
+            **{name: u for name, u in self.spread.items() if name not in separated},
             **new,
             **{name: u for name, u in found.items() if name in (*self.spread, *new)},
         }

@@ -15,6 +15,7 @@ from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
 SIDESLIP_ZERO = "alpha_0_deg"
+CAMBER_ZERO = "gamma_0_deg"
 
 
 def known_faults(config: Any, measured: Any, setups: Sequence[str] = ()) -> Faults:
@@ -44,13 +45,19 @@ def _misaligned(measured: Any, setup: str) -> float:
 
 
 def rig_numbers(
-    config: Any, measured: Any, setups: Sequence[str] = (), channels: Collection[str] = SIDEWAYS
+    config: Any,
+    measured: Any,
+    setups: Sequence[str] = (),
+    channels: Collection[str] = SIDEWAYS,
+    *,
+    turned: bool = False,
 ) -> tuple[FreeNumber, ...]:
     """The declared rig errors with their priors, as far as they show in the ``channels`` of the fit.
 
     On a disc without zeros, those of Fy and Mz and of the angles are left out. On a flat track their priors divide what they have
-    in common with ply-steer, conicity and residual torque. With several ``setups``, every one has zeros of its own, and where
-    repeated set-ups scatter more than declared, that scatter is the prior.
+    in common with ply-steer, conicity and residual torque; the camber zero is held (see :func:`held_rig`) unless the tyre was
+    also run ``turned`` on its rim. With several ``setups``, every one has zeros of its own, and where repeated set-ups scatter
+    more than declared, that scatter is the prior.
     """
     others = [
         _number(name, prior, setup)
@@ -58,21 +65,25 @@ def rig_numbers(
         if _of_other_channels(name) and BY_NAME[name].shows_in(channels)
         for setup in (setups if len(setups) > 1 else ("",))
     ]
-    return (*_sideways(config, measured, setups), *others)
+    return (*_sideways(config, measured, setups, turned), *others)
 
 
-def held_rig(config: Any) -> dict[str, float]:
-    """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients, and that are no zeros.
+def held_rig(config: Any, setups: Sequence[str] = (), *, turned: bool = False) -> dict[str, float]:
+    """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients.
 
     The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: a skew of the camber
-    axis is camber stiffness. On a disc, turn slip separates them, and they are numbers of the fit.
+    axis is camber stiffness. So is most of a camber zero; only the square of camber tells them apart, of which the formula of a
+    real tyre is not sure enough, so that misfit would look like a zero of degrees. Several ``setups`` or a tyre ``turned`` on its
+    rim separate it, and on a disc turn slip separates both; then they are numbers of the fit.
     """
     if config.rig.on_disc:
         return {}
     return {
         name: prior.u
         for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
-        if prior.u > 0.0 and not BY_NAME[name].of_setup and not _of_other_channels(name)
+        if prior.u > 0.0
+        and not _of_other_channels(name)
+        and (not BY_NAME[name].of_setup or (name == CAMBER_ZERO and len(setups) < 2 and not turned))
     }
 
 
@@ -81,7 +92,7 @@ def _of_other_channels(name: str) -> bool:
     return not BY_NAME[name].shows_in(SIDEWAYS)
 
 
-def _sideways(config: Any, measured: Any, setups: Sequence[str]) -> tuple[FreeNumber, ...]:
+def _sideways(config: Any, measured: Any, setups: Sequence[str], turned: bool) -> tuple[FreeNumber, ...]:
     """The numbers of the errors that show in Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
@@ -97,8 +108,12 @@ def _sideways(config: Any, measured: Any, setups: Sequence[str]) -> tuple[FreeNu
     }
     if not spin:
         declared = {name: prior for name, prior in declared.items() if BY_NAME[name].of_setup}
-    if several or not config.rig.on_disc:
-        return _of_setups(declared, measured, setups if several else ("",))
+    if not several and not config.rig.on_disc:
+        if not turned:
+            declared.pop(CAMBER_ZERO, None)
+        return _of_setups(declared, measured, ("",))
+    if several:
+        return _of_setups(declared, measured, setups)
     if measured.misaligned and measured.alpha_M is not None:
         # A zero beyond the declared uncertainty shows that the declaration was too tight.
         value, u = declared.get("alpha_0_deg", Declaration(0.0, 0.0))
@@ -130,12 +145,16 @@ def _of_setups(
             u = max(u, math.degrees(scatter.between_alpha))
         for setup in setups:
             off = abs(_misaligned(measured, setup)) if name == SIDESLIP_ZERO else 0.0
-            found.append(_number(name, Declaration(value, max(u, off)), setup))
+            reach = constants.RIG_ERROR_REACH if setup else constants.FLAT_TRACK_ZERO_REACH
+            found.append(_number(name, Declaration(value, max(u, off)), setup, reach))
     return tuple(found)
 
 
-def _number(name: str, prior: Declaration, setup: str = "") -> FreeNumber:
-    reach = constants.RIG_ERROR_REACH * prior.u
+def _number(
+    name: str, prior: Declaration, setup: str = "", most: float = constants.RIG_ERROR_REACH
+) -> FreeNumber:
+    """The number of an error, which may move ``most`` standard uncertainties."""
+    reach = most * prior.u
     error = BY_NAME[name]
     return FreeNumber(
         number_of(name, setup),

@@ -27,9 +27,8 @@ class Misfit:
     largest: float
     lean_30: float  #: rms up to 30 deg of camber
     beyond: float  #: rms of the conditions outside the tested but inside the written ranges
-    ridden: float = (
-        0.0  #: rms with the weights of the road, where much lean and much sideslip together hardly count
-    )
+    ridden: float = 0.0
+    """Rms with the weights of the road, where much lean and much sideslip together hardly count."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ WRITTEN = TESTED | {
 def misfit(scale: float) -> dict[str, Misfit]:
     """Fy in newtons and Mz in tenths of them."""
     return {
-        name: Misfit(rms=7.0 * k, weighted=3.0 * k, largest=31.0 * k, lean_30=0.0, beyond=0.0)
+        name: Misfit(rms=7.0 * k, weighted=3.0 * k, largest=31.0 * k, lean_30=0.0, beyond=0.0, ridden=3.0 * k)
         for name, k in (("Fy", scale), ("Mz", 0.1 * scale))
     }
 
@@ -62,7 +62,7 @@ def test_the_files_of_a_disc_are_explained_with_their_use_and_misfit():
     assert "Give small-normal.tir to every other simulator (its USE_MODE ends in 4, here 124)." in use
     assert "If you do not know, use small-normal.tir." in use
     assert exact == "small.tir is the fitted model itself."
-    assert "to 3 N and 0.3 Nm rms in the conditions" in misfit
+    assert "to 3 N and 0.3 Nm rms where vehicles are ridden" in misfit
     assert "(7 N and 0.7 Nm rms over everything tested, 31 N at most)" in misfit
     assert "small-normal.tir has 5% less camber stiffness at zero camber than the fitted model" in lacking
     assert lacking.endswith("by radius): 2 N at 100 m, 22 N at 10 m.")
