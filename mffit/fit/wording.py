@@ -297,10 +297,10 @@ def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands
     return (
         f"on a flat track with one set-up, zeros of the rig ({found}) look almost like ply-steer, conicity and residual torque: "
         "the fit divides their sum by what [rig] declares, and the coefficients PHY, PVY, QHZ, QDZ6 and QDZ7 are uncertain by "
-        f"the rest. The 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with these known exactly; the camber zero "
-        "is in the uncertainties as declared. Sweeps of the tyre turned on its rim (mount) separate conicity and residual torque "
-        "from the zeros of camber, Fy and Mz; further set-ups (setup) average all zeros, and smaller u_ keys in [rig] state a "
-        "better rig"
+        f"the rest. The 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with these known exactly; the camber "
+        "zero is in the uncertainties as declared. Sweeps of the tyre turned on its rim (mount) separate conicity and residual "
+        "torque from the zeros of camber, Fy and Mz; further set-ups (setup) average all zeros, and smaller u_ keys in [rig] "
+        "state a better rig"
     )
 
 
