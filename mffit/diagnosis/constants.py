@@ -94,7 +94,7 @@ LONGEST_PAUSE = Real(
 LIKELY_SPAN = Real(
     6.0,
     "-",
-    "Chains are left out whose log likelihood is lower than that of the best ones by this: one in 400 in probability.",
+    "Chains whose log likelihood is this much below the best are left out: they are 400 times less probable.",
 )
 NEGLIGIBLE_CHANGE = Real(
     1e-4, "-", "Variance of a direction of changes, over that of a reading, below which it is left out."

@@ -87,7 +87,7 @@ SISTER_LOADS_AROUND_ONE = Real(
 SISTER_SLIP = Real(
     0.1,
     "-",
-    "Limits of Fx of a drawn sister tyre are checked up to this slip, which is about that of the peak.",
+    "Slip up to which the limits of Fx are checked for a drawn sister tyre: about the slip of the peak.",
 )
 SISTER_DRAWS = Count(
     20,
