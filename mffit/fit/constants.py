@@ -299,10 +299,14 @@ UNTESTED_SIDESLIP = Real(
 UNTESTED_SHARE = Real(
     0.1, "-", "Relative range of a single load or pressure that the model leaves no room for."
 )
-LEAST_REMAINING_FORCE = Real(0.5, "-", "Share of its peak that the side force keeps over the sideslip range.")
-REMAINING_FORCE_ALPHA = Real(0.07, "rad", "Sideslip from which this is tested, if it was run.")
-REMAINING_FORCE_GRID = Series((13, 3), "-", "Sideslip angles and loads of this test.")
-REMAINING_FORCE_CAMBERS = Series((-0.5, 0.0, 0.5), "-", "Cambers of this test over the largest one.")
+FASTEST_CHANGE = Real(
+    3.0,
+    "-",
+    "Fastest change of the logarithm of grip or stiffness over load, per unit of the logarithm of load or pressure and per "
+    "radian of camber, and fastest fall of the side force per radian of sideslip: just above what public tyres do.",
+    "docs/fit.md",
+)
+STEPS_TO_AN_END = Count(9, "-", "Values from a tested to a written end of a range at which this is tested.")
 
 # Conditions at which files are derived and compared
 WEIGHT_OUTSIDE_TESTED = Real(
