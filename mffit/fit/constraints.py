@@ -33,10 +33,13 @@ class Envelope(NamedTuple):
 def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndarray) -> list[np.ndarray]:
     """Friction and stiffness over load [-], lateral and, of a file that has them, longitudinal."""
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
-    found = [stiffness.lateral_friction(p, q, gamma), stiffness.cornering_stiffness(p, q, gamma) / Fz]
-    if p.PDX1 and p.PKX1:
-        found += [stiffness.longitudinal_friction(p, q), stiffness.longitudinal_slip_stiffness(p, q) / Fz]
-    return [np.broadcast_to(x, Fz.shape) for x in found]
+    found = (
+        stiffness.lateral_friction(p, q, gamma),
+        stiffness.cornering_stiffness(p, q, gamma) / Fz,
+        stiffness.longitudinal_friction(p, q),
+        stiffness.longitudinal_slip_stiffness(p, q) / Fz,
+    )
+    return [np.broadcast_to(x, Fz.shape) for x in found if np.any(x)]
 
 
 def violations(p: Any, envelope: Envelope) -> np.ndarray:
