@@ -37,6 +37,12 @@ LARGEST_CAMBER_REDUCTION = Real(
     "-",
     "Largest PECP1 that zeros without camber sweeps may suggest; beyond it the camber stiffness is wrong.",
 )
+CONDITIONS_OF_A_MISFIT = Count(
+    500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
+)
+EXACT_CONVERSION = Real(
+    1e-6, "-", "Difference over the largest force up to which a converted base has the same forces: rounding."
+)
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
 )
