@@ -103,6 +103,6 @@ def _held_to_one(
 
 
 def _number(name: str, start: float) -> FreeNumber:
-    """A coefficient within its plausible range, and within twice the old value where that lies outside."""
-    lower, upper = BY_NAME[name].bounds
+    """A coefficient within its usual range, and within twice the old value where that lies outside."""
+    lower, upper = BY_NAME[name].usual
     return FreeNumber(name, start, min(lower, 2.0 * start), max(upper, 2.0 * start))

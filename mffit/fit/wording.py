@@ -23,6 +23,7 @@ from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity
+from tir.parameters import BY_NAME
 
 
 def explanations(
@@ -366,10 +367,19 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
-    """The coefficients at a bound of the table and those at a limit; bounds that somebody set do not count."""
+    """The coefficients at a limit of the table, rare ones, and those at a limit of the curves; what somebody set does not count."""
     at_bound = fitted.at_bound - fitted.hand.bounded.keys()
+    rare = {
+        n.name
+        for n in fitted.numbers
+        if n.name in BY_NAME
+        and n.name not in fitted.hand.bounded
+        and BY_NAME[n.name].rare(fitted.values[n.name])
+        and not BY_NAME[n.name].rare(n.expected)
+    }
     words = (
         ("at the bound of plausible values", at_bound - fitted.at_limit),
+        ("outside the range of usual tyres", rare - at_bound),
         (
             "at a limit of the curves, such as E <= 1",
             at_bound & fitted.at_limit,

@@ -13,6 +13,7 @@ from mffit.conversion.convert import MISFIT, ORIGIN
 from mffit.errors import InputError
 from mffit.fit.borrowed.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
 from mffit.fit.known import given_values
+from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading
 from mffit.recordings import with_recognised
@@ -52,7 +53,7 @@ def read_base(config: Config) -> Tyre | None:
     found = convert(path).tyre if is_old(path) else tir.read(path)
     wanted = Nominal.of(given_values(config.tyre))
     try:
-        return tyre_at_nominal(found, wanted)
+        return tyre_at_nominal(tyre_in_one_form(found), wanted)
     except ArithmeticError as error:
         raise InputError(
             f"the base file {config.tyre.base} cannot be converted to the nominal conditions of [tyre], at which a factor of its "
