@@ -61,7 +61,7 @@ class Difference:
 
     @property
     def relative(self) -> float:
-        """The change over the plausible range of a coefficient, over 1 for eps_gamma, else over the larger side."""
+        """The change over the usual range of a coefficient, over 1 for eps_gamma, else over the larger side."""
         size = max(abs(self.first), abs(self.second))
         if self.key in OF_ORDER_ONE:
             size = 1.0

@@ -186,9 +186,7 @@ TYRE_EFFECTS = (
         id="spin-torque",
         name="turn-slip moment",
         physics="A contact patch that is turned resists with a moment of its own.",
-        free=(
-            Free(name="QCRP1", spread=0.1, scan=(0.005, 0.03, 0.1, 0.2, -0.03, -0.06)),
-        ),
+        free=(Free(name="QCRP1", spread=0.1, scan=(0.005, 0.03, 0.1, 0.2, -0.03, -0.06)),),
         needs=("spin", "moment"),
         parity="odd in phi",
     ),

@@ -24,10 +24,10 @@ STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coeff
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
 LEAST_SPREAD_BASE_FILE = Real(
-    0.05, "-", "Smallest standard deviation around a base file's value, over the plausible range."
+    0.05, "-", "Smallest standard deviation around a base file's value, over the usual range."
 )
 LEAST_SPREAD_DEFAULT = Real(
-    0.1, "-", "Smallest standard deviation around the table's default, over the plausible range."
+    0.1, "-", "Smallest standard deviation around the table's default, over the usual range."
 )
 CAMBER_REDUCTION_SPREAD = Real(
     0.3, "-", "Standard deviation of PECP1 among tyres: near 0 for motorcycles, 0.5 to 0.7 for cars."

@@ -68,7 +68,9 @@ def tyre_in_one_form(tyre: Tyre) -> Tyre:
     changed = in_one_form(tyre.values)
     status = {**tyre.status, **dict.fromkeys(changed, f"{CONVERTED} to the usual signs")}
     values = {**tyre.values, **changed}
-    return replace(tyre, values=MappingProxyType(values), status=MappingProxyType(status)) if changed else tyre
+    return (
+        replace(tyre, values=MappingProxyType(values), status=MappingProxyType(status)) if changed else tyre
+    )
 
 
 def with_expected_signs(values: Mapping[str, Any], expected: Mapping[str, float]) -> dict[str, float]:

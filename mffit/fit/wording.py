@@ -367,7 +367,7 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
-    """The coefficients at a limit of the table, rare ones, and those at a limit of the curves; what somebody set does not count."""
+    """The coefficients at a limit of the table, rare ones, and those at a limit of the curves; bounds by hand do not count."""
     at_bound = fitted.at_bound - fitted.hand.bounded.keys()
     rare = {
         n.name

@@ -68,7 +68,9 @@ def base_notes(config: Config, base: Tyre | None) -> tuple[str, ...]:
     """A remark on a base file for other nominal conditions."""
     if base is None or CONDITIONS not in base.provenance:
         return ()
-    return (f"The base file {config.tyre.base} is at other nominal conditions: {base.provenance[CONDITIONS]}.",)
+    return (
+        f"The base file {config.tyre.base} is at other nominal conditions: {base.provenance[CONDITIONS]}.",
+    )
 
 
 def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:

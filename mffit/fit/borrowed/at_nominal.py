@@ -19,7 +19,7 @@ from tir import Tyre
 from tir.equations.forces import Forces
 from tir.mode import BLOCK, asks_for_turn_slip
 
-OVER_LOAD = (
+OVER_LOAD: tuple[tuple[str, ...], ...] = (
     ("PDX1", "PDX2"),
     ("PEX1", "PEX2", "PEX3"),
     ("PHX1", "PHX2"),
@@ -46,7 +46,7 @@ OVER_LOAD = (
     ("PHYP2", "PHYP3"),
 )
 """Coefficients of a + b dfz + c dfz^2."""
-FACTOR_OVER_LOAD = {
+FACTOR_OVER_LOAD: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("PDXP2",): ("PDXP1",),
     ("PDYP2",): ("PDYP1",),
     ("PECP2",): ("PECP1",),
@@ -54,7 +54,7 @@ FACTOR_OVER_LOAD = {
     ("PCFY1", "PCFY2"): ("LATERAL_STIFFNESS",),
 }
 """Coefficients of 1 + a dfz + b dfz^2, and those that this factor multiplies."""
-FACTOR_OVER_PRESSURE = {
+FACTOR_OVER_PRESSURE: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("PPX1", "PPX2"): ("PKX1", "PKX2"),
     ("PPX3", "PPX4"): ("PDX1", "PDX2"),
     ("PPY1",): ("PKY1",),
@@ -131,8 +131,6 @@ class Nominal(NamedTuple):
             if not math.isclose(a, b)
         ]
         return ", ".join(row[0] for row in rows), ", ".join(row[1] for row in rows)
-
-
 
 
 def at_nominal(values: Mapping[str, Any], wanted: Nominal) -> dict[str, Any]:
@@ -240,7 +238,7 @@ def misfit(before: Tyre, after: Tyre) -> Misfit:
         (p.FZMIN, p.FZMAX), (p.ALPMIN, p.ALPMAX), (p.CAMMIN, p.CAMMAX), (p.KPUMIN, p.KPUMAX),
         np.sin([p.CAMMIN, p.CAMMAX]) / p.UNLOADED_RADIUS, (p.LONGVL, p.LONGVL), (p.PRESMIN, p.PRESMAX),
     )  # fmt: skip
-    drawn = [random.uniform(*sorted(end), int(constants.CONDITIONS_OF_A_MISFIT)) for end in ends]
+    drawn = [random.uniform(min(end), max(end), int(constants.CONDITIONS_OF_A_MISFIT)) for end in ends]
     found = []
     for turn_slip in (False,) if _guessed(before.values) else (False, True):
         one, other = (np.array(tyre(*drawn, turn_slip=turn_slip)) for tyre in (before, after))

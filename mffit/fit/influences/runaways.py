@@ -60,7 +60,7 @@ def _needless(
 ) -> list[str]:
     """Those of the names without which left-out sweeps are predicted as well; found with some of the points.
 
-    In ``model`` the names are where the points push them; numbers in ``held``, at a bound or limit, do not move with a left-out sweep.
+    In ``model`` the names are where the points push them; numbers in ``held``, at a bound or limit, stay there.
     """
     if not names:
         return []

@@ -155,6 +155,6 @@ def _numbers(start: Mapping[str, float], measured: Mapping[str, float], hand: Ha
         tied = name in CAMBER_STIFFNESS and name in measured
         prior = {"expected": measured[name], "spread": spread} if tied else {}
         lower, upper = hand.bounded.get(name, BY_NAME[name].usual)
-        start = hand.inside(name, value)
-        out.append(FreeNumber(name, start, min(lower, start), max(upper, start), **prior))
+        begin = hand.inside(name, value)
+        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin), **prior))
     return out

@@ -213,7 +213,7 @@ def plan(points):
 
 @pytest.fixture(scope="module")
 def pushed(found):
-    """The fit with a coefficient at its bound that these sweeps do not need there."""
+    """The fit with a coefficient at the end of its usual range that these sweeps do not need there."""
     fitted = found.search
     return replace(
         fitted,

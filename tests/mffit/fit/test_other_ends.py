@@ -110,7 +110,9 @@ def test_signs_that_change_no_force_are_those_that_are_expected():
     alpha, kappa, gamma = rng.uniform(-0.1, 0.1, 50), rng.uniform(-0.2, 0.2, 50), rng.uniform(-0.1, 0.1, 50)
 
     def forces(tyre):
-        return [np.array(tyre(load, alpha, gamma, kappa, phi_t, p=250e3, turn_slip=on)) for on in (False, True)]
+        return [
+            np.array(tyre(load, alpha, gamma, kappa, phi_t, p=250e3, turn_slip=on)) for on in (False, True)
+        ]
 
     load, phi_t = rng.uniform(500.0, 2500.0, 50), rng.uniform(-0.3, 0.3, 50)
     drawn = {name: rng.uniform(0.1, 0.3) for group in SAME_CURVE for name in group if not true[name]}

@@ -43,7 +43,10 @@ def at(tyre: tir.Tyre, wanted: Nominal) -> tir.Tyre:
 
 def drawn_nominal(tyre: tir.Tyre, rng: np.random.Generator, *, vary: tuple[bool, ...]) -> Nominal:
     return Nominal(
-        *(x * np.exp(on * rng.uniform(-0.5, 0.5)) for x, on in zip(Nominal.of(tyre.values), vary, strict=True))
+        *(
+            x * np.exp(on * rng.uniform(-0.5, 0.5))
+            for x, on in zip(Nominal.of(tyre.values), vary, strict=True)
+        )
     )
 
 
@@ -95,7 +98,9 @@ def test_radii_and_relaxation_lengths_stay(base):
         where = drawn_conditions(rng)
         found, expected = (t.state(**where, turn_slip=False) for t in (other, base))
         for name in ("Re", "sigma_x", "sigma_y", "K_xk", "K_ya", "mu_x", "mu_y"):
-            np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-10, err_msg=name)
+            np.testing.assert_allclose(
+                getattr(found, name), getattr(expected, name), rtol=1e-10, err_msg=name
+            )
         deflections = [
             vertical.deflection(t.p, where["Fz"], where["p"] / t["NOMPRES"] - 1.0) for t in (other, base)
         ]
@@ -110,6 +115,29 @@ def test_another_free_radius_moves_the_rolling_radius_and_keeps_the_deflection(b
     np.testing.assert_allclose(change, 0.02 * base["Q_RE0"], rtol=1e-9)
     deflections = [vertical.deflection(t.p, load, 0.0) for t in (longer, still)]
     np.testing.assert_allclose(*deflections, rtol=1e-10)
+
+
+def test_what_other_programs_evaluate_stays_too(base):
+    """The products in the published formulae of load over deflection (paper, 4), contact patch and yaw stiffness."""
+    base = base.replace(Q_V2=0.05, Q_FCX=0.2, Q_FCY=0.3, PCMZ1=0.4)
+    other = at(base, Nominal(1.4 * base["FNOMIN"], 190e3, 25.0, 0.95 * base["UNLOADED_RADIUS"]))
+    load, p = np.array([600.0, 1500.0]), 220e3
+
+    def numbers(t: tir.Tyre) -> np.ndarray:
+        dpi, R0, F0 = p / t["NOMPRES"] - 1.0, t["UNLOADED_RADIUS"], t["FNOMIN"]
+        relative = load / (t["VERTICAL_STIFFNESS"] * (1.0 + t["PFZ1"] * dpi) * R0)
+        return np.array(
+            [
+                R0 * (t["Q_RA1"] * np.sqrt(relative) + t["Q_RA2"] * relative),
+                t["Q_RB1"] * np.cbrt(relative) + t["Q_RB2"] * relative,
+                t["Q_V2"] * R0 / t["LONGVL"] * np.ones(2),
+                t["Q_FCX"] / F0 * np.ones(2),
+                t["Q_FCY"] / F0 * np.ones(2),
+                t["YAW_STIFFNESS"] * (1.0 + t["PCMZ1"] * dpi) * np.ones(2),
+            ]
+        )
+
+    np.testing.assert_allclose(numbers(other), numbers(base), rtol=1e-12)
 
 
 def test_guessed_turn_slip_stays_a_guess(base):
@@ -128,8 +156,14 @@ def test_what_cannot_be_the_same_is_said_with_its_size(base):
     """PPZ2 acts on the camber moment without turn slip and not on that with it: only one of the two can stay."""
     wanted = Nominal.of(base.values)._replace(pressure=200e3)
     said = tyre_at_nominal(base, wanted).provenance[CONDITIONS]
-    assert said.startswith("its coefficients hold for 250 kPa and are converted to 200 kPa, but Mz with turn slip")
-    assert tyre_at_nominal(base.replace(PPZ2=0.0), wanted).provenance[CONDITIONS].endswith("with the same forces")
+    assert said.startswith(
+        "its coefficients hold for 250 kPa and are converted to 200 kPa, but Mz with turn slip"
+    )
+    assert (
+        tyre_at_nominal(base.replace(PPZ2=0.0), wanted)
+        .provenance[CONDITIONS]
+        .endswith("with the same forces")
+    )
 
 
 def project(folder: Path, base: tir.Tyre, **tyre: float) -> Path:
@@ -155,7 +189,6 @@ def test_a_build_keeps_the_forces_that_it_does_not_fit(tmp_path):
             t(load, kappa=kappa, p=230e3, Vx=20.0, turn_slip=False) for t in (result.tyre, base)
         )
         np.testing.assert_allclose(found.Fx, expected.Fx, rtol=1e-9)
-        assert result.tyre.state(load, p=230e3).Re == pytest.approx(base.state(load, p=230e3).Re, rel=1e-12)
     assert result.tyre.status["PKX1"] == "from base, converted"
     conditions = "hold for 4200 N, 240 kPa, 16.7 m/s and are converted to 6300 N, 190 kPa, 25 m/s"
     assert any(conditions in text for text in result.fit.explanations)
@@ -170,7 +203,9 @@ def test_a_build_keeps_the_forces_that_it_does_not_fit(tmp_path):
 def test_a_factor_that_vanishes_is_refused(tmp_path):
     base = tir.read(SAMPLES / "flat-track-combined" / "true.tir").replace(PPX1=4.0, PPX2=0.0)
     toml = project(tmp_path, base, nominal_pressure=0.75 * base["NOMPRES"] / 1e3)
-    with pytest.raises(InputError, match=r"tyre\.toml:\d+: tyre\.base: .*base\.tir cannot be converted .*PPX1"):
+    with pytest.raises(
+        InputError, match=r"tyre\.toml:\d+: tyre\.base: .*base\.tir cannot be converted .*PPX1"
+    ):
         mffit.build(toml)
 
 
@@ -179,7 +214,9 @@ def test_signs_of_the_same_curve_are_those_that_the_fit_allows(tmp_path):
     base = tir.read(VECTORS / "MagicFormula62.tir")
     assert base["PKY1"] > 0.0 > base["PKY4"]
     own = {"nominal_load": base["FNOMIN"], "nominal_pressure": base["NOMPRES"] / 1e3}
-    toml = project(tmp_path, base, **own, unloaded_radius=base["UNLOADED_RADIUS"], nominal_speed=base["LONGVL"])
+    toml = project(
+        tmp_path, base, **own, unloaded_radius=base["UNLOADED_RADIUS"], nominal_speed=base["LONGVL"]
+    )
     found = mffit.pipeline.inputs.read_base(mffit.config.load(toml))
     assert (found["PKY1"], found["PKY4"]) == (-base["PKY1"], -base["PKY4"])
     outside = [
