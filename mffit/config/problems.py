@@ -82,7 +82,7 @@ def validated(
 
 
 def _refuse_unholdable(
-    content: Any, path: Path | None, lines: Mapping[str, int], key: tuple[str, ...] = ()
+    content: Any, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
 ) -> None:
     """Refuse a whole number that no float can hold, under any key; TOML sets no limit to its digits."""
     if isinstance(content, Mapping):

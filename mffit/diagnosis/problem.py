@@ -16,6 +16,7 @@ from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
 from mffit.points import Points
 from mffit.rig import Simulation
+from tir.parameters import BY_NAME as COEFFICIENTS
 
 
 class DiagnosisProblem:
@@ -90,12 +91,16 @@ class DiagnosisProblem:
     ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
         """The hypothesis with the model's coefficients estimated too, and these: name -> (value, standard error).
 
-        The prior of a number that is larger than usual is as wide as it was found, so that it does not pull the answer back.
+        The prior of a coefficient that changes by more than usual is as wide as the change that was found, so that it does not
+        pull the answer back.
         """
         frees = moving(chosen.effects)
         prior = inexact.without(frozenset(free.name for free in frees))
         usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
-        numbers = [replace(n, spread=max(n.spread, abs(n.start - n.expected))) for n in usual]
+        numbers = [
+            replace(n, spread=max(n.spread, abs(n.start - n.expected))) if n.name in COEFFICIENTS else n
+            for n in usual
+        ]
         if not prior and numbers == usual:
             return chosen, {}
         fixed = switched(chosen.effects)

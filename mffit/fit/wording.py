@@ -25,6 +25,9 @@ from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity
 from tir.parameters import BY_NAME
 
+RARE = "the range of usual tyres"
+"""How sentences call the usual range of the table of parameters."""
+
 
 def explanations(
     config: Any, files: Files, values: Mapping[str, Any], measured: Any, hand: Hand = NO_HAND
@@ -336,6 +339,10 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
     for name in sorted(fitted.at_bound & hand.bounded.keys()):
         lower, upper = hand.bounded[name]
         out.append(f"{name} is at a limit: [coefficients] allows {lower:g} to {upper:g}")
+    rare = [
+        name for name, x in hand.held.items() if name not in hand.from_base and BY_NAME[name].rare(float(x))
+    ]
+    out += [f"{name} is held in [coefficients] outside {RARE}" for name in rare]
     for name in hand.names:
         if name in free or name in hand.held:
             continue
@@ -379,7 +386,7 @@ def _held_by_bounds(fitted: Fitted) -> str:
     }
     words = (
         ("at the bound of plausible values", at_bound - fitted.at_limit),
-        ("outside the range of usual tyres", rare - at_bound),
+        (f"outside {RARE}", rare - at_bound),
         (
             "at a limit of the curves, such as E <= 1",
             at_bound & fitted.at_limit,

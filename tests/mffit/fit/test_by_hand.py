@@ -96,6 +96,7 @@ def disc(tmp_path_factory) -> Path:
     words = (
         "PKY3=base",
         "PDX1=1.5",
+        "RBX3=155",
         "QSY1=0.02",
         "Q_RE0=0.99",
         "PEY1={max=-0.95}",
@@ -128,6 +129,13 @@ def test_a_bound_is_kept_to_the_last_digit(result):
     assert found["interval_95"][1] == -0.95
     assert found["origin"].endswith("bounds by hand, at bound")
     assert any("PEY1 is at a limit: [coefficients] allows -10 to -0.95" in w for w in result["warnings"])
+
+
+def test_a_rare_value_is_held_with_a_warning(disc, result):
+    """MFeval's own tyre has RBX3 186."""
+    assert tir.read(disc / "out" / result["tir"])["RBX3"] == 155.0
+    assert "RBX3 is held in [coefficients] outside the range of usual tyres" in result["warnings"]
+    assert not any("PDX1 is held" in text for text in result["warnings"])
 
 
 def test_the_json_marks_what_was_set_by_hand(result):
