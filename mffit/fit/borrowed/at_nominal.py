@@ -223,7 +223,7 @@ def _camber_reduction(v: dict[str, Any], radius: float) -> None:
         v |= {"PECP1": first, "PECP2": slope / first if first else math.inf * slope if slope else 0.0}
 
 
-class Misfit(NamedTuple):
+class ForceMisfit(NamedTuple):
     """The largest difference of a channel's forces, over its largest force."""
 
     channel: str
@@ -231,7 +231,7 @@ class Misfit(NamedTuple):
     share: float
 
 
-def misfit(before: Tyre, after: Tyre) -> Misfit:
+def misfit(before: Tyre, after: Tyre) -> ForceMisfit:
     """Where two tyres differ most, over the ranges of the first; draws of conditions, straight and on curves."""
     p, random = before.p, np.random.default_rng(0)
     ends = (
@@ -246,7 +246,7 @@ def misfit(before: Tyre, after: Tyre) -> Misfit:
             rows = np.isfinite(a)
             most = float(np.max(np.abs(a[rows]), initial=0.0))
             off = float(np.max(np.abs(b - a)[rows], initial=0.0))
-            found.append(Misfit(channel, turn_slip, off / most if most else 0.0))
+            found.append(ForceMisfit(channel, turn_slip, off / most if most else 0.0))
     return max(found, key=lambda row: row.share)
 
 
@@ -278,7 +278,7 @@ def tyre_at_nominal(tyre: Tyre, wanted: Nominal) -> Tyre:
     return replace(found, provenance=MappingProxyType({**rest, CONDITIONS: said}))
 
 
-def _agreement(worst: Misfit) -> str:
+def _agreement(worst: ForceMisfit) -> str:
     if worst.share <= constants.EXACT_CONVERSION:
         return "with the same forces"
     mode = "with" if worst.turn_slip else "without"

@@ -58,7 +58,7 @@ def test_an_effect_as_large_as_published_is_found_in_full(tmp_path, seed):
     (effect,) = found.effects
     assert effect.effect.id == "combined-camber"
     value, u = effect.parameters["RBX3"]
-    assert abs(value - tir.read(tmp_path / "drawn.tir")["RBX3"]) < 3.0 * u < 8.0
+    assert abs(value - tir.read(tmp_path / "drawn.tir")["RBX3"]) < 2.0 * u < 6.0
 
 
 def test_every_effect_of_these_channels_is_hidden_once():

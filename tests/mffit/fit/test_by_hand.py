@@ -141,8 +141,8 @@ def test_a_rare_value_is_held_with_a_warning(disc, result):
 def test_the_json_marks_what_was_set_by_hand(result):
     found = result["fit"]["coefficients"]
     marked = {name for name, row in found.items() if row["by"] == "hand"}
-    assert marked == {"PKY3", "PDX1", "QSY1", "Q_RE0", "PEY1", "PPY1"}
-    assert {name for name, row in found.items() if row["held"]} == {"PKY3", "PDX1", "QSY1", "Q_RE0"}
+    assert marked == {"PKY3", "PDX1", "RBX3", "QSY1", "Q_RE0", "PEY1", "PPY1"}
+    assert {name for name, row in found.items() if row["held"]} == {"PKY3", "PDX1", "RBX3", "QSY1", "Q_RE0"}
     assert all(found[name]["stderr"] is None for name, row in found.items() if row["held"])
     assert (found["PKY3"]["status"], found["PDX1"]["status"]) == ("base", "given")
     assert found["PPY1"]["prior"] == {"value": -0.3, "u": 0.1}
@@ -164,7 +164,7 @@ def test_a_prior_counts_where_the_points_show_nothing(result):
 def test_the_page_names_what_was_set_by_hand(disc):
     page = (disc / "out" / "report.html").read_text(encoding="utf-8")
     assert "Set by hand in [coefficients]" in page
-    assert page.count(">held by hand<") == 3
+    assert page.count(">held by hand<") == 4
     assert page.count(">bounds by hand<") == 1
 
 
