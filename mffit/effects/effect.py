@@ -21,9 +21,7 @@ class Free:
     name: str  #: coefficient of the file, rig error, or "turn_slip"
     spread: float
     scan: tuple[float, ...] = (0.0,)
-    lower: float = float(
-        "-inf"
-    )  #: of the number itself, not of its change; that of a coefficient is in the table of parameters
+    lower: float = float("-inf")  #: of the number itself; the limits of a coefficient hold anyway
     upper: float = float("inf")
     relative: bool = False  #: spread and scan are relative to the current value
     per_run: bool = False  #: one such number for every run, added to the fault of this name
