@@ -24,10 +24,10 @@ STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coeff
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
 LEAST_SPREAD_BASE_FILE = Real(
-    0.05, "-", "Smallest standard deviation around a base file's value, over the plausible range."
+    0.05, "-", "Smallest standard deviation around a base file's value, over the usual range."
 )
 LEAST_SPREAD_DEFAULT = Real(
-    0.1, "-", "Smallest standard deviation around the table's default, over the plausible range."
+    0.1, "-", "Smallest standard deviation around the table's default, over the usual range."
 )
 CAMBER_REDUCTION_SPREAD = Real(
     0.3, "-", "Standard deviation of PECP1 among tyres: near 0 for motorcycles, 0.5 to 0.7 for cars."
@@ -36,6 +36,12 @@ LARGEST_CAMBER_REDUCTION = Real(
     0.9,
     "-",
     "Largest PECP1 that zeros without camber sweeps may suggest; beyond it the camber stiffness is wrong.",
+)
+CONDITIONS_OF_A_MISFIT = Count(
+    500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
+)
+EXACT_CONVERSION = Real(
+    1e-6, "-", "Difference over the largest force up to which a converted base has the same forces: rounding."
 )
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."

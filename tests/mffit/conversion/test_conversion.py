@@ -314,11 +314,19 @@ def test_an_old_file_can_be_the_base_of_a_build(tmp_path):
     new.write(tmp_path / "new.tir")
     assert not is_old(tmp_path / "new.tir")
 
+    found = convert(OLD)
+
     class Config:
         folder, path = tmp_path, None
-        tyre = configuration.models.TyreTable.model_construct(base="base.tir")
+        tyre = configuration.models.TyreTable.model_construct(
+            base="base.tir",
+            nominal_load=found.tyre["FNOMIN"],
+            nominal_pressure=found.tyre["NOMPRES"] / 1e3,
+            nominal_speed=found.tyre["LONGVL"],
+            unloaded_radius=found.tyre["UNLOADED_RADIUS"],
+        )
 
-    base, found = read_base(Config), convert(OLD)
+    base = read_base(Config)
     assert base == found.tyre
     (said,) = base_warnings(Config, base)
     most = max(found.misfit, key=lambda row: row.share)
