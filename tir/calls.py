@@ -17,11 +17,11 @@ import numpy as np
 from tir import constants, kernels
 from tir.codegen import kernel, single
 from tir.codegen.kernel import LANES
-from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-from tir.evaluate import evaluate, refuse_zero_divisors
+from tir.evaluate import unchecked
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
@@ -31,6 +31,8 @@ COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
 THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
 FORCES, STATE = Forces._fields, State._fields
+OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
+"""States that :mod:`tir.transient` needs."""
 DOUBLE = np.dtype(float)
 ONLY_DOUBLES = {DOUBLE}
 ROWS = itemgetter(*range(len(FORCES)))
@@ -76,7 +78,7 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
     arrays = [np.asarray(x) for x in inputs]
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
         if not _real(arrays):
-            return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[0]
+            return Forces(*_evaluated(tyre, _of_any_kind(inputs, arrays), switches, FORCES))
         arrays = [a.astype(float, copy=False) for a in arrays]
     shapes = {a.shape for a in arrays}
     shapes.discard(())
@@ -88,16 +90,23 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
         flat = [a if a.ndim == 0 else np.broadcast_to(a, shape).reshape(-1) for a in arrays]
     out = _many(tyre, flat, math.prod(shape), switches)
     if out is None:
-        return _evaluated(tyre, arrays, switches)[0]
+        return Forces(*_evaluated(tyre, arrays, switches, FORCES))
     return tuple.__new__(Forces, ROWS(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
 def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
+    return State(*some_of(tyre, inputs, switches, STATE))
+
+
+def some_of(
+    tyre: Tyre, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
+    """The named forces and states for the same."""
     arrays = [np.asarray(x) for x in inputs]
     if _real(arrays) and all(a.shape == () for a in arrays):
-        return State(*_one(tyre, arrays, switches, STATE))
-    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[1]
+        return _one(tyre, arrays, switches, outputs)
+    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches, outputs)
 
 
 def _of_any_kind(inputs: Sequence[Any], arrays: Sequence[np.ndarray]) -> list[Any]:
@@ -109,7 +118,9 @@ def _real(arrays: Sequence[np.ndarray]) -> bool:
     return all(a.dtype.kind in "fiub" for a in arrays)
 
 
-def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]) -> tuple:
+def _one(
+    tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
     """Outputs of a scalar call as floats; NaN or infinity, as numpy has them, where Python's arithmetic raises."""
     numbers = [float(x) for x in inputs]
     run = function_of(tyre, switches, outputs)
@@ -118,18 +129,22 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
             return run(*numbers)
     except (ArithmeticError, ValueError):
         pass
-    found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
-    return tuple(_plain(x) for x in found[outputs is STATE])
+    found = _evaluated(tyre, [np.float64(x) for x in numbers], switches, outputs)
+    return tuple(map(_plain, found))
 
 
-def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
-    """Forces and state by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
+def _evaluated(
+    tyre: Tyre, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
+    """Outputs by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
+    refuse_zero_divisors(tyre.p, switches, outputs)
     with np.errstate(all="ignore"):
         try:
-            return evaluate(tyre.p, *inputs, **switches._asdict())
+            forces, state = unchecked(tyre.p, *inputs, **switches._asdict())
         except ArithmeticError:
             numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-            return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+            forces, state = unchecked(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+    return tuple(getattr(forces if name in FORCES else state, name) for name in outputs)
 
 
 def _plain(x: Any) -> Any:
@@ -140,7 +155,7 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, outputs)
         if values is None:
             return None
         loaded = kernels.meter("one", switches).kernel() if outputs is FORCES else None
@@ -188,7 +203,7 @@ def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
     if loaded is None:
         return None
     if ("batch", switches) not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, FORCES)
         tyre.prepared["batch", switches] = None if values is None else loaded.run_of(values)
     return tyre.prepared["batch", switches]
 
@@ -198,14 +213,14 @@ def lag_of(tyre: Tyre, switches: Switches) -> tuple[Callable, Callable] | None:
     if ("lag", switches) not in tyre.prepared:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
-        values = _values(tyre)
+        values = _values(tyre, switches, (*FORCES, *OF_CONTACT))
         tyre.prepared["lag", switches] = None if values is None else lag_functions(values, switches)
     return tyre.prepared["lag", switches]
 
 
-def _values(tyre: Tyre) -> dict[str, float] | None:
-    """The parameters as floats; None if one is not a real number. Refuses zeros by which the equations divide."""
-    refuse_zero_divisors(tyre.p)
+def _values(tyre: Tyre, switches: Switches, outputs: tuple[str, ...]) -> dict[str, float] | None:
+    """The parameters as floats; None if one is not a real number. Refuses zeros by which the outputs are divided."""
+    refuse_zero_divisors(tyre.p, switches, outputs)
     given = {name: tyre.values[name] for name in NUMBERS}
     if not all(isinstance(x, float | int | np.floating | np.integer) for x in given.values()):
         return None
@@ -229,7 +244,7 @@ def _arrays_of(tyre: Tyre, switches: Switches) -> Callable | None:
     """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, FORCES)
         if values is None:
             return None
         program = replay(switches, FORCES)

@@ -60,9 +60,17 @@ def evaluate(
     TirError
         If a value by which the equations divide is 0.
     """
+    for name in zero_divisors(p):
+        raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
     Vx = p.LONGVL if Vx is None else Vx
     pressure = p.INFLPRES if pressure is None else pressure
-    refuse_zero_divisors(p)
+    return unchecked(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits)
+
+
+def unchecked(
+    p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+) -> tuple[Forces, State]:
+    """As :func:`evaluate`, all given; what divides by a parameter that is 0 is infinite, NaN or an ArithmeticError."""
     if isinstance(pressure, float | int):
         pressure = np.float64(pressure)  # Python's own numbers raise at 0 ** -0.4, numpy's do not
     inputs, switches = (Fz, alpha, gamma, kappa, phi_t, Vx, pressure), (turn_slip, star, limits)
@@ -118,12 +126,9 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
     return mirrored
 
 
-def refuse_zero_divisors(p) -> None:
-    """Raise TirError if a parameter by which the equations divide is 0."""
-    for name in DIVISORS:
-        value = getattr(p, name)
-        if isinstance(value, Real) and value == 0.0:
-            raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
+def zero_divisors(p: Any) -> list[str]:
+    """Parameters by which some equation divides and that are 0."""
+    return [name for name in DIVISORS if isinstance(value := getattr(p, name), Real) and value == 0.0]
 
 
 def _clip(x, lower, upper):

@@ -256,7 +256,7 @@ def test_the_compiled_loop_takes_few_conditions_other_strides_and_other_kinds(ty
     ],
 )
 def test_machine_code_refuses_wrong_arguments(tyre, kind, arguments):
-    run = kernel.load(kind, Switches()).run_of(calls._values(tyre))
+    run = kernel.load(kind, Switches()).run_of(calls._values(tyre, Switches(), calls.FORCES))
     with pytest.raises((TypeError, ValueError, BufferError)):
         run(*arguments)
 
@@ -272,7 +272,7 @@ def test_any_number_of_threads_gives_the_same(tyre, compiled, monkeypatch, asked
 
 @needs_llvm
 def test_a_part_shorter_than_a_vector_stays_within_its_arrays(tyre):
-    run = kernel.load("batch", Switches()).run_of(calls._values(tyre))
+    run = kernel.load("batch", Switches()).run_of(calls._values(tyre, Switches(), calls.FORCES))
     alpha, out = np.linspace(-0.2, 0.2, 32), np.zeros((6, 32))
     given = (np.array(2e3), alpha, *(np.array(x) for x in (0.0, 0.0, 0.0, 16.0, 2e5)))
     for first, last in ((0, 3), (3, 7), (7, 8), (30, 32), (8, 31)):
@@ -286,7 +286,7 @@ def test_narrower_vectors_give_the_same(tmp_path, monkeypatch):
     monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(kernel, "_lanes", lambda: 4)
     tyre = tir.read(VECTORS / "moto_front.tir")
-    run = kernel.load.__wrapped__("batch", Switches()).run_of(calls._values(tyre))
+    run = kernel.load.__wrapped__("batch", Switches()).run_of(calls._values(tyre, Switches(), calls.FORCES))
     alpha, out = np.linspace(-0.2, 0.2, 23), np.zeros((6, 23))
     run(np.array(2e3), alpha, *(np.array(x) for x in (0.0, 0.0, 0.0, 16.0, 2e5)), out, 0, 23)
     assert_equal(out, evaluate(tyre.p, 2e3, alpha, pressure=2e5, Vx=16.0)[0], Forces._fields)
@@ -332,7 +332,7 @@ def test_damaged_machine_code_in_the_cache_is_made_again(tmp_path, monkeypatch):
     whole = kept.read_bytes()
     for damaged in (whole[:-100], whole[:3000] + b"\0" * 40 + whole[3040:], b"", b"no seal"):
         kept.write_bytes(damaged)
-        run = load("one", Switches()).run_of(calls._values(tyre))
+        run = load("one", Switches()).run_of(calls._values(tyre, Switches(), calls.FORCES))
         assert run(2e3, 0.05, 0.0, 0.0, 0.0, 16.0, 2e5) == pytest.approx(tyre(2e3, 0.05, p=2e5, Vx=16.0))
         assert kept.read_bytes() == whole
 
@@ -579,7 +579,7 @@ class TestGraph:
 
     def test_constants_of_a_tyre_with_infinite_values_are_numpys(self, tyre):
         """Where Python's sine raises."""
-        values = {**calls._values(tyre), "QDRP1": math.inf}
+        values = {**calls._values(tyre, Switches(), calls.FORCES), "QDRP1": math.inf}
         prepare, _ = single._compiled(Switches(True), Forces._fields)
         with pytest.raises(ValueError, match="domain"):
             prepare(values, **single.MATH)

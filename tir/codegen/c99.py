@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING, lag_programs
-from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, trace
+from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, refuse_zero_divisors, trace
 from tir.codegen.source import COMMON, SourceDialect, assignments
 from tir.equations.forces import Forces
 from tir.errors import TirError
-from tir.evaluate import refuse_zero_divisors
 from tir.mode import exported, words
 from tir.tuning import Tunable, trace_tuned, tunables
 
@@ -109,7 +108,8 @@ def export_c(
         If the name is invalid or reserved in C, a value is not finite, or a value by which the equations divide is 0.
     """
     _refuse_name(name)
-    refuse_zero_divisors(tyre.p)
+    switches = exported(tyre, turn_slip, star, limits)
+    refuse_zero_divisors(tyre.p, switches, (*Forces._fields, *STATES))
     values = {key: float(tyre[key]) for key in NUMBERS}
     broken = [key for key, value in values.items() if value - value != 0.0]
     if broken:
@@ -117,7 +117,6 @@ def export_c(
             f"{broken[0]} is {values[broken[0]]}, which C code cannot hold; give a finite number",
             name=broken[0],
         )
-    switches = exported(tyre, turn_slip, star, limits)
     kinds = {"forces": Forces._fields, "state": STATES}
     programs = {kind: trace(switches, fields, values) for kind, fields in kinds.items()}
     if not (tunable or lag):

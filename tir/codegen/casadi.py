@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS
+from tir.codegen.program import INPUTS, refuse_zero_divisors
 from tir.equations.forces import Forces
 from tir.errors import TirError
-from tir.evaluate import refuse_zero_divisors
 from tir.mode import exported
 from tir.tuning import chosen, trace_tuned
 
@@ -61,8 +60,8 @@ def casadi_function(
         import casadi
     except ImportError:
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
-    refuse_zero_divisors(tyre.p)
     switches = exported(tyre, turn_slip, star, limits)
+    refuse_zero_divisors(tyre.p, switches, outputs)
     name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
     factors = {one.name: one.start for one in chosen(tyre, tunable)}
     turned = [*factors]
