@@ -95,7 +95,12 @@ def _places(
 
 
 def _with_structured_comments(document: Document, tyre: Tyre) -> Document:
-    old = [line.number for line in document.lines if MEASURED.match(line.text) or PROVENANCE.match(line.text)]
+    old = [
+        number
+        for numbers, text in document.comments
+        if MEASURED.match(text) or PROVENANCE.match(text)
+        for number in numbers
+    ]
     header = [line.number for line in document.entries if line.section == "MDI_HEADER"]
     place = max(header, default=0)
     kept = document.without(old)

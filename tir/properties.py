@@ -313,14 +313,14 @@ def _about_unknown(extra) -> list[Problem]:
 
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:
     measured, provenance = {}, {}
-    for line in document.lines:
-        found = MEASURED.match(line.text)
+    for _, text in document.comments:
+        found = MEASURED.match(text)
         if found:
             name, unit = found.group(1, 4)
-            value, u = (number_of(text) for text in found.group(2, 3))
+            value, u = (number_of(x) for x in found.group(2, 3))
             if value is not None and u is not None:
                 measured[name] = Quantity(value, u, unit)
-        found = PROVENANCE.match(line.text)
+        found = PROVENANCE.match(text)
         if found:
             provenance[found.group(1).strip()] = found.group(2)
     return measured, provenance

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from tir.constants import LONGEST_WRITTEN_LINE
+from tir.document import commented, folded
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 from tir.targets import Target, use_mode_words, vendor
@@ -60,16 +60,16 @@ def _value(row: Parameter, tyre: Tyre, target: Target) -> Any:
 def structured_comments(tyre: Tyre) -> Iterator[str]:
     """Provenance and measured quantities as comment lines that ``tir.read`` understands."""
     for key, text in tyre.provenance.items():
-        yield f"! provenance: {comment_text(key)}: {comment_text(text)}"
+        yield from folded(f"! provenance: {comment_text(key)}: {comment_text(text)}")
     for name, q in tyre.measured.items():
         unit = q.unit.encode("ascii", "backslashreplace").decode()
-        yield f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}"
+        yield from folded(f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}")
 
 
 def entry(key: str, value: str, comment: str = "") -> str:
     """One line with a key."""
     line = f"{key:<24} = {value}"
-    return f"{line:<50} ${comment_text(comment)}"[:LONGEST_WRITTEN_LINE] if comment else line
+    return commented(f"{line:<50}", comment_text(comment)) if comment else line
 
 
 def value_text(row: Parameter, value: Any) -> str:
