@@ -26,7 +26,9 @@ OLD_FITTYPS = {
     51: "MF-MCTyre 1.0, a motorcycle tyre",
     52: "MF-MCTyre 1.1, a motorcycle tyre",
 }
-OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE", "PAC_MC"}
+CAR_FITTYPS = (5, 6, 21)
+OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE"}
+MOTORCYCLE_FORMATS = {"PAC_MC", "MF-MCTYRE"}
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
@@ -213,10 +215,12 @@ def _needed() -> frozenset[str]:
 def _refuse_other_versions(values, extra, document: Document) -> None:
     version = values.get("FITTYP")
     form = str(values.get("PROPERTY_FILE_FORMAT", "")).upper()
-    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS):
+    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS | MOTORCYCLE_FORMATS):
         name = f"PROPERTY_FILE_FORMAT '{form}'"
         if version in OLD_FITTYPS:
             name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
+        if form in MOTORCYCLE_FORMATS if version is None else version not in CAR_FITTYPS:
+            raise TirError(of_motorcycles(name), path=document.path)
         raise TirError(
             f"is a file of the MF 5.2 generation ({name}); its coefficients have another meaning in MF 6.2, so "
             "renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
@@ -224,6 +228,14 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
         )
     if version is not None and version not in FITTYPS:
         raise TirError(f"has FITTYP {version:g}, but only {fittyps_text()} are supported", path=document.path)
+
+
+def of_motorcycles(stated: str) -> str:
+    """Why a file of the old formula for motorcycles cannot be used, and what to do; ``stated`` is how it says so."""
+    return (
+        f"is of MF-MCTyre, the old formula for motorcycles ({stated}), whose camber force is another one: fit the tyre's data "
+        "again; or, if it is a car's tyre of MF 5.2 with a wrong FITTYP, write FITTYP 6 or use mffit convert --fittyp 6"
+    )
 
 
 def _refuse_truncated(values, document: Document) -> None:
