@@ -251,11 +251,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
         )
     rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
-    if default:
+    if default and not _known_default(tyre, rows[0].name):
         yield _warning(
             rows[0].name, f"the {len(rows)} turn-slip coefficients are the common defaults, not measurements"
         )
-    if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0):
+    if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0) and not _known_default(tyre, "PECP1"):
         yield _warning(
             "PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
         )
@@ -269,6 +269,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
             "PHYP1",
             "the camber force with turn slip on differs from the one with turn slip off times R0/Re: check PHYP1-4",
         )
+
+
+def _known_default(tyre: Tyre, name: str) -> bool:
+    """Whether a file for turn slip off says itself that the coefficient is a default, as after an export."""
+    return not tyre.turn_slip and tyre.status.get(name, "").startswith("default")
 
 
 def _moments(tyre: Tyre) -> Iterator[Problem]:
