@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS, refuse_zero_divisors
+from tir.codegen.program import INPUTS, called, refuse_zero_divisors
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.mode import exported
@@ -37,7 +37,7 @@ def casadi_function(
     limits: bool = False,
     tunable: Sequence[str] = (),
 ) -> Any:
-    """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, pressure (ISO-W, SI, radians).
+    """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians).
 
     An input that a call by name omits has the value of an FMU's start: FNOMIN, LONGVL, INFLPRES, the factors of the file, else 0.
 
@@ -66,7 +66,7 @@ def casadi_function(
     factors = {one.name: one.start for one in chosen(tyre, tunable)}
     turned = [*factors]
     program = trace_tuned(tyre, switches, outputs, turned)
-    inputs = {key: casadi.SX.sym(key) for key in (*INPUTS, *turned)}
+    inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *turned)}
     known: dict[int, Any] = {}
 
     def of(x: Any) -> Any:
@@ -89,7 +89,7 @@ def casadi_function(
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
         "default_in": [float(usual.get(key, 0.0)) for key in inputs],
     }
-    return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)
+    return casadi.Function(name, [*inputs.values()], results, [*map(called, inputs)], [*outputs], options)
 
 
 def _guarded(casadi: Any, word: str, x: Any, end: float, there: float) -> Any:

@@ -14,7 +14,14 @@ from tir.evaluate import either_way, zero_divisors
 from tir.parameters import TABLE
 
 INPUTS = ("Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "pressure")
+CALLED = {"pressure": "p"}
+"""Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
 NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
+
+
+def called(name: str) -> str:
+    """The name of an input in a call of the tyre and in exported code."""
+    return CALLED.get(name, name)
 
 
 class Switches(NamedTuple):
