@@ -10,21 +10,20 @@ import math
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tir import constants, kernels
-from tir.codegen import kernel, single
-from tir.codegen.kernel import LANES
+from tir.codegen import single
+from tir.codegen.cpython import SCALARS, kernel
+from tir.codegen.cpython.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
 from tir.evaluate import unchecked
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
+from tir.record import TyreRecord
 
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
@@ -73,7 +72,7 @@ def compile_kernels(
             kernels.load(kind, Switches(on, star, limits))
 
 
-def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
+def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
     """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
     arrays = [np.asarray(x) for x in inputs]
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
@@ -94,13 +93,13 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
     return tuple.__new__(Forces, ROWS(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
-def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
+def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
     return State(*some_of(tyre, inputs, switches, STATE))
 
 
 def some_of(
-    tyre: Tyre, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+    tyre: TyreRecord, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
 ) -> tuple[Any, ...]:
     """The named forces and states for the same."""
     arrays = [np.asarray(x) for x in inputs]
@@ -119,7 +118,7 @@ def _real(arrays: Sequence[np.ndarray]) -> bool:
 
 
 def _one(
-    tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]
+    tyre: TyreRecord, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]
 ) -> tuple[Any, ...]:
     """Outputs of a scalar call as floats; NaN or infinity, as numpy has them, where Python's arithmetic raises."""
     numbers = [float(x) for x in inputs]
@@ -134,7 +133,7 @@ def _one(
 
 
 def _evaluated(
-    tyre: Tyre, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+    tyre: TyreRecord, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
 ) -> tuple[Any, ...]:
     """Outputs by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
     refuse_zero_divisors(tyre.p, switches, outputs)
@@ -151,7 +150,7 @@ def _plain(x: Any) -> Any:
     return x.item() if isinstance(x, np.ndarray | np.generic) and np.ndim(x) == 0 else x
 
 
-def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
+def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
@@ -172,12 +171,12 @@ def _counted(
 ) -> Callable:
     """The function for plain numbers, until the kernel is loaded; then it puts the kernel in its place among ``prepared``.
 
-    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.kernel.SCALARS`.
+    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.cpython.SCALARS`.
     """
     meter = kernels.meter("one", switches)
 
     def counting(*given: Any) -> tuple[float, ...]:
-        if not kernel.SCALARS.issuperset(map(type, given)):
+        if not SCALARS.issuperset(map(type, given)):
             raise TypeError("only plain numbers are computed here")
         meter.left -= 1
         if meter.left <= 0:
@@ -190,7 +189,7 @@ def _counted(
     return counting
 
 
-def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
+def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Callable | None:
     """The kernel for arrays bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is no real number."""
     bound = tyre.prepared.get(("batch", switches))
     if bound is not None:
@@ -208,7 +207,7 @@ def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
     return tyre.prepared["batch", switches]
 
 
-def lag_of(tyre: Tyre, switches: Switches) -> tuple[Callable, Callable] | None:
+def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Callable, Callable] | None:
     """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
     if ("lag", switches) not in tyre.prepared:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
@@ -218,7 +217,7 @@ def lag_of(tyre: Tyre, switches: Switches) -> tuple[Callable, Callable] | None:
     return tyre.prepared["lag", switches]
 
 
-def _values(tyre: Tyre, switches: Switches, outputs: tuple[str, ...]) -> dict[str, float] | None:
+def _values(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...]) -> dict[str, float] | None:
     """The parameters as floats; None if one is not a real number. Refuses zeros by which the outputs are divided."""
     refuse_zero_divisors(tyre.p, switches, outputs)
     given = {name: tyre.values[name] for name in NUMBERS}
@@ -227,7 +226,7 @@ def _values(tyre: Tyre, switches: Switches, outputs: tuple[str, ...]) -> dict[st
     return {name: float(x) for name, x in given.items()}
 
 
-def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
+def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
     """Forces (6, n) of inputs that are scalars or (n,); None if a parameter is not a real number."""
     run = _kernel_for(tyre, n, switches)
     if run is not None:
@@ -240,7 +239,7 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
     return out
 
 
-def _arrays_of(tyre: Tyre, switches: Switches) -> Callable | None:
+def _arrays_of(tyre: TyreRecord, switches: Switches) -> Callable | None:
     """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:

@@ -1,4 +1,4 @@
-"""Reading property files: Document and table to Tyre."""
+"""What a property file means: Document and table to the record of a tyre."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 from tir.codegen.program import Switches, trace
-from tir.document import Document, FileLine, read_document
+from tir.document import Document, FileLine
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
+from tir.record import Quantity, TyreRecord
 from tir.targets import FITTYPS, TARGETS, fittyps_text
-from tir.tyre import Quantity, Tyre
 from tir.units import KINDS, factor
 
+Kind = TypeVar("Kind", bound=TyreRecord)
 OLD_FITTYPS = {
     5: "MF-Tyre 5",
     6: "MF-Tyre 5.2",
@@ -46,27 +46,8 @@ STATUS = re.compile(
 )
 
 
-def read(path: str | Path, **lacking: float | str) -> Tyre:
-    """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
-
-    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
-    unusual with its line.
-
-    Parameters
-    ----------
-    path : the file
-    lacking : values [SI] of keys that the file lacks, such as ``UNLOADED_RADIUS=0.3``; a key of the file keeps its value
-
-    Raises
-    ------
-    TirError
-        If the file is not a property file, is truncated, contains an unreadable number, or has another MF version.
-    """
-    return interpret(read_document(path), lacking)
-
-
-def interpret(document: Document, lacking: Mapping[str, float | str] = MappingProxyType({})) -> Tyre:
-    """The tyre that a document describes, with values of keys that it lacks; raises as :func:`read`."""
+def described(kind: type[Kind], document: Document, lacking: Mapping[str, float | str]) -> Kind:
+    """The tyre of a document, with values of keys that it lacks; raises as :func:`tir.read`."""
     entries = document.entries
     if not entries:
         raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
@@ -103,7 +84,7 @@ def interpret(document: Document, lacking: Mapping[str, float | str] = MappingPr
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
-    return Tyre(
+    return kind(
         values=MappingProxyType(complete),
         present=frozenset(values),
         status=MappingProxyType(status),
@@ -125,7 +106,7 @@ def add_given(
     TirError
         If a name is unknown, or a value is no finite number where one is needed.
     """
-    added = Tyre.from_values(given).present - values.keys()
+    added = TyreRecord.from_values(given).present - values.keys()
     for name, value in given.items():
         if not isinstance(value, str) and not math.isfinite(value):
             raise TirError(f"the given {name} is {value}, which no formula can use: give a number", name=name)

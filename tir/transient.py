@@ -15,19 +15,17 @@ length are stable.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tir.calls import OF_CONTACT, lag_of, some_of
-from tir.codegen.kernel import SCALARS
+from tir.codegen.cpython import SCALARS
 from tir.codegen.program import Switches
 from tir.equations import contact as equations
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
+from tir.tyre import Tyre
 
 
 class Contact(NamedTuple):

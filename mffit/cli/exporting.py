@@ -180,7 +180,7 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     from tir.document import parse_document
     from tir.errors import counted, some
     from tir.parameters import TABLE
-    from tir.properties import interpret
+    from tir.reading import interpret
     from tir.targets import TARGETS
 
     names = list(filter(None, (name.strip() for name in targets.split(","))))

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tir.codegen.graph import Node
 from tir.codegen.program import INPUTS, called, refuse_zero_divisors
 from tir.equations.forces import Forces
 from tir.errors import TirError
-from tir.mode import exported
-from tir.tuning import chosen, trace_tuned
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
+from tir.record import TyreRecord
+from tir.tuning import chosen, exported, trace_tuned
 
 OPERATORS = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
@@ -28,7 +25,7 @@ GUARDED = {"sqrt": (0.0, 0.0), "arccos": (1.0, 0.0)}
 
 
 def casadi_function(
-    tyre: Tyre,
+    tyre: TyreRecord,
     *,
     name: str | None = None,
     outputs: tuple[str, ...] = Forces._fields,
