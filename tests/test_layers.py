@@ -146,7 +146,9 @@ def test_no_modules_of_tir_import_each_other_in_a_circle():
     names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in modules("tir")}
     needed: dict[str, set[str]] = {}
     for own, path in names.items():
-        found = {other for _, name in imports(path) for other in (name, name.rpartition(".")[0]) if other in names}
+        found = {
+            other for _, name in imports(path) for other in (name, name.rpartition(".")[0]) if other in names
+        }
         needed[own] = {other for other in found if (own, other) != DRAWN_WHEN_CALLED}
     assert len(list(TopologicalSorter(needed).static_order())) == len(names)
 

@@ -25,6 +25,7 @@ from tir.errors import TirError
 from tir.evaluate import unchecked
 from tir.record import TyreRecord
 
+Function = Callable[..., Any]
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
@@ -125,11 +126,11 @@ def _one(
     run = function_of(tyre, switches, outputs)
     try:
         if run is not None:
-            return run(*numbers)
+            found: tuple[Any, ...] = run(*numbers)
+            return found
     except (ArithmeticError, ValueError):
         pass
-    found = _evaluated(tyre, [np.float64(x) for x in numbers], switches, outputs)
-    return tuple(map(_plain, found))
+    return tuple(map(_plain, _evaluated(tyre, [np.float64(x) for x in numbers], switches, outputs)))
 
 
 def _evaluated(
@@ -150,7 +151,7 @@ def _plain(x: Any) -> Any:
     return x.item() if isinstance(x, np.ndarray | np.generic) and np.ndim(x) == 0 else x
 
 
-def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
+def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Function | None:
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
@@ -163,12 +164,13 @@ def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] =
         else:
             run = single.run_of(values, switches, outputs)
             tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if outputs is FORCES else run
-    return tyre.prepared[key]
+    found: Function | None = tyre.prepared[key]
+    return found
 
 
 def _counted(
-    prepared: dict[Any, Any], run: Callable, values: dict[str, float], switches: Switches
-) -> Callable:
+    prepared: dict[Any, Any], run: Function, values: dict[str, float], switches: Switches
+) -> Function:
     """The function for plain numbers, until the kernel is loaded; then it puts the kernel in its place among ``prepared``.
 
     As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.cpython.SCALARS`.
@@ -183,15 +185,15 @@ def _counted(
             loaded = meter.kernel()
             if loaded is not None:
                 prepared[switches] = faster = loaded.run_of(values)
-                return faster(*given)
-        return run(*map(float, given))
+                return faster(*given)  # type: ignore[no-any-return]
+        return run(*map(float, given))  # type: ignore[no-any-return]
 
     return counting
 
 
-def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Callable | None:
+def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None:
     """The kernel for arrays bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is no real number."""
-    bound = tyre.prepared.get(("batch", switches))
+    bound: Function | None = tyre.prepared.get(("batch", switches))
     if bound is not None:
         return bound
     meter = kernels.meter("batch", switches)
@@ -204,17 +206,19 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Callable | None
     if ("batch", switches) not in tyre.prepared:
         values = _values(tyre, switches, FORCES)
         tyre.prepared["batch", switches] = None if values is None else loaded.run_of(values)
-    return tyre.prepared["batch", switches]
+    bound = tyre.prepared["batch", switches]
+    return bound
 
 
-def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Callable, Callable] | None:
+def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Function, Function] | None:
     """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
     if ("lag", switches) not in tyre.prepared:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
         values = _values(tyre, switches, (*FORCES, *OF_CONTACT))
         tyre.prepared["lag", switches] = None if values is None else lag_functions(values, switches)
-    return tyre.prepared["lag", switches]
+    found: tuple[Function, Function] | None = tyre.prepared["lag", switches]
+    return found
 
 
 def _values(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...]) -> dict[str, float] | None:
@@ -239,7 +243,7 @@ def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Swit
     return out
 
 
-def _arrays_of(tyre: TyreRecord, switches: Switches) -> Callable | None:
+def _arrays_of(tyre: TyreRecord, switches: Switches) -> Function | None:
     """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:
@@ -248,17 +252,18 @@ def _arrays_of(tyre: TyreRecord, switches: Switches) -> Callable | None:
             return None
         program = replay(switches, FORCES)
         tyre.prepared[key] = lambda *block: program({**values, **dict(zip(INPUTS, block, strict=True))})
-    return tyre.prepared[key]
+    found: Function | None = tyre.prepared[key]
+    return found
 
 
-def _in_numpy(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
+def _in_numpy(run: Function, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
     for start in range(0, out.shape[1], BLOCK):
         found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in inputs))
         for row, force in zip(out, found, strict=True):
             row[start : start + BLOCK] = force
 
 
-def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
+def _in_vectors(run: Function, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
     out = np.empty((len(FORCES), max(n, LANES)))
     if n < LANES:
         padded = [x if x.ndim == 0 else np.append(x, np.ones(LANES - n)) for x in inputs]

@@ -68,7 +68,17 @@ def evaluate(
 
 
 def unchecked(
-    p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+    p: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
 ) -> tuple[Forces, State]:
     """As :func:`evaluate`, all given; what divides by a parameter that is 0 is infinite, NaN or an ArithmeticError."""
     if isinstance(pressure, float | int):
@@ -81,7 +91,17 @@ def unchecked(
 
 
 def forwards(
-    p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+    p: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
 ) -> tuple[Forces, State]:
     """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, all given."""
     unloaded = np.real(Fz) <= 0.0
@@ -102,7 +122,18 @@ def forwards(
 
 
 def either_way(
-    p, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+    p: Any,
+    backwards: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
 ) -> tuple[Forces, State]:
     """The model for either direction: where ``backwards`` holds, in a frame turned by half a revolution about z.
 
@@ -131,13 +162,13 @@ def zero_divisors(p: Any) -> list[str]:
     return [name for name in DIVISORS if isinstance(value := getattr(p, name), Real) and value == 0.0]
 
 
-def _clip(x, lower, upper):
+def _clip(x: Any, lower: Any, upper: Any) -> Any:
     if lower is not None:
         x = select(np.real(x) < lower, lower, x)
     return select(np.real(x) > upper, upper, x)
 
 
-def _loads_below_range(p, Fz, Fz_given) -> tuple[Any, Loads]:
+def _loads_below_range(p: Any, Fz: Any, Fz_given: Any) -> tuple[Any, Loads]:
     """Loads for the moments: below FZMIN these fall faster than the load, so that an unloaded wheel has no moment."""
     below = np.real(Fz) < p.FZMIN
     floor = select(p.FZMIN > 0.0, p.FZMIN, 1.0)

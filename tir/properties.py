@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -77,7 +77,7 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
             status[line.key] = line.comment
     added = add_given(values, lacking, problems)
     status |= dict.fromkeys(added, "given when the file was read")
-    _refuse_other_versions(values, extra, document)
+    _refuse_other_versions(values, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
     stated = {line.key for line in entries if parameter_of(line)} | added
@@ -193,13 +193,13 @@ def _needed() -> frozenset[str]:
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
-def _refuse_other_versions(values, extra, document: Document) -> None:
+def _refuse_other_versions(values: Mapping[str, float | str], document: Document) -> None:
     version = values.get("FITTYP")
     form = str(values.get("PROPERTY_FILE_FORMAT", "")).upper()
     if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS | MOTORCYCLE_FORMATS):
         name = f"PROPERTY_FILE_FORMAT '{form}'"
         if version in OLD_FITTYPS:
-            name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
+            name = f"FITTYP {version:g}: {OLD_FITTYPS[int(version)]}"
         if form in MOTORCYCLE_FORMATS if version is None else version not in CAR_FITTYPS:
             raise TirError(of_motorcycles(name), path=document.path)
         raise TirError(
@@ -219,7 +219,7 @@ def of_motorcycles(stated: str) -> str:
     )
 
 
-def _refuse_truncated(values, document: Document) -> None:
+def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> None:
     coefficients = any(name in values for name in ESSENTIAL_COEFFICIENTS)
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
@@ -241,7 +241,7 @@ def _refuse_truncated(values, document: Document) -> None:
         )
 
 
-def _about_a_cut_number(values, document: Document) -> list[Problem]:
+def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -> list[Problem]:
     """A problem, or an error, if the file ends without a line end and may be truncated within its last number."""
     line = document.lines[-1]
     row = parameter_of(line)
@@ -266,7 +266,7 @@ def _about_a_cut_number(values, document: Document) -> list[Problem]:
     )
 
 
-def _about_missing(values, stated) -> list[Problem]:
+def _about_missing(values: Mapping[str, float | str], stated: Collection[str]) -> list[Problem]:
     """Problems for missing keys of the file's version; those without a usable value have been reported already."""
     version = values.get("FITTYP")
     missing = [
@@ -291,7 +291,7 @@ def _about_missing(values, stated) -> list[Problem]:
     return out
 
 
-def _about_unknown(extra) -> list[Problem]:
+def _about_unknown(extra: Mapping[str, str]) -> list[Problem]:
     names = [
         key
         for key in extra

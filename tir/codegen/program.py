@@ -87,7 +87,9 @@ def run_on_symbols(
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
     if changed is not None:
         changed(p, graph)
-    inputs = {name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS}
+    inputs: dict[str, Any] = {
+        name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS
+    }
     forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
     return {**state._asdict(), **forces._asdict()}
 

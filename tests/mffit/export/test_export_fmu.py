@@ -182,9 +182,7 @@ def test_a_result_that_is_no_number_has_a_status_and_a_sentence(tmp_path, fmi, t
     )  # fmt: skip
     with pytest.raises(Exception, match=r"failed with status 2 \(discard\)"):
         run(start_values=start)
-    assert re.match(
-        rf"Fx is not a finite number: correct the property file, or one of .*{said}", logged[0]
-    )
+    assert re.match(rf"Fx is not a finite number: correct the property file, or one of .*{said}", logged[0])
     logged.clear()
     assert np.all(np.isfinite(run(start_values={"LFZO": 1.1})["Fy"]))
     assert not logged

@@ -55,7 +55,8 @@ class Kernel(NamedTuple):
         numbers = array("d", constants(self.prepare, values)).tobytes()
         numbers += array("Q", sorted(map(id, SCALARS))).tobytes()
         keeps_alive = self
-        return bind(ctypes.addressof(self.definition), numbers, keeps_alive)
+        bound: Callable[..., Any] = bind(ctypes.addressof(self.definition), numbers, keeps_alive)
+        return bound
 
 
 class _Definition(ctypes.Structure):
@@ -168,7 +169,8 @@ def _compiled(text: str, machine: Any) -> bytes:
     module.triple, module.data_layout = machine.triple, str(machine.target_data)
     passes = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
     passes.getModulePassManager().run(module, passes)
-    return machine.emit_object(module)
+    code: bytes = machine.emit_object(module)
+    return code
 
 
 @cache
