@@ -300,7 +300,7 @@ def _rotation(
         return f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's"
     V = np.abs(converted(speed.values, _unit_of("V_mps", found, chosen), "m/s"))
     lengths = BY_NAME["RL_m"]
-    limits = (lengths.lower, lengths.upper)
+    limits: tuple[float, ...] = (lengths.lower, lengths.upper)
     if radius is not None:
         limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
     fits: dict[str, float] = {}
