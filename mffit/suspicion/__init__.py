@@ -9,7 +9,7 @@ from mffit.suspicion.prediction import FittedModel, parts_of_sweeps
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
+from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOutSweeps, Measurement, Trust, judge
 from mffit.suspicion.unpublished import CamberReduction
 
 __all__ = [
@@ -22,6 +22,7 @@ __all__ = [
     "HeldNumber",
     "JudgedSweeps",
     "LeftOutSweeps",
+    "Measurement",
     "Misread",
     "Outlier",
     "Trust",

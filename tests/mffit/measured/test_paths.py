@@ -137,7 +137,7 @@ def force_of_path(sign: float, C_phit: float, u: float, radius: float = R) -> Pa
     exact = ufloat(radius, 1e-12)
     force = ufloat(sign * C_phit / radius, u / radius)
     return PathForce(
-        sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force, alpha_M=None
+        sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force
     )
 
 
