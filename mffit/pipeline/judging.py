@@ -23,8 +23,8 @@ from mffit.suspicion import (
     CamberReduction,
     Doubt,
     FinishedFit,
+    JudgedMeasurement,
     LeftOutSweeps,
-    Measurement,
     Outlier,
     Trust,
     judge,
@@ -68,7 +68,7 @@ def judged_measurement(config: Config, points: Points, measured: Measured) -> Tr
     """The judgement of direct measurements by the rules that need no fit."""
     reduction = _camber_reduction(config, measured)
     return judge(
-        Measurement(points=points, camber_reduction=reduction, sideslip_zeros=measured.sideslip_zeros)
+        JudgedMeasurement(points=points, camber_reduction=reduction, sideslip_zeros=measured.sideslip_zeros)
     )
 
 

@@ -52,7 +52,7 @@ class HeldNumber:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Measurement:
+class JudgedMeasurement:
     """What the rules of trust look at that need no fit."""
 
     points: Points
@@ -61,7 +61,7 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FinishedFit(Measurement):
+class FinishedFit(JudgedMeasurement):
     """What the rules of trust look at after a fit."""
 
     model: Readings  #: what the fitted model reads
@@ -283,7 +283,7 @@ APART = (
     outcome=Outcome.DISTRUSTED,
     sentence=APART,
 )
-def zeros_contradict(measured: Measurement) -> Iterator[dict[str, Any]]:
+def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
     yield from (_apart(z) for z in measured.sideslip_zeros if z.chance < ndtr(-constants.CERTAIN_SIGMA))
 
@@ -294,7 +294,7 @@ def zeros_contradict(measured: Measurement) -> Iterator[dict[str, Any]]:
     outcome=Outcome.WARNED,
     sentence=APART,
 )
-def zeros_in_doubt(measured: Measurement) -> Iterator[dict[str, Any]]:
+def zeros_in_doubt(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """The same with less certainty."""
     certain, doubtful = ndtr(-constants.CERTAIN_SIGMA), ndtr(-constants.DOUBTFUL_SIGMA)
     yield from (_apart(z) for z in measured.sideslip_zeros if certain <= z.chance < doubtful)
@@ -316,7 +316,7 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
     "likeliest causes: {causes}",
 )
-def unpublished(measured: Measurement) -> Iterator[dict[str, Any]]:
+def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Measured camber reduction factor beside those of published tyres."""
     found = measured.camber_reduction
     if found is not None and not (
@@ -347,7 +347,7 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
     "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
 )
-def moment_reversed(measured: Measurement) -> Iterator[dict[str, Any]]:
+def moment_reversed(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
     if {name: s.sign for name, s in overturning_slopes(measured.points).items()} == {"alpha": 1, "gamma": 1}:
         yield {}
@@ -383,7 +383,7 @@ REMARKED = (
 )
 
 
-def judge(found: Measurement) -> Trust:
+def judge(found: JudgedMeasurement) -> Trust:
     """The judgement by all rules of trust, or without a fit by those that need none."""
 
     def said(rules: Sequence[Rule]) -> tuple[str, ...]:
