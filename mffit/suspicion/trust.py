@@ -295,7 +295,7 @@ def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     sentence=APART,
 )
 def zeros_in_doubt(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
-    """The same with less certainty."""
+    """The same angles, where chance is unlikely but not excluded."""
     certain, doubtful = ndtr(-constants.CERTAIN_SIGMA), ndtr(-constants.DOUBTFUL_SIGMA)
     yield from (_apart(z) for z in measured.sideslip_zeros if certain <= z.chance < doubtful)
 
