@@ -30,7 +30,7 @@ from mffit.measured.setups import excess_forces, of_setups, results_of_setups, s
 from mffit.measured.sideslip_zero import SetupAngle, ZeroAngle, angles_of_setups
 from mffit.measured.slip_stiffness import slip_stiffness
 from mffit.measured.turning import Turning, turning
-from mffit.measured.zero_split import alignment_verdict, at_true_zero, split_of_zero
+from mffit.measured.zero_split import alignment_verdict, at_true_zero, camber_at_true_zero, split_of_zero
 from mffit.parts import Parts
 from mffit.points import Points
 from tir import Quantity, Tyre
@@ -77,7 +77,10 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     axes, zeros = _sideslip_zeros(evidence, [(group, slopes) for group, slopes, _ in found_slopes])
     evidence = replace(evidence, axes=axes)
     for group, slopes, troubles in found_slopes:
-        found, more = _at_load(evidence, group, slopes)
+        # Camber sweeps in both directions are free of it: their mean is the stiffness at true zero.
+        found, more = _at_load(
+            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes)
+        )
         rows += [] if found is None else [found]
         warnings += troubles + more
     measured, troubles = _assembled(evidence, rows, skew)
@@ -97,6 +100,21 @@ def _of_other_loads(rows: Sequence[LoadResult]) -> list[str]:
     without = [row.load for row in zeros if not math.isfinite(row.F_backward)]
     known = [row.load for row in zeros if math.isfinite(row.F_backward)]
     return [notes.axis_of_other_loads(without, known)] if without and known else []
+
+
+def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
+    """The slopes with the camber stiffness at true zero of sideslip, where the axis is known to be off."""
+    axis = next(iter(evidence.axes.values()), None)
+    if axis is None or slopes.C_alpha is None or slopes.bend is None:
+        return slopes
+    C_alpha = float(slopes.C_alpha.nominal_value)
+    split = split_of_zero(axis.at(group.load), C_alpha, evidence.config.rig.u("alpha_0_deg"))
+    assert split is not None
+    factor = camber_at_true_zero(C_alpha, slopes.bend, split)
+    C_gamma, slope, secant = (
+        None if C is None else C * factor for C in (slopes.C_gamma, slopes.slope, slopes.secant)
+    )
+    return replace(slopes, C_gamma=C_gamma, slope=slope, secant=secant)
 
 
 def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[str, float]:

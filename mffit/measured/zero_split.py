@@ -77,6 +77,16 @@ def at_true_zero(
     return C_alpha - bend * off
 
 
+def camber_at_true_zero(C_alpha: float, bend: UFloat, split: ZeroSplit) -> UFloat:
+    """Camber stiffness at true zero of sideslip over that at the reading of zero.
+
+    Camber that acts as sideslip loses its force with the bend of the sideslip curve, camber with a force of its own does not.
+    Every share between them is as likely: a rectangular distribution from 0 to 1 (JCGM 100, 4.3.7).
+    """
+    share = named(0.5, 1.0 / math.sqrt(12.0), "camber stiffness off true zero", "-")
+    return 1.0 - share * (bend / C_alpha) * split.misalignment
+
+
 class AlignmentVerdict(NamedTuple):
     """Whether the slip force at zero exceeds what the rig's own alignment leaves."""
 

@@ -106,6 +106,19 @@ def test_a_bent_curve_is_followed_to_the_true_zero(alpha_0):
     assert right.F_phit.value == pytest.approx(other.turn_slip_force(1500.0), abs=3.0)
 
 
+@pytest.mark.parametrize(("share", "off"), [(0.0, 1.0), (0.5, 0.0), (1.0, -1.0)])
+def test_the_camber_stiffness_is_that_at_true_zero_of_sideslip(share, off):
+    """Camber that acts as so much sideslip follows the bent curve: d2Fy/(dgamma dalpha) = share bend C_gamma / C_alpha."""
+    tyre = Plain(alpha_0=OFF)
+    points = bent(tyre, tyre.campaign())
+    mixed = share * 130.0 * 0.9 / 12.0  # per load [1/rad^2]
+    leant = found(points.replace(Fy=points.Fy + points.Fz * mixed * OFF * points.gamma)).C_gamma
+    straight = found(Plain().campaign()).C_gamma
+    correction = 130.0 * OFF / 12.0 * 0.5 * straight.value
+    assert leant.value - straight.value == pytest.approx(off * correction, abs=5.0)
+    assert abs(leant.value - straight.value) < 1.8 * leant.u
+
+
 def test_a_path_without_backward_zeros_has_the_axis_of_its_set_up_too():
     both = Plain(alpha_0=OFF).campaign()
     other = zeros(Plain(side=1, alpha_0=OFF).campaign(backward=False))
