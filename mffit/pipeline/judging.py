@@ -1,4 +1,4 @@
-"""Whether the result of a build or of a diagnosis is to be trusted: what the rules of trust need, and their judgement."""
+"""Whether a build, a direct measurement or a diagnosis is to be trusted: what the rules need, and their judgement."""
 
 from __future__ import annotations
 
@@ -19,7 +19,16 @@ from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
+from mffit.suspicion import (
+    CamberReduction,
+    Doubt,
+    FinishedFit,
+    JudgedMeasurement,
+    LeftOutSweeps,
+    Outlier,
+    Trust,
+    judge,
+)
 from tir import Tyre
 
 
@@ -49,9 +58,23 @@ def judged(
         held=left.held,
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
+        sideslip_zeros=measured.sideslip_zeros,
     )
     plain = replace(finished, model=fitted.model)
     return replace(judge(finished), over_noise=plain.over_noise), left
+
+
+def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
+    """The judgement of direct measurements by the rules that need no fit."""
+    reduction = _camber_reduction(config, measured)
+    return judge(
+        JudgedMeasurement(points=points, camber_reduction=reduction, sideslip_zeros=measured.sideslip_zeros)
+    )
+
+
+def said(trust: Trust) -> tuple[str, ...]:
+    """Reasons and doubts as warnings."""
+    return (*(f"the result is not to be trusted: {reason}" for reason in trust.reasons), *trust.doubts)
 
 
 def judged_diagnosis(diagnosis: Diagnosis) -> Trust:

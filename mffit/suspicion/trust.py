@@ -1,4 +1,6 @@
-"""Whether a fitted model is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+"""Whether a result is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+
+Some rules look at the direct measurement only, and hold without a fit, too; all others judge a fitted model.
 
 Where a noise is stated, the misfit is compared with it. Real tyres do not follow the formula to within the scatter of a sensor:
 if no noise is stated, or many sweeps miss it alike and predict each other as well as they are fitted, then the prediction of
@@ -8,7 +10,7 @@ left-out sweeps and the share of the variance that is explained decide.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -16,12 +18,14 @@ from typing import Any
 import numpy as np
 from scipy.special import chdtrc, ndtr
 
+from mffit.measured import SideslipZeros
+from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Outcome, Subject, When, rule
+from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
 from mffit.suspicion.slopes import overturning_slopes
 from mffit.suspicion.unpublished import CamberReduction, causes
 
@@ -48,10 +52,18 @@ class HeldNumber:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FinishedFit:
-    """What the rules of trust look at."""
+class JudgedMeasurement:
+    """What the rules of trust look at that need no fit."""
 
     points: Points
+    camber_reduction: CamberReduction | None = None
+    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedFit(JudgedMeasurement):
+    """What the rules of trust look at after a fit."""
+
     model: Readings  #: what the fitted model reads
     used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
     r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
@@ -62,7 +74,6 @@ class FinishedFit:
     cause_is_certain: bool = False  #: whether chance does not explain it
     held: tuple[HeldNumber, ...] = ()
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
-    camber_reduction: CamberReduction | None = None
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> tuple[float, int]:
         """Misfit over the stated noise (rms) at the used readings that state one, some rows (mask (n,)) only; their number."""
@@ -129,6 +140,7 @@ SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
 NONE_KNOWN = "no known effect explains it"
 of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
+of_measurement = partial(rule, subject=Subject.DIRECT, when=(When.MEASURED,))
 
 
 @of_model(
@@ -258,16 +270,55 @@ def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     yield from ({"problem": problem} for problem in fit.broken)
 
 
-@of_model(
+APART = (
+    "the sideslip zeros of {setup} contradict each other: alpha_M = {one} and {other}, as one axis and the ply-steer of one tyre "
+    "cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis moved, or a "
+    "direction, path_centre or zero is wrong: check the zeros there"
+)
+
+
+@of_measurement(
+    id="contradictory-sideslip-zeros",
+    limits=(constants.CERTAIN_SIGMA,),
+    outcome=Outcome.DISTRUSTED,
+    sentence=APART,
+)
+def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
+    yield from (_apart(z) for z in measured.sideslip_zeros if z.chance < ndtr(-constants.CERTAIN_SIGMA))
+
+
+@of_measurement(
+    id="doubtful-sideslip-zeros",
+    limits=(constants.DOUBTFUL_SIGMA, constants.CERTAIN_SIGMA),
+    outcome=Outcome.WARNED,
+    sentence=APART,
+)
+def zeros_in_doubt(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """The same angles, where chance is unlikely but not excluded."""
+    certain, doubtful = ndtr(-constants.CERTAIN_SIGMA), ndtr(-constants.DOUBTFUL_SIGMA)
+    yield from (_apart(z) for z in measured.sideslip_zeros if certain <= z.chance < doubtful)
+
+
+def _apart(found: SideslipZeros) -> dict[str, Any]:
+    one, other = (
+        f"{math.degrees(x.alpha_M.value):.3f} +- {math.degrees(x.alpha_M.u):.3f} deg at {x.load:.0f} N "
+        f"(path centre {path_in_words(x.phi_t)})"
+        for x in (found.one, found.other)
+    )
+    return {"setup": f"set-up {found.setup}" if found.setup else "one set-up", "one": one, "other": other}
+
+
+@of_measurement(
     id="unpublished-camber-reduction",
     limits=(constants.LEAST_PUBLISHED_EPSILON, constants.MOST_PUBLISHED_EPSILON),
     outcome=Outcome.DISTRUSTED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
     "likeliest causes: {causes}",
 )
-def unpublished(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Measured camber reduction factor beside those of published tyres."""
-    found = fit.camber_reduction
+    found = measured.camber_reduction
     if found is not None and not (
         constants.LEAST_PUBLISHED_EPSILON <= found.value <= constants.MOST_PUBLISHED_EPSILON
     ):
@@ -289,16 +340,16 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             yield {"channel": name, "ratio": ratio, "column": column(name)}
 
 
-@of_model(
+@of_measurement(
     id="overturning-moment-reversed",
     limits=(constants.CHANCE_OF_OTHER_SIGN,),
     outcome=Outcome.WARNED,
     sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
     "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
 )
-def moment_reversed(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def moment_reversed(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
-    if {name: s.sign for name, s in overturning_slopes(fit.points).items()} == {"alpha": 1, "gamma": 1}:
+    if {name: s.sign for name, s in overturning_slopes(measured.points).items()} == {"alpha": 1, "gamma": 1}:
         yield {}
 
 
@@ -332,14 +383,17 @@ REMARKED = (
 )
 
 
-def judge(fit: FinishedFit) -> Trust:
-    """The judgement of a fit by all rules of trust."""
-    return Trust(
-        reasons=tuple(r.said(facts) for r in REASONS for facts in r.find(fit)),
-        doubts=tuple(r.said(facts) for r in DOUBTS for facts in r.find(fit)),
-        remarks=tuple(_remarks(fit)),
-        over_noise=fit.over_noise,
-    )
+def judge(found: JudgedMeasurement) -> Trust:
+    """The judgement by all rules of trust, or without a fit by those that need none."""
+
+    def said(rules: Sequence[Rule]) -> tuple[str, ...]:
+        apply = (r for r in rules if isinstance(found, FinishedFit) or r.subject is Subject.DIRECT)
+        return tuple(r.said(facts) for r in apply for facts in r.find(found))
+
+    reasons, doubts = said(REASONS), said(DOUBTS)
+    if not isinstance(found, FinishedFit):
+        return Trust(reasons, doubts)
+    return Trust(reasons, doubts, tuple(_remarks(found)), found.over_noise)
 
 
 REASONS = (
@@ -349,10 +403,19 @@ REASONS = (
     unpredicted,
     bound_against_data,
     limit_broken,
+    zeros_contradict,
     unpublished,
 )
-"""Rules whose findings make a file not to be trusted, the gravest first."""
-DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, moment_reversed, effect_left, structure_left)
+"""Rules whose findings make a result not to be trusted, the gravest first."""
+DOUBTS = (
+    hand_against_data,
+    doubtful_misfit,
+    far_below_noise,
+    zeros_in_doubt,
+    moment_reversed,
+    effect_left,
+    structure_left,
+)
 """Rules whose findings are warnings."""
 
 

@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
+from mffit.measured.result import SideslipReading, SideslipZeros
 from mffit.points import make_points
 from mffit.rig import Readings
-from mffit.suspicion import CamberReduction, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
+from mffit.suspicion import (
+    CamberReduction,
+    FinishedFit,
+    HeldNumber,
+    JudgedMeasurement,
+    LeftOutSweeps,
+    Trust,
+    judge,
+)
+from tir import Quantity
 
 RNG = np.random.default_rng(3)
 SWEEPS, EACH, U = 10, 20, 6.0
@@ -54,6 +65,28 @@ def test_the_misfit_is_in_doubt_from_1_2_and_not_trusted_from_1_5(scale, trusted
     found = judged(noise(scale))
     assert found.trusted == trusted
     assert bool(found.doubts) == doubted
+
+
+@pytest.mark.parametrize(
+    ("sigma", "trusted", "doubted"),
+    [(3.4, True, False), (3.6, True, True), (4.9, True, True), (5.1, False, False)],
+)
+def test_sideslip_zeros_are_in_doubt_from_3_5_and_not_trusted_from_5_standard_deviations(
+    sigma, trusted, doubted
+):
+    """With a fit and without one."""
+    angle = Quantity(0.006, 0.0002, "rad")
+    one, other = SideslipReading(900.0, -0.75, angle), SideslipReading(1500.0, 0.75, angle)
+    zeros = SideslipZeros("A", float(norm.sf(sigma)), one, other)
+    points = make_points(0.0, 0.0, 1500.0, Fy=0.0, Mz=np.nan, p=2e5, V=11.0, phi_t=0.0)
+    for found in (
+        judge(JudgedMeasurement(points=points, sideslip_zeros=(zeros,))),
+        judged(noise(), sideslip_zeros=(zeros,)),
+    ):
+        assert found.trusted == trusted
+        assert bool(found.doubts) == doubted
+        for sentence in (*found.reasons, *found.doubts):
+            assert "0.344 +- 0.011 deg at 900 N (path centre 1.333 m to the left)" in sentence
 
 
 def test_few_readings_may_miss_by_chance():
