@@ -14,6 +14,10 @@ from mffit import constants
 from tir.derivatives import gradient, plain, traced
 
 
+NEGLIGIBLE = 0.01
+"""Share of the fall that ends a search below which a step is not worth trying."""
+
+
 @dataclass(frozen=True, slots=True)
 class FreeNumber:
     """One free number: starting value, bounds and prior."""
@@ -32,7 +36,9 @@ class Linear:
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
-    limits: np.ndarray  #: (l,) residuals of physical limits: above 0 where a limit is broken, and of no cost where it is kept
+    limits: (
+        np.ndarray
+    )  #: (l,) residuals of physical limits: above 0 where a limit is broken, and of no cost where it is kept
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
 
 
@@ -71,7 +77,9 @@ def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
 class LeastSquaresProblem:
     """Residuals as functions of the numbers (k,)."""
 
-    residual: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]  #: of data (m,) and limits (l,), as in :class:`Linear`
+    residual: Callable[
+        [np.ndarray], tuple[np.ndarray, np.ndarray]
+    ]  #: of data (m,) and limits (l,), as in :class:`Linear`
     linear: Callable[[np.ndarray], Linear]  #: the same with derivatives
 
 
@@ -156,7 +164,7 @@ def minimum(
             here, at_x = problem.linear(x), True
         form = _Quadratic.around(objective, x, here)
         close = form.left < tolerance * cost  # the step from here is the last one
-        step = _step(objective, x, cost, form, damping)
+        step = _step(objective, x, cost, form, damping, NEGLIGIBLE * tolerance * cost)
         if step is None:
             break
         x, cost, damping, at_x = step.x, step.cost, step.damping, False
@@ -251,18 +259,24 @@ class _Step(NamedTuple):
     damping: float  #: for the next step
 
 
-def _step(objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float) -> _Step | None:
-    """The next place with a smaller sum of squares; None if there is none."""
+def _step(
+    objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float, least: float
+) -> _Step | None:
+    """The next place with a smaller sum of squares; None if there is none.
+
+    A step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops, such steps
+    go to and fro, and rounding would decide on which side they end.
+    """
     while damping < 1e12:
         move = form.move(damping)
         if move is not None:
+            promised = form.gain(move)
+            if promised <= least:
+                return None
             trial = np.clip(x + move, objective.lower, objective.upper)
             new = objective.cost(trial, *objective.problem.residual(trial))
             if new < cost:
-                kept = (cost - new) / max(form.gain(trial - x), 1e-300)
-                return _Step(trial, new, _next_damping(damping, kept))
-            if np.all(np.abs(trial - x) <= 1e-12 * (1.0 + np.abs(x))):
-                return None
+                return _Step(trial, new, _next_damping(damping, (cost - new) / promised))
         damping = max(6.0 * damping, 1e-8)
     return None
 
@@ -335,7 +349,9 @@ class _Quadratic(NamedTuple):
                 held[np.argmax(np.where(inwards, slope**2 / np.diag(curvature), 0.0))] = False
                 continue
             with np.errstate(divide="ignore", invalid="ignore"):
-                room = np.where(way == 0.0, math.inf, np.where(way > 0.0, self.high - move, self.low - move) / way)
+                room = np.where(
+                    way == 0.0, math.inf, np.where(way > 0.0, self.high - move, self.low - move) / way
+                )
             nearest = int(np.argmin(room))
             share = _lowest(float(slope @ way), float(way @ damped @ way), limits, self.limits_slope @ way)
             if share >= room[nearest]:
@@ -358,7 +374,9 @@ def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray
     order = np.argsort(place)
     place, sign = place[order], np.where(over[turns], -1.0, 1.0)[order]
     bend = np.cumsum(np.append(curvature + rise[over] @ rise[over], sign * rise[turns][order] ** 2))
-    at = slope + np.cumsum(np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0)))  # the derivative at 0 and at each place
+    at = slope + np.cumsum(
+        np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0))
+    )  # the derivative at 0 and at each place
     k = int(np.searchsorted(at, 0.0)) - 1
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 

@@ -104,7 +104,9 @@ def _most_bent(
                 continue
             data, limits = part.residual(trial)
             expected = here.data + here.slope @ (trial - best)
-            excess = data @ data - expected @ expected + np.sum(broken(limits) ** 2 - broken(here.limits) ** 2)
+            excess = (
+                data @ data - expected @ expected + np.sum(broken(limits) ** 2 - broken(here.limits) ** 2)
+            )
             ratio = 1.0 + excess * stride / probe**2
             if ratio > worst:
                 own = np.abs(direction) / np.sqrt(np.diag(solution.covariance))

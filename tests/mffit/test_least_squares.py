@@ -94,9 +94,12 @@ def test_steps_that_look_at_kept_limits_and_bounds_arrive_at_once():
         return np.array([weight * (normal @ x - 1.0)])
 
     problem = LeastSquaresProblem(
-        lambda x: (x - 2.0, limit(x)), lambda x: Linear(x - 2.0, np.eye(3), limit(x), weight * normal[None, :])
+        lambda x: (x - 2.0, limit(x)),
+        lambda x: Linear(x - 2.0, np.eye(3), limit(x), weight * normal[None, :]),
     )
-    starts = [FreeNumber(name, -3.0 - k, upper=0.5 if name == "z" else np.inf) for k, name in enumerate("xyz")]
+    starts = [
+        FreeNumber(name, -3.0 - k, upper=0.5 if name == "z" else np.inf) for k, name in enumerate("xyz")
+    ]
     found = solve(problem, starts, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx([0.5, 0.5, 0.5], abs=1e-5)
     assert found.steps <= 12
@@ -115,7 +118,9 @@ def test_many_bounds_and_limits_that_act_together_hold_at_the_lowest_place(seed)
         left, over = r + J @ x, np.maximum(v + S @ x, 0.0)
         return 0.5 * (left @ left + over @ over), J.T @ left + S.T @ over
 
-    problem = LeastSquaresProblem(lambda x: (r + J @ x, v + S @ x), lambda x: Linear(r + J @ x, J, v + S @ x, S))
+    problem = LeastSquaresProblem(
+        lambda x: (r + J @ x, v + S @ x), lambda x: Linear(r + J @ x, J, v + S @ x, S)
+    )
     numbers = [FreeNumber(f"x{i}", 0.0, lower[i], upper[i]) for i in range(k)]
     found = solve(problem, numbers, tolerance=1e-12)
     lowest = minimize(half, np.zeros(k), jac=True, bounds=list(zip(lower, upper, strict=True)), tol=1e-14)
@@ -133,7 +138,9 @@ def test_a_search_that_is_stuck_says_so():
     """At a wall every step is rejected until damping makes it tiny: its gain is small, and what is left is not."""
 
     def linear(x):
-        return Linear(cliff(x), np.array([[1.0, 0.0], [1e3, -1e3], [0.0, 0.0]]), np.zeros(0), np.zeros((0, 2)))
+        return Linear(
+            cliff(x), np.array([[1.0, 0.0], [1e3, -1e3], [0.0, 0.0]]), np.zeros(0), np.zeros((0, 2))
+        )
 
     problem = LeastSquaresProblem(lambda x: (cliff(x), np.zeros(0)), linear)
     found = solve(problem, [FreeNumber("x", 0.0), FreeNumber("y", 0.0)])

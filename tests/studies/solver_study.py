@@ -56,7 +56,9 @@ class Row(NamedTuple):
     trf_seconds: float
 
 
-def by_trf(problem: LeastSquaresProblem, numbers: Sequence[FreeNumber], start: np.ndarray) -> tuple[float, float]:
+def by_trf(
+    problem: LeastSquaresProblem, numbers: Sequence[FreeNumber], start: np.ndarray
+) -> tuple[float, float]:
     """Sum of squares where ``trf`` ends, and its processor time [s]."""
     lower, upper = (np.array([getattr(n, end) for n in numbers]) for end in ("lower", "upper"))
     weight = np.array([0.0 if np.isinf(n.spread) else 1.0 / n.spread for n in numbers])
