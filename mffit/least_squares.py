@@ -13,7 +13,6 @@ from scipy.linalg import cho_factor, cho_solve
 from mffit import constants
 from tir.derivatives import gradient, plain, traced
 
-
 NEGLIGIBLE = 0.01
 """Share of the fall that ends a search below which a step is not worth trying."""
 

@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import unlisted_study
-import worlds  # it makes drawn_rigs importable
 from scipy.optimize import least_squares
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
