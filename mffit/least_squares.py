@@ -353,10 +353,10 @@ class _Quadratic(NamedTuple):
                 )
             nearest = int(np.argmin(room))
             share = _lowest(float(slope @ way), float(way @ damped @ way), limits, self.limits_slope @ way)
-            if share >= room[nearest]:
-                share, held[nearest] = room[nearest], True
-            move = np.clip(move + share * way, self.low, self.high)
-            if held[nearest]:
+            reached = share >= room[nearest]
+            move = np.clip(move + min(share, room[nearest]) * way, self.low, self.high)
+            if reached:
+                held[nearest] = True
                 move[nearest] = (self.high if way[nearest] > 0.0 else self.low)[nearest]
             limits = self.limits + self.limits_slope @ move
         return move
@@ -373,9 +373,9 @@ def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray
     order = np.argsort(place)
     place, sign = place[order], np.where(over[turns], -1.0, 1.0)[order]
     bend = np.cumsum(np.append(curvature + rise[over] @ rise[over], sign * rise[turns][order] ** 2))
-    at = slope + np.cumsum(
-        np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0))
-    )  # the derivative at 0 and at each place
+    bend = np.maximum(bend, curvature)  # steep limits leave rounding
+    # The derivative at 0 and at each of these places:
+    at = slope + np.cumsum(np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0)))
     k = int(np.searchsorted(at, 0.0)) - 1
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 

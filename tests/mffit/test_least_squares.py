@@ -47,6 +47,13 @@ def test_a_prior_counts_as_one_more_reading():
     assert found.covariance == pytest.approx(np.linalg.inv(rows.T @ rows), rel=1e-9)
 
 
+def test_a_number_at_its_bound_stays_there_beside_numbers_without_bounds():
+    numbers = [FreeNumber("a", 0.4, -3.0, 0.4), FreeNumber("b", 0.0), FreeNumber("c", 0.0)]
+    found = solve(linear_problem(), numbers, tolerance=1e-12)
+    rest, *_ = np.linalg.lstsq(A[:, 1:], DATA - 0.4 * A[:, 0], rcond=None)
+    assert list(found.values.values()) == pytest.approx([0.4, *rest], abs=1e-8)
+
+
 def test_a_bound_holds_and_is_reported():
     found = solve(linear_problem(), numbers(a={"lower": -3.0, "upper": 0.4}), tolerance=1e-12)
     bounded = least_squares(
@@ -112,7 +119,8 @@ def test_many_bounds_and_limits_that_act_together_hold_at_the_lowest_place(seed)
     k, many = int(random.integers(2, 12)), int(random.integers(1, 30))
     J, r = random.normal(size=(20, k)), 3.0 * random.normal(size=20)
     S, v = 30.0 * random.normal(size=(many, k)), random.normal(size=many) - 1.0
-    lower, upper = -random.exponential(size=k), random.exponential(size=k)
+    lower, upper = (np.where(random.random(k) < 0.3, np.inf, random.exponential(size=k)) for _ in range(2))
+    lower = -lower
 
     def half(x):
         left, over = r + J @ x, np.maximum(v + S @ x, 0.0)
