@@ -47,7 +47,7 @@ def judged(
         cause_is_certain=bool(fitted.doubts or left.sweep)
         or (left.effect is not None and left.effect.significant),
         held=left.held,
-        left=max(fit.left for fit in (fitted.full, fitted.search) if fit is not None),
+        left=fitted.left,
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
     )

@@ -27,6 +27,7 @@ from mffit.config import load
 from mffit.errors import InputError
 from mffit.fit import polish
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, broken, solve
+from mffit.suspicion.constants import LARGEST_FALL_LEFT
 from tests.mffit.fit import combined_programme as belt
 
 DECISIVE = 0.1
@@ -153,7 +154,7 @@ def main(count: int, paths: Sequence[str]) -> None:
     beside = np.array([row.trf_cost - row.cost for row in every])
     print(
         f"{built} builds, {len(every)} searches: trf gains more than {DECISIVE} from {np.sum(gain > DECISIVE)} ends, "
-        f"{np.sum(left > 1.0)} of which a step promises more than 1; from the start trf ends higher in "
+        f"{np.sum(left > LARGEST_FALL_LEFT)} of which count as stuck; from the start trf ends higher in "
         f"{np.sum(beside > DECISIVE)}, lower in {np.sum(beside < -DECISIVE)}; "
         f"{sum(r.seconds for r in every):.0f} s, trf {sum(r.trf_seconds for r in every):.0f} s"
     )
