@@ -32,7 +32,7 @@ ROWS_AT_ONCE = Count(
 )
 ROWS_AS_TEXT = Count(16_384, "-", "Rows of a table that are in memory as text at the same time.")
 LOOKS_AT_LIMITS = Count(
-    6, "-", "Most times a step is computed again because it would break a limit or cross a bound."
+    200, "-", "Most times a step is computed again because it meets a limit or a bound; 5 to 50 are usual."
 )
 ZERO_SIDESLIP = Real(
     0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."

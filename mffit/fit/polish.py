@@ -86,6 +86,7 @@ def _fitted(
         at_limit=solution.at_limit - solution.at_bound,
         regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
         scale=scale,
+        left=solution.left,
         cost=solution.cost,
         hand=given.hand,
     )

@@ -15,7 +15,7 @@ from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros
 from mffit.fit.wheel.rolling import effective_radius
-from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, condensed
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
@@ -114,24 +114,14 @@ class FitProblem:
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             here = at(x)
             data = np.concatenate([*here.misfit().values(), here.radii_rows([])[0]])
-            return data, here._broken_limits([])[0]
+            return data, here._limits([])[0]
 
         def linear(x: np.ndarray) -> Linear:
             here = at(x)
             data, slope = condensed(
                 itertools.chain((rows[1:] for rows in here.blocks(names)), [here.radii_rows(names)])
             )
-            limit, limit_slope = here._limits(names)
-            broken, kept = limit > 0.0, None
-            if "Fx" in here.sigma:  # with limits under slip, many are near
-                kept = Kept(limit[~broken], limit_slope[~broken])
-            return Linear(
-                data=data,
-                slope=slope,
-                limits=np.where(broken, limit, 0.0),
-                limits_slope=limit_slope * broken[:, None],
-                kept=kept,
-            )
+            return Linear(data, slope, *here._limits(names))
 
         return LeastSquaresProblem(residual, linear)
 
@@ -197,14 +187,8 @@ class FitProblem:
         slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
         return np.broadcast_to(plain(out), len(load)), slope
 
-    def _broken_limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Violations of the physical limits as residuals, 0 where they are kept, and their derivatives."""
-        value, slope = self._limits(names)
-        broken = value > 0.0
-        return np.where(broken, value, 0.0), slope * broken[:, None]
-
     def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals of the physical limits, below 0 where they are kept, and their derivatives."""
+        """Residuals of the physical limits, above 0 where they are broken, and their derivatives."""
         if self.envelope is None:
             return np.zeros(0), np.zeros((0, len(names)))
         values = self.simulation.values

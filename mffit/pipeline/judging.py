@@ -56,6 +56,7 @@ def judged(
         cause_is_certain=bool(fitted.doubts or left.sweep)
         or (left.effect is not None and left.effect.significant),
         held=left.held,
+        left=fitted.left,
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
         sideslip_zeros=measured.sideslip_zeros,

@@ -147,6 +147,13 @@ MOST_PUBLISHED_EPSILON = Real(
 USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
 )
+LARGEST_FALL_LEFT = Real(
+    10.0,
+    "-",
+    "Fall of the sum of squares that a step still promises beyond which a search is stuck: the step moves numbers by three "
+    "standard uncertainties. Edges of the model, as play has, leave up to 2.2 at a minimum; a stuck search left 800.",
+    "tests/studies/solver_study.py",
+)
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
 MISFIT_OF_ANOTHER_UNIT = Real(
     0.1,

@@ -73,6 +73,7 @@ class FinishedFit(JudgedMeasurement):
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     cause_is_certain: bool = False  #: whether chance does not explain it
     held: tuple[HeldNumber, ...] = ()
+    left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> tuple[float, int]:
@@ -141,6 +142,21 @@ SOUND = Trust()
 NONE_KNOWN = "no known effect explains it"
 of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
 of_measurement = partial(rule, subject=Subject.DIRECT, when=(When.MEASURED,))
+
+
+@of_model(
+    id="search-not-ended",
+    limits=(constants.LARGEST_FALL_LEFT,),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the search for the best fit is stuck: one more step promises to lower the sum of squares by {left:.3g}, where 1 is "
+    "a standard uncertainty, and does not; the numbers are not those of the best fit; hold one of the coefficients at a limit "
+    "under [coefficients]{held}, and build again",
+)
+def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Fall of the sum of squares that an undamped step from the end of the search promises; 0 at a minimum."""
+    if fit.left > constants.LARGEST_FALL_LEFT:
+        names = ", ".join(held.name for held in fit.held)
+        yield {"left": fit.left, "held": f" ({names})" if names else ""}
 
 
 @of_model(
@@ -397,6 +413,7 @@ def judge(found: JudgedMeasurement) -> Trust:
 
 
 REASONS = (
+    not_ended,
     above_noise,
     sweep_above_noise,
     unexplained,

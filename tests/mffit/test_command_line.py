@@ -318,7 +318,7 @@ def shell(*arguments: object, **keys) -> subprocess.CompletedProcess:
     """The program in a separate process."""
     command = [sys.executable, "-m", "mffit.cli", *map(str, arguments)]
     return subprocess.run(
-        command, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False, timeout=60, **keys
+        command, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False, timeout=600, **keys
     )
 
 

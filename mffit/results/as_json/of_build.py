@@ -143,6 +143,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
             for stage in found.stages
         ],
         "coverage": [picked(row, "stage", "supported", "held", "missing") for row in found.coverage],
+        "left": found.left,
         "files": _files(found.files) if found.files is not None else {},
         "explanations": list(found.explanations),
         "seconds": found.seconds,

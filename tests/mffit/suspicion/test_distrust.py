@@ -214,6 +214,15 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
     assert told(80.0, U) == ()
 
 
+@pytest.mark.parametrize(("left", "trusted"), [(2.5, True), (11.0, False)])
+def test_a_search_that_is_stuck_is_not_trusted_whatever_its_misfit(left, trusted):
+    held = (HeldNumber("PPX4", 1.0, 0.0),)
+    for u in (U, np.nan):
+        found = judged(noise(), u=u, left=left, held=held)
+        assert found.trusted == trusted
+        assert trusted or ("stuck" in found.reasons[0] and "PPX4" in found.reasons[0])
+
+
 @pytest.mark.parametrize(
     ("sigma", "share", "trusted"), [(4.9, 0.2, True), (5.1, 0.2, False), (9.0, 0.04, True)]
 )
