@@ -18,6 +18,7 @@ from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_re
 from mffit.recordings.unstated import Choice, FoundChannel, choices, customary, hot
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
+from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
@@ -27,6 +28,13 @@ CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d
 
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 """What is written in several ways in headings."""
+
+
+ABOUT_LETTERS = {
+    "C": "turned with the wheel carrier, about the wheel centre",
+    "H": "horizontal, about the wheel centre",
+}
+"""Letters of TYDEX whose axes are not those of the contact."""
 
 
 class Guess(NamedTuple):
@@ -80,8 +88,9 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     columns = _number_columns(raw)
     slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)
+    columns, of_axes = _in_one_frame(columns)
     chosen, left_out = choices(columns, unloaded_radius)
-    remarks = [*left_out.values()]
+    remarks = [*of_axes, *left_out.values()]
     columns = {name: column for name, column in columns.items() if name not in left_out}
     if remark := customary(columns, chosen):
         remarks.append(remark)
@@ -120,6 +129,24 @@ def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
     """Columns of numbers that are channels; the first known name with suitable readings counts."""
     named = {c.name: candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
     return {name: columns[0] for name, columns in named.items() if columns}
+
+
+def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
+    """The columns without moments in other axes than the first moment, and a remark on axes that TYDEX's letters state."""
+    letters = {name: letter_of(columns[name].heading) for name in (*FORCES, *MOMENTS) if name in columns}
+    of_moments = [letters[name] for name in reversed(MOMENTS) if name in letters]
+    odd = [name for name in MOMENTS if name in letters and letters[name] != of_moments[0]]
+    remarks = [
+        f"{columns[name].heading} is left out: it is in other axes than the other moments" for name in odd
+    ]
+    kept = {name: column for name, column in columns.items() if name not in odd}
+    for letter, what in ABOUT_LETTERS.items():
+        named = [kept[name].heading for name in letters if name in kept and letters[name] == letter]
+        if named:
+            remarks.append(
+                f"{', '.join(named)}: {what}, as TYDEX names it; converted to the contact frame and point"
+            )
+    return kept, remarks
 
 
 def candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:

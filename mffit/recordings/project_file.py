@@ -19,6 +19,7 @@ from mffit.recordings.disc import DiscPath, disc_signs, rolls_backward
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
 from mffit.suspicion.all_files import load_below
+from mffit.sweeps import formats
 from mffit.sweeps.formats import stem
 
 TYRE_IN_TITLE = re.compile(
@@ -285,7 +286,12 @@ def _axes(sniffed: Sniffed) -> str:
         wrong = " and ".join(sniffed.wrong[:2])
         return f'axes = "iso"  # no known axes fit: in ISO signs {wrong}; map a column with scale = -1'
     first, *others = sniffed.axes
-    reason = "from the signs of side force, aligning moment, camber thrust and load"
+    prescribing = [r.kind for r in sniffed.recordings if formats.format_of(r.path).axes == first]
+    reason = (
+        f"as {prescribing[0]} prescribes"
+        if prescribing
+        else "from the signs of side force, aligning moment, camber thrust and load"
+    )
     if others:
         also = " or ".join(f'"{axes}"' for axes in others)
         reason = f"{also} would fit these recordings, too: they hold too little camber"

@@ -149,11 +149,10 @@ def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
             file=path,
             line=raw.heading_line,
         )
-    kind = next(kind.name for kind in formats.FORMATS if formats.reads(kind, path))
     clock = _clock(raw, found.get("time_s"))
     return SniffedRecording(
         path=path,
-        kind=kind,
+        kind=formats.format_of(path).name,
         headings=raw.headings,
         units=raw.units,
         samples=len(raw),
@@ -217,6 +216,8 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The axes under which the points behave like a tyre, the declared ones first, and the contradictions under these.
 
+    Axes that the format of a file prescribes are the only ones if they agree.
+
     Parameters
     ----------
     points : read under ``declared``
@@ -229,6 +230,8 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
             continue
         if not contradictions(signatures(under_axes(points, declared, axes))):
             agreeing.append(axes)
+    prescribed = {formats.format_of(Path(file)).axes for file in points.files}
+    agreeing = [axes for axes in agreeing if axes in prescribed] or agreeing
     return tuple(agreeing), tuple(contradictions(signatures(points)))
 
 

@@ -23,6 +23,7 @@ class Format(NamedTuple):
     name: str  #: for messages
     endings: tuple[str, ...]  #: of file names, in lower case
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
+    axes: str = ""  #: that the format prescribes; "" if it leaves them open
 
 
 FORMATS = (
@@ -30,7 +31,7 @@ FORMATS = (
     Format("MATLAB", (".mat",), read_mat),
     Format("Excel", (".xlsx", ".xlsm"), read_xlsx),
     Format("Parquet", (".parquet",), read_parquet),
-    Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
+    Format("TYDEX", (".tdx", ".tdx.gz", ".tda", ".tdb"), read_tydex, axes="iso"),
 )
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
 LARGEST_TABLE_KEPT = 5_000_000
@@ -43,7 +44,7 @@ def read(path: Path) -> RawTable:
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
-    found = next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+    found = format_of(path).read(path)
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found
@@ -62,9 +63,9 @@ def reading_once() -> Iterator[None]:
         _KEPT.reset(token)
 
 
-def reads(kind: Format, path: Path) -> bool:
-    """Whether the ending of the name belongs to the format."""
-    return path.name.lower().endswith(kind.endings)
+def format_of(path: Path) -> Format:
+    """The format that the ending of the name says, CSV by default."""
+    return next((kind for kind in FORMATS if path.name.lower().endswith(kind.endings)), FORMATS[0])
 
 
 def stem(path: str) -> str:
