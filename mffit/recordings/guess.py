@@ -70,6 +70,15 @@ class Guess(NamedTuple):
         return Column.model_validate(given)
 
 
+class ColumnChoice(NamedTuple):
+    """What a user says of a column."""
+
+    heading: str
+    channel: str  #: "" if it is not used
+    unit: str  #: "" if the file states it
+    minus: bool  #: the file has the other sign
+
+
 class Guesses(NamedTuple):
     """The channels of a file, by the contract's names, with remarks for the user."""
 
@@ -113,6 +122,33 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
+
+
+def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]) -> Guesses:
+    """The channels of a file with the columns that a user chose differently."""
+    if not choices:
+        return guessed
+    touched = {choice.heading for choice in choices}
+    chosen = {}
+    for choice in choices:
+        if choice.channel:
+            values = numbers(raw.column(choice.heading))
+            seen = values[np.isfinite(values)]
+            chosen[choice.channel] = Guess(
+                BY_NAME[choice.channel],
+                choice.heading,
+                stated=raw.unit(choice.heading),
+                unit=choice.unit,
+                lower=float(seen.min()) if len(seen) else np.nan,
+                upper=float(seen.max()) if len(seen) else np.nan,
+                why="as chosen",
+                scale=-1.0 if choice.minus else 1.0,
+            )
+    kept = {name: guess for name, guess in guessed.found.items() if guess.heading not in touched}
+    found = kept | chosen
+    words = touched | chosen.keys()
+    remarks = tuple(one for one in guessed.remarks if not words & set(re.split(r"[\s,:;()\"]+", one)))
+    return Guesses({c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}, remarks)
 
 
 def _headings(raw: RawTable) -> dict[str, str]:

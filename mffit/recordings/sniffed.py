@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +18,8 @@ from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import Guess, guesses
+from mffit.recordings.directions import rolls_backward
+from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
@@ -48,6 +49,17 @@ class SniffedRecording(NamedTuple):
     seconds: float  #: from first to last sample
     gaps: int  #: number of gaps in time
     remarks: tuple[str, ...]  #: on columns that are not certain
+    backward: bool = False  #: it was recorded rolling backwards, as its name or a user says
+
+
+class ChosenFile(NamedTuple):
+    """What a user says of one recording."""
+
+    columns: tuple[ColumnChoice, ...]  #: that are not as guessed
+    backward: bool
+
+
+NOTHING_CHOSEN: Mapping[Path, ChosenFile] = {}
 
 
 class Level(NamedTuple):
@@ -79,13 +91,19 @@ class Sniffed:
 
 
 @formats.reading_once()
-def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) -> Sniffed:
+def sniff(
+    paths: Sequence[str | Path],
+    *,
+    unloaded_radius: float | None = None,
+    chosen: Mapping[Path, ChosenFile] = NOTHING_CHOSEN,
+) -> Sniffed:
     """The content of recordings.
 
     Parameters
     ----------
     paths : files, also as patterns like ``runs/*.csv``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
+    chosen : what a user says of some of the files
 
     Raises
     ------
@@ -99,7 +117,7 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
     files, summaries = apart(files)
-    recordings = tuple(_recording(file, unloaded_radius) for file in files)
+    recordings = tuple(_recording(file, unloaded_radius, chosen.get(file)) for file in files)
     bad = bad_runs(summaries)
     if len(bad) == len(files):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
@@ -138,9 +156,10 @@ def files_of(path: str | Path) -> list[Path]:
     return [file]
 
 
-def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
+def _recording(path: Path, unloaded_radius: float | None, chosen: ChosenFile | None) -> SniffedRecording:
     raw = formats.read(path)
-    found, remarks = guesses(raw, unloaded_radius=unloaded_radius)
+    guessed = guesses(raw, unloaded_radius=unloaded_radius)
+    found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
@@ -162,6 +181,7 @@ def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
         seconds=clock.seconds,
         gaps=clock.gaps,
         remarks=remarks,
+        backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
     )
 
 
@@ -198,6 +218,7 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
                 name: guess.column.model_dump(exclude_none=True) for name, guess in recording.guesses.items()
             },
         }
+        | ({"direction": "backward"} if recording.backward else {})
         for recording in recordings
     ]
     content = {

@@ -277,8 +277,8 @@ def _about_frames(sweeps: Sequence[Sweep], frames: Mapping[str, FileFrame], *, v
     centred = [s for s in sweeps if frames[s.file].at_centre]
     if any(np.any(np.isfinite(s.Mx) & ~np.isfinite(s.RL)) for s in centred):
         warnings.append(
-            "RL_m is missing, so Mx is moved from the wheel centre to the contact point with the unloaded radius and wrong by the "
-            "tyre's deflection times the side force; measure the loaded radius, or do not use Mx_Nm"
+            "RL_m is missing, so Mx is moved from the wheel centre to the contact point with the unloaded radius and wrong by "
+            "the tyre's deflection times the side force; measure the loaded radius, or do not use Mx_Nm"
         )
     if any(np.any(np.isfinite(s.My) & ~np.isfinite(s.Fx)) for s in centred):
         warnings.append(

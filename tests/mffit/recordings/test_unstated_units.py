@@ -12,7 +12,7 @@ import pytest
 from mffit import pipeline
 from mffit.errors import InputError
 from mffit.points.stretch import StretchNote
-from mffit.recordings import project_text, sniff
+from mffit.recordings import Stated, project_text, sniff
 from mffit.recordings.guess import guesses
 from mffit.recordings.stretch_table import stretch_table
 from mffit.report import text
@@ -228,7 +228,9 @@ def test_only_measured_pressures_count(tmp_path):
         (tmp_path / f"{name}.csv").write_text(table(**more))
     found = sniff([f"{tmp_path}/*.csv"])
     assert [(round(level.value), level.stretches) for level in found.conditions["pressure"]] == [(83_000, 18)]
-    assert "nominal_pressure = 83 " in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "nominal_pressure = 83 " in project_text(
+        found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0)
+    )
 
 
 def test_rows_without_time_are_reported_as_points(tmp_path):
@@ -236,7 +238,7 @@ def test_rows_without_time_are_reported_as_points(tmp_path):
     found = sniff([tmp_path / "a.csv"])
     for said in (
         text.sniff_summary(found).replace("\n  ", " "),
-        project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
+        project_text(found, tmp_path),
     ):
         assert "no time: each of 18 rows is treated as a finished point" in said
         assert 'column "Timestamp" holds clock times ("2024-04-03 10:00:00.000")' in said
@@ -283,7 +285,9 @@ def test_files_are_named_by_pattern_and_a_folder_is_refused_with_its_pattern(tmp
 )
 def test_a_title_names_a_tyre_only_after_the_word_tyre(tmp_path, title, size):
     (tmp_path / "a.csv").write_text(f"{title.replace(',', ' ')}\n{table(P=83.0)}", encoding="utf-8")
-    written = project_text(sniff([tmp_path / "a.csv"]), tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    written = project_text(
+        sniff([tmp_path / "a.csv"]), tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0)
+    )
     assert (f'size = "{size}"' in written) if size else "\nsize" not in written
 
 
@@ -295,7 +299,7 @@ def test_a_column_of_doubtful_unit_is_left_out_and_the_rest_is_read(tmp_path):
     assert "p_kPa" in found.recordings[0].guesses
     (remark,) = [r for r in found.recordings[0].remarks if "TSTC" in r]
     assert remark.startswith("TSTC (300 to 300) is left out: in degC it is not within -60 to 250 degC")
-    written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    written = project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "# TSTC (300 to 300) is left out" in written
     assert "T_degC" not in tomllib.loads(written)["columns"]
 
@@ -358,9 +362,9 @@ def two_recordings(folder: Path) -> list[Path]:
 
 def test_the_project_file_of_two_different_recordings(tmp_path):
     found = sniff(two_recordings(tmp_path))
-    assert project_text(found, tmp_path / "project", unloaded_radius=None, nominal_load=None) == WRITTEN
+    assert project_text(found, tmp_path / "project") == WRITTEN
     given = {"unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 90.0, "name": 'q"'}
-    lines = project_text(found, tmp_path / "project", **given).splitlines()
+    lines = project_text(found, tmp_path / "project", Stated(**given)).splitlines()
     assert lines[3:7] == [
         'name = "q\\""', "unloaded_radius = 0.2  # m", "nominal_load = 1500  # N, FNOMIN",
         "nominal_pressure = 90  # kPa, NOMPRES",
@@ -418,12 +422,12 @@ def test_a_nominal_load_above_all_loads_is_noticed(tmp_path):
     (tmp_path / "a.csv").write_text(table(P=83.0))
     found = sniff([tmp_path / "a.csv"])
     for nominal, is_noticed in ((2000.0, False), (3000.0, True)):
-        written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=nominal)
+        written = project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=nominal))
         assert ("above the highest load of 2000 N: check the unit of the load (N)" in written) == is_noticed
 
 
 def test_the_heading_of_a_section_is_no_title(tmp_path):
     (tmp_path / "a.csv").write_text(f"[DATA]\n{table(P=83.0)}")
     found = sniff([tmp_path / "a.csv"])
-    assert "DATA" not in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "DATA" not in project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "DATA" not in text.sniff_summary(found)
