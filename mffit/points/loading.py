@@ -22,6 +22,7 @@ from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
+from mffit.points.rounded_time import evenly_timed
 from mffit.points.slip_zero import against_free_rolling
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
@@ -84,13 +85,15 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    sweeps, of_slip = against_free_rolling(found.sweeps, config)
+    timed = [evenly_timed(sweep) for sweep in found.sweeps]
+    sweeps, of_slip = against_free_rolling([sweep for sweep, _ in timed], config)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [
         *found.warnings,
+        *(sentence for _, sentences in timed for sentence in sentences),
         *of_slip.warnings,
         *(sentence for part in reduced for sentence in part.warnings),
     ]
@@ -203,7 +206,7 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
-    points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
+    points = concatenate([reduce(_completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 

@@ -16,6 +16,7 @@ from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
+from mffit.points.rounded_time import spread
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
 from mffit.recordings.directions import rolls_backward
@@ -197,6 +198,7 @@ def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
     if guess is None:
         return _Clock()
     time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
+    time = spread(time)
     step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
     if not step > 0.0:
         return _Clock()

@@ -157,6 +157,17 @@ def test_a_speed_of_rotation_is_kept_only_if_it_agrees_with_the_speed():
     assert "omega_radps" not in guessed(N=np.full(N, turning), units={"N": "rad/s"}, radius=0.4).found
 
 
+@pytest.mark.parametrize(("unit", "metres"), [("m/s", 1.0), ("km/h", 1.0 / 3.6), ("mph", 0.44704)])
+@pytest.mark.parametrize("rotation", ["rad/s", "rpm"])
+@pytest.mark.parametrize("speed", [5.0, 20.0])
+def test_the_speed_is_in_the_unit_in_which_the_wheel_turns(unit, metres, rotation, speed):
+    """Speed over rotation is the radius of the wheel: 25 mph were read as km/h, and the rotation was blamed."""
+    turns = speed / 0.205 * (1.0 if rotation == "rad/s" else 60.0 / (2.0 * np.pi))
+    for known in ({"radius": 0.2057}, {"RL": np.full(N, 0.19), "units": {"RL": "m"}}):
+        found = units(V=np.full(N, speed / metres), N=np.full(N, turns), **known)
+        assert (found["V_mps"], found["omega_radps"]) == (unit, rotation)
+
+
 def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "FZ": "N"})
     assert any("Mz_Nm" in remark and "Torque" in remark for remark in found.remarks)
@@ -335,13 +346,13 @@ Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+0
 Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
 Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
 p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
-V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h, less likely mph
 
 [[sweep]]
 file = "../a b.csv"
 
 [[sweep]]
-# N (3 to 3) is left out: at the speed in V, no wheel of this size turns at this rate
+# N (3 to 3) is left out: at the speed in V, in m/s, km/h or mph, no wheel of this size turns at this rate
 # P is in psi, so columns without a stated unit may be in American units, too: FZ (N or lbf), FY (N or lbf), MZ (N m or \
 in-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
 file = "../c.csv"
