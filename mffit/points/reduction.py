@@ -133,7 +133,9 @@ def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOu
 def _check_time(sweep: Sweep) -> None:
     falls = np.flatnonzero(np.diff(sweep.time) <= 0.0)
     if len(falls):
-        sentence = "time does not rise from row to row; sort the rows, or give every run its own label in column run"
+        sentence = (
+            "time does not rise from row to row; sort the rows, or give every run its own label in column run"
+        )
         if not np.any(np.diff(sweep.time)):
             sentence = "time is the same in all rows; map the column that holds the time of the samples"
         line = int(sweep.line[falls[0] + 1])

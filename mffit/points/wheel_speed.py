@@ -41,7 +41,7 @@ def is_derived(sweep: Sweep) -> bool:
 
 
 def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
-    """Slip (n,) of a wheel that was driven or braked; None if it was recorded, if a speed lacks, or if the wheel rolled freely."""
+    """Slip (n,) of a driven or braked wheel; None if it was recorded, if a speed lacks, or if the wheel rolled freely."""
     if "kappa" in sweep.table or "V_mps" not in sweep.table:
         return None
     along = sweep.V * np.cos(sweep.alpha)

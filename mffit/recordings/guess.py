@@ -30,6 +30,8 @@ SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue
 """What is written in several ways in headings."""
 
 
+MISSED = {"Mz_Nm": "moments", "V_mps": "speeds", "p_kPa": "pressures"}
+"""Channels that are asked for by the unit of an unused column, and the word for what such units measure."""
 ABOUT_LETTERS = {
     "C": "turned with the wheel carrier, about the wheel centre",
     "H": "horizontal, about the wheel centre",
@@ -116,8 +118,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
             found[SLIP] = _guess(
                 raw, defined.column, Choice(defined.unit, defined.why) if defined.unit else None
             )._replace(scale=defined.scale, against=defined.against, why=defined.why)
-    if "Mz_Nm" not in found:
-        remarks += _without_moment(raw, {guess.heading for guess in found.values()})
+    remarks += _without(raw, found)
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
@@ -248,20 +249,23 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
     return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
 
 
-def _without_moment(raw: RawTable, taken: Collection[str]) -> list[str]:
-    """Which columns may be the aligning moment that is missing."""
-    moment = BY_NAME["Mz_Nm"]
-    near = [
-        heading
-        for heading, unit in zip(raw.headings, raw.units, strict=True)
-        if unit and heading not in taken and _is_of_kind(unit, moment)
-    ]
-    if not near:
-        return []
-    return [
-        f"no heading is known to be {moment.name} ({moment.description}); unused columns in a unit of moments: "
-        f'{", ".join(near)}; if one of them is {moment.name}, name it under [columns], for example {moment.name} = "{near[0]}"'
-    ]
+def _without(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
+    """Which columns may be a channel that is missing, by their units."""
+    taken = {guess.heading for guess in found.values()}
+    remarks = []
+    for name, kind in MISSED.items():
+        channel = BY_NAME[name]
+        near = [
+            heading
+            for heading, unit in zip(raw.headings, raw.units, strict=True)
+            if unit and heading not in taken and _is_of_kind(unit, channel)
+        ]
+        if name not in found and near:
+            remarks.append(
+                f"no heading is known to be {name} ({channel.description}); unused columns in a unit of {kind}: "
+                f'{", ".join(near)}; if one of them is {name}, name it under [columns], for example {name} = "{near[0]}"'
+            )
+    return remarks
 
 
 def _without_time(raw: RawTable) -> str:

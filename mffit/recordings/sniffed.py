@@ -14,9 +14,9 @@ from mffit.config import Config
 from mffit.config.globs import is_pattern, matches
 from mffit.errors import InputError
 from mffit.points import levels
+from mffit.points.clock import spread
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
-from mffit.points.rounded_time import spread
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
 from mffit.recordings.directions import rolls_backward

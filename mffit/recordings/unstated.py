@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.constants import HOTTEST_TREAD
-from mffit.points.rounded_time import spread
+from mffit.points.clock import spread
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible
@@ -296,8 +296,9 @@ def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | No
 def _speed_of_wheel(
     found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
 ) -> Choice | None:
-    """The unit of a speed that nothing states, in which the wheel turns at its rate; None if no rate or size of the wheel is known,
-    or no unit fits.
+    """The unit of a speed that nothing states, in which the wheel turns at its rate.
+
+    None if no rate or size of the wheel is known, or no unit fits.
     """
     column, speed = found.get("omega_radps"), found.get("V_mps")
     size = radius or _measured_radius(found, chosen)

@@ -176,6 +176,15 @@ def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     assert "unused columns in a unit of moments: Torque;" in remark  # MX is used
 
 
+def test_a_speed_is_recognised_or_asked_for_by_its_unit():
+    road = np.full(N, 60.0)
+    assert guessed(V=None, **{"Roadway Speed": road}, units={"Roadway Speed": "km/h"}).found["V_mps"].heading == "Roadway Speed"
+    found = guessed(V=None, **{"Zug": road}, units={"Zug": "km/h"})
+    (remark,) = [remark for remark in found.remarks if "V_mps" in remark]
+    assert 'V_mps = "Zug"' in remark
+    assert not [remark for remark in guessed().remarks if "V_mps" in remark]
+
+
 def test_a_column_without_readings_or_of_another_dimension_is_no_channel():
     assert "p_kPa" not in guessed(units={"P": "deg C"}).found
     assert "p_kPa" not in guessed(P=np.full(N, np.nan)).found

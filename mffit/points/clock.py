@@ -1,7 +1,9 @@
-"""Times of samples that a recorder rounded, so that several samples share one."""
+"""Times of samples: rounded ones, and the clock that several recordings share."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -32,7 +34,7 @@ def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
 
 
 def spread(time: np.ndarray) -> np.ndarray:
-    """Times (n,) with those that are equal spread over the usual step to the next; the same array if none is, or if time falls."""
+    """Times (n,) with those that are equal spread up to the next; the same array if none is, or if time falls."""
     steps = np.diff(time)
     if not np.any(steps == 0.0) or np.any(steps < 0.0) or not np.any(steps > 0.0):
         return time
@@ -42,3 +44,14 @@ def spread(time: np.ndarray) -> np.ndarray:
     step = np.minimum(np.r_[np.diff(distinct), np.inf], np.median(np.diff(distinct)))
     within = np.arange(len(time)) - np.repeat(first, counts)
     return np.asarray(np.repeat(distinct, counts) + within * np.repeat(step / counts, counts))
+
+
+def with_common_clock(sweeps: Sequence[Sweep]) -> list[Sweep]:
+    """The series with the time since the first sample as ``t``, if all share a clock: none begins before another ends."""
+    begins = sorted((sweep.time[0], sweep.time[-1]) for sweep in sweeps if sweep.is_series and len(sweep))
+    if len(begins) < len(sweeps) or any(one[1] > next_[0] for one, next_ in itertools.pairwise(begins)):
+        return list(sweeps)
+    return [
+        sweep if np.any(np.isfinite(sweep.t)) else replace(sweep, t=sweep.time - begins[0][0])
+        for sweep in sweeps
+    ]
