@@ -178,7 +178,10 @@ def test_a_missing_moment_names_columns_in_a_unit_of_moments():
 
 def test_a_speed_is_recognised_or_asked_for_by_its_unit():
     road = np.full(N, 60.0)
-    assert guessed(V=None, **{"Roadway Speed": road}, units={"Roadway Speed": "km/h"}).found["V_mps"].heading == "Roadway Speed"
+    assert (
+        guessed(V=None, **{"Roadway Speed": road}, units={"Roadway Speed": "km/h"}).found["V_mps"].heading
+        == "Roadway Speed"
+    )
     found = guessed(V=None, **{"Zug": road}, units={"Zug": "km/h"})
     (remark,) = [remark for remark in found.remarks if "V_mps" in remark]
     assert 'V_mps = "Zug"' in remark
