@@ -24,6 +24,7 @@ from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
+from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
@@ -131,6 +132,9 @@ def sniff(
     of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
     of_summaries += against_summary(summaries, reading)
     two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
+    of_summaries += [
+        moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)
+    ]
     two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
     reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
     return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), bool(two), bad)

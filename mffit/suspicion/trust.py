@@ -22,7 +22,6 @@ from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Subject, When, rule
-from mffit.suspicion.slopes import overturning_slopes
 from mffit.suspicion.unpublished import CamberReduction, causes
 
 
@@ -290,19 +289,6 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
-    id="overturning-moment-reversed",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
-    outcome=Outcome.WARNED,
-    sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
-    "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
-)
-def moment_reversed(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
-    if {name: s.sign for name, s in overturning_slopes(fit.points).items()} == {"alpha": 1, "gamma": 1}:
-        yield {}
-
-
-@of_model(
     id="effect-in-the-residuals",
     limits=(constants.MISFIT_IN_DOUBT,),
     outcome=Outcome.WARNED,
@@ -352,7 +338,7 @@ REASONS = (
     unpublished,
 )
 """Rules whose findings make a file not to be trusted, the gravest first."""
-DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, moment_reversed, effect_left, structure_left)
+DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, effect_left, structure_left)
 """Rules whose findings are warnings."""
 
 
