@@ -17,6 +17,7 @@ from mffit.errors import InputError
 from mffit.points import constants, levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
+from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
 from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
@@ -47,7 +48,7 @@ class Reading(NamedTuple):
     notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
     lags: tuple[
         Lag, ...
-    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path
+    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path at a known speed
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -84,21 +85,26 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    sweeps, of_slip = against_free_rolling(found.sweeps, config)
+    timed = [evenly_timed(sweep) for sweep in found.sweeps]
+    sweeps, of_slip = against_free_rolling(with_common_clock([sweep for sweep, _ in timed]), config)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [
         *found.warnings,
+        *(sentence for _, sentences in timed for sentence in sentences),
         *of_slip.warnings,
         *(sentence for part in reduced for sentence in part.warnings),
     ]
     straight = config.rig.type == "flat-track"
+    is_known = "nominal_speed" in config.tyre.model_fields_set or all(
+        "V_mps" in sweep.table for sweep in sweeps if sweep.is_series
+    )
     if straight and not continuous and np.any(points.continuous):
         lag = common([one for part in reduced for one in part.lags])
         points = settled_sweeps(points, lag)
-        warnings += _of_motion(reduced, lag)
+        warnings += _of_motion(reduced, lag, None if is_known else config.tyre.nominal_speed)
     steady = points if continuous and straight else points.select(~points.continuous)
     stretches = tuple(note for part in reduced for note in part.stretches)
     left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
@@ -113,7 +119,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    lags = [one for part in reduced for one in part.lags if straight and np.isfinite(one.lag)]
+    lags = [one for part in reduced for one in part.lags if straight and is_known and np.isfinite(one.lag)]
     excluded = _excluded(found.excluded, phi_t)
     return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes, tuple(lags))
 
@@ -161,8 +167,8 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     return points.replace(alpha=alpha - taken, continuous=False, table=table)
 
 
-def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
-    """A sentence about the lag and hysteresis of the moving sweeps."""
+def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: float | None) -> list[str]:
+    """A sentence about the lag and hysteresis of the moving sweeps; a time if the speed is only ``assumed`` [m/s]."""
     if not any(part.lags for part in reduced):
         return []
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
@@ -175,9 +181,15 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str
     proven = abs(value) > constants.PROVEN_LAG * u
     said = "taken off the angle" if proven else "not proven and not taken off"
     hysteresis = rms(np.array([one.hysteresis for one in known]))
+    size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"
+    if assumed is not None:
+        size = (
+            f"{1e3 * value / assumed:.3g} +- {1e3 * u / assumed:.2g} ms (k = 1; a way only with a speed: name its column V_mps "
+            "under [columns], or give nominal_speed)"
+        )
     return [
-        f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
-        f"the sideslip angle: {said}; the remaining difference between the ways up and down is +-{hysteresis:.0f} N"
+        f"the side force of {len(known)} continuous sweeps lags {size} behind the sideslip angle: {said}; the remaining "
+        f"difference between the ways up and down is +-{hysteresis:.0f} N"
     ]
 
 
@@ -203,7 +215,7 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
-    points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
+    points = concatenate([reduce(_completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import constants
+from mffit.points.wheel_speed import FROM_SPEEDS, is_derived, with_slip
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
 from tir.errors import listed
@@ -157,13 +158,15 @@ def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple
 
     Files whose slip has the same heading share the definition and the zero.
     """
-    stated = {}
+    stated: dict[str, tuple[str, str | None]] = {}
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
+    sweeps, derived = with_slip(sweeps, config.tyre.unloaded_radius)
+    stated |= {sweep.file: (FROM_SPEEDS, None) for sweep in sweeps if is_derived(sweep)}
     out = list(sweeps)
     notes: list[str] = []
-    warnings: list[str] = []
+    warnings: list[str] = [*derived]
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
         readings = _joined_readings(sweeps[k] for k in rows)

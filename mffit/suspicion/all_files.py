@@ -12,7 +12,7 @@ from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, ZERO_CAMBE
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
-from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
+from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, overturning_slope, pooled, signatures
 
 of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
@@ -97,6 +97,19 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
     if len(sides) >= constants.FEWEST_LEANING_SWEEPS and len(odd) == 1:
         degrees = abs(np.degrees(np.median(points.gamma[points.sweep == odd[0]])))
         yield Finding({"sweep": points.sweep_names[odd[0]], "degrees": degrees, "others": len(sides) - 1})
+
+
+@of_all_files(
+    id="overturning-moment-reversed",
+    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    outcome=Outcome.WARNED,
+    sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
+    "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
+)
+def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
+    """Slope of Mx over camber."""
+    if overturning_slope(points).sign > 0:
+        yield Finding({})
 
 
 @of_all_files(

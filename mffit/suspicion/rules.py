@@ -57,6 +57,7 @@ RULES: tuple[Rule, ...] = (
     all_files.one_sided_on_disc,
     all_files.no_zero_on_disc,
     all_files.lone_lean,
+    all_files.moment_reversed,
     all_files.weak_turn_slip,
     all_files.nominal_load_above_all,
     all_files.hot_tread,

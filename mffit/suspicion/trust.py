@@ -26,7 +26,6 @@ from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
-from mffit.suspicion.slopes import overturning_slopes
 from mffit.suspicion.unpublished import CamberReduction, causes
 
 
@@ -356,19 +355,6 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             yield {"channel": name, "ratio": ratio, "column": column(name)}
 
 
-@of_measurement(
-    id="overturning-moment-reversed",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
-    outcome=Outcome.WARNED,
-    sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
-    "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
-)
-def moment_reversed(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
-    """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
-    if {name: s.sign for name, s in overturning_slopes(measured.points).items()} == {"alpha": 1, "gamma": 1}:
-        yield {}
-
-
 @of_model(
     id="effect-in-the-residuals",
     limits=(constants.MISFIT_IN_DOUBT,),
@@ -429,7 +415,6 @@ DOUBTS = (
     doubtful_misfit,
     far_below_noise,
     zeros_in_doubt,
-    moment_reversed,
     effect_left,
     structure_left,
 )

@@ -173,21 +173,6 @@ def test_a_misfit_far_below_the_noise_is_a_unit(scale, n, said):
     assert any("check the units of Fy_N and u_Fy_N" in doubt for doubt in doubts) == said
 
 
-@pytest.mark.parametrize(
-    ("by_alpha", "by_gamma", "said"), [(60.0, 300.0, True), (-60.0, 300.0, False), (60.0, -300.0, False)]
-)
-def test_an_overturning_moment_against_side_force_and_lean_has_the_wrong_sign(by_alpha, by_gamma, said):
-    """Side force and lean move the load to their side, so that Mx falls with sideslip and with camber [Nm/rad]."""
-    alpha, gamma = (
-        x.ravel() for x in np.meshgrid(np.radians([-4.0, -1.0, 0.0, 1.0, 4.0]), np.radians([-4.0, 0.0, 4.0]))
-    )
-    Mx = by_alpha * alpha + by_gamma * gamma + 0.01 * RNG.standard_normal(len(alpha))
-    points = make_points(alpha, gamma, 1500.0, Mx=Mx, Fy=0.0, p=2e5, V=11.0, phi_t=0.0)
-    used = {"Mx": np.ones(len(Mx), bool)}
-    found = judge(FinishedFit(points=points, model=Readings(Mx=Mx), used=used, r2={"Mx": 1.0}))
-    assert any("scale = -1 for Mx_Nm" in doubt for doubt in found.doubts) == said
-
-
 def test_without_a_stated_noise_left_out_sweeps_decide():
     """Fy varies by 100 N; the median sweep is predicted to 80 N, which leaves 64 % of the variance."""
 
