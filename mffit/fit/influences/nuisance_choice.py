@@ -145,9 +145,11 @@ def _judged(
     while enough and left:
         least = LEAST_PREDICTED_SHARE * _beyond_noise(model.problem)
         equations, helpful = _equations(model, left, group), dict[tuple[Nuisance, ...], Support]()
-        for step in _steps(left, model.chosen):
+        steps = list(_steps(left, model.chosen))
+        for step in steps:
             support, last = equations.support(step), step[-1]
-            rivals = sum(other.after == step[0].after for other in left)
+            # What needs another influence is no rival of that one; two together are one more chance beside each alone.
+            rivals = len(steps) if step[1:] else sum(other.after == last.after for other in left)
             after = predicted_left_out(model, step, group)
             seen = _WORSE if support.removed > least else _LITTLE
             tried[last.id] = (seen if support.beyond_chance(rivals) else _WITHIN_CHANCE, after)
