@@ -18,7 +18,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.run_scatter import OfRuns, Part, Runs, halves_of_runs
 from mffit.fit.weights import stated_or_nominal
 from mffit.least_squares import FreeNumber, condensed, minimum
-from mffit.left_out import Predicted, Support, improves, left_out_errors, predicted
+from mffit.left_out import Predicted, Support, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
@@ -203,7 +203,9 @@ def _of_runs(
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
     support = runs.support_of_scatter(parts, spread)
     removed = 1.0 - beside.by_sweep.total / without.by_sweep.total
-    if removed < LEAST_PREDICTED_SHARE or not improves(without.by_sweep, beside.by_sweep, support):
+    # A gain that few runs hold is theirs; a scatter shows in most of them.
+    shared = removed > LEAST_PREDICTED_SHARE and without.by_sweep.falls(beside.by_sweep) > needed_fall(1)
+    if not shared or not improves(without.by_sweep, beside.by_sweep, support):
         seen = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, seen if support.beyond_chance() else _WITHIN_CHANCE, *gaps), {}
     whole = predictions(sweeps)
