@@ -46,7 +46,9 @@ LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a term
 
 # Judged by prediction
 PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any candidate pass (Bonferroni).")
-LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a candidate must remove.")
+LEAST_PREDICTED_SHARE = Real(
+    0.02, "-", "Share of the misfit that a candidate must remove; a channel that loses less is no worse."
+)
 WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
 HOTTEST_TREAD = Real(
