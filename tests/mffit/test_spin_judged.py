@@ -87,7 +87,6 @@ def test_spin_and_build_have_one_list_of_rules(tmp_path, capsys):
         "contradictory-sideslip-zeros",
         "doubtful-sideslip-zeros",
         "unpublished-camber-reduction",
-        "overturning-moment-reversed",
     }
 
 
