@@ -162,7 +162,8 @@ def minimum(
         if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
             here, at_x = problem.linear(x), True
         form = _Quadratic.around(objective, x, here)
-        close = form.left < tolerance * cost  # the step from here is the last one
+        close = form.left < tolerance * cost  # the step from here is the last one, and hardly damped
+        damping = min(damping, 1e-9) if close else damping
         step = _step(objective, x, cost, form, damping, NEGLIGIBLE * tolerance * cost)
         if step is None:
             break
