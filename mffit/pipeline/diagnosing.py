@@ -98,6 +98,8 @@ def diagnose(
             coefficients=known,
             seen=seen,
             repair_all=repair_all,
+            as_read=reading.as_read,
+            taken_off=reading.taken_off,
             progress=progress,
         )
     hashes = input_hashes(config)
