@@ -23,6 +23,7 @@ from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import (
+    another_tyre,
     named_of_this_tyre,
     noise_beyond_stated,
     offsets_or_memory,
@@ -88,7 +89,9 @@ def diagnose(
     refuse_strangers(points, tyre, start, channels)
     every, given_start = points if as_read is None else as_read, start
     start = on_surfaces(points, start, channels, rigs, seen=seen)
-    kept, wrong = _without_misread(points, start, rigs, channels)
+    kept, wrong = np.ones(len(points), dtype=bool), None
+    if another_tyre(tyre, config) is None:  # a model of another tyre finds no culprit
+        kept, wrong = _without_misread(points, start, rigs, channels)
     points = points.select(kept)
     points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)

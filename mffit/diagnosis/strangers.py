@@ -123,7 +123,8 @@ def offsets_or_memory(
 def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:
     """The explanation, without effects if even the best ones leave a misfit far beyond the noise."""
     misfit, channel = _misfit(found)
-    if found.chosen.effects and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
+    judged = found.chosen.effects or found.scatter.origin is Origin.STATED
+    if judged and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
         return found.withdrawn(), HardlyThisTyre(misfit, channel)
     return found, None
 

@@ -81,9 +81,9 @@ def raw_gap(points: Points, given: Simulation, judged: np.ndarray, noise: Noise)
         u = np.full(n, noise.typical(name))
         u[judged] = noise.of_channel(noise.u, name)
         z.append((residual[name] / u)[np.isfinite(residual[name]) & np.isfinite(u)])
-    squares = np.concatenate(z) ** 2
+    every = np.concatenate(z)
     return Gap(
-        {name: rms(rows) for name, rows in residual.items()}, float(squares.sum()) / max(len(squares), 1)
+        {name: rms(rows) for name, rows in residual.items()}, float(every @ every) / max(len(every), 1)
     )
 
 

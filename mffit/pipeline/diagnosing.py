@@ -113,8 +113,8 @@ def diagnose(
         made=made(hashes),
         lab=config.lab,
         left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
-        trust=judged_diagnosis(diagnosis),
     )
+    diagnosis = replace(diagnosis, trust=judged_diagnosis(diagnosis))
     diagnosis = replace(
         diagnosis,
         headline=wording.headline(diagnosis),

@@ -65,6 +65,9 @@ class FinishedFit:
     held: tuple[HeldNumber, ...] = ()
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
     camber_reduction: CamberReduction | None = None
+    stranger: str = (
+        ""  #: why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model
+    )
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
         """Misfit over the stated noise at the used readings, some rows (mask (n,)) only."""
@@ -379,6 +382,17 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
         yield {"structure": fit.structure}
 
 
+@of_model(
+    id="model-of-another-tyre",
+    outcome=Outcome.DISTRUSTED,
+    sentence="{why}",
+)
+def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of a given model that is none of this tyre; no other rule is applied then."""
+    if fit.stranger and any(any(r.find(fit)) for r in OF_READINGS):
+        yield {"why": fit.stranger}
+
+
 REMARKED = (
     "what limits {channel} is the formula, not the noise: it misses {fitted:.3g} {unit} rms in all sweeps alike, explains "
     "{percent:.2f} % of the variance, and predicts left-out sweeps to {predicted:.3g} {unit}"
@@ -386,7 +400,10 @@ REMARKED = (
 
 
 def judge(fit: FinishedFit) -> Trust:
-    """The judgement of a fit by all rules of trust."""
+    """The judgement of a fit by all rules of trust; a model of another tyre ends the search for culprits."""
+    strange = tuple(of_another_tyre.said(facts) for facts in of_another_tyre.find(fit))
+    if strange:
+        return Trust(reasons=strange, over_noise=fit.over_noise)
     return Trust(
         reasons=tuple(r.said(facts) for r in REASONS for facts in r.find(fit)),
         doubts=tuple(r.said(facts) for r in DOUBTS for facts in r.find(fit)),
@@ -395,16 +412,9 @@ def judge(fit: FinishedFit) -> Trust:
     )
 
 
-REASONS = (
-    above_noise,
-    sweep_above_noise,
-    sweep_beyond_others,
-    unexplained,
-    unpredicted,
-    bound_against_data,
-    limit_broken,
-    unpublished,
-)
+OF_READINGS = (above_noise, sweep_above_noise, sweep_beyond_others, unexplained, unpredicted)
+"""Rules that blame readings."""
+REASONS = (of_another_tyre, *OF_READINGS, bound_against_data, limit_broken, unpublished)
 """Rules whose findings make a file not to be trusted, the gravest first."""
 DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, moment_reversed, effect_left, structure_left)
 """Rules whose findings are warnings."""
