@@ -54,6 +54,7 @@ def diagnose(
     repair_all: bool = False,
     as_read: Points | None = None,
     taken_off: Sequence[str] = (),
+    culprits: bool = True,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
@@ -71,6 +72,7 @@ def diagnose(
     repair_all : correct model and readings for uncertain effects too, see :mod:`mffit.diagnosis.repair`
     as_read : the points (n,) with the errors that were taken off them; default the points
     taken_off : sentences about these errors
+    culprits : whether to look for a sweep that was written down wrongly; a model of another tyre finds none
     progress : called with a sentence before each step
 
     Returns
@@ -87,10 +89,10 @@ def diagnose(
     start = _simulation(points, tyre, config, rigs, rig)
     channels = channels_of(points)
     refuse_strangers(points, tyre, start, channels)
-    every, given_start = points if as_read is None else as_read, start
+    given_points, given_start, every = points, start, points if as_read is None else as_read
     start = on_surfaces(points, start, channels, rigs, seen=seen)
     kept, wrong = np.ones(len(points), dtype=bool), None
-    if another_tyre(tyre, config) is None:  # a model of another tyre finds no culprit
+    if culprits and another_tyre(tyre, config) is None:
         kept, wrong = _without_misread(points, start, rigs, channels)
     points = points.select(kept)
     points, origin = with_uncertainties(by_condition(points), start, channels)
@@ -105,6 +107,22 @@ def diagnose(
     found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
     estimated = found.coefficients
     found, stranger = named_of_this_tyre(found)
+    if wrong is not None and stranger is not None:
+        return diagnose(
+            given_points,
+            tyre,
+            config,
+            rig=rig,
+            others=others,
+            effects=effects,
+            coefficients=coefficients,
+            seen=seen,
+            repair_all=repair_all,
+            as_read=as_read,
+            taken_off=taken_off,
+            culprits=False,
+            progress=progress,
+        )
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.independent)
     seen = seen and len(points.campaigns) < 2  # joined campaigns were not fitted together

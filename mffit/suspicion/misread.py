@@ -74,8 +74,7 @@ def misread_sweep(
 
     The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
     that, the model or the rig is at fault. A small error is a wrong label only if sound sweeps of the same kind at or around
-    that label show that the model is right there, and no label is doubted if the model misses the usual sweep too. ``signs``
-    lead from ISO-W to the rig's axes.
+    that label show that the model is right there. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
     numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]
@@ -94,14 +93,11 @@ def misread_sweep(
         others = [o for o in off if o is not before]
         gross = _gross(before, others, usual, constants.MISREAD_SHARE)
         if gross:
-            right = all(usual[name] <= constants.MISREAD_SHARE for name in gross)
-            candidates = _candidates(part, points, signs, with_labels=right)
-            least = float(constants.MISREAD_SHARE)
+            candidates, least = _candidates(part, points, signs), float(constants.MISREAD_SHARE)
         else:
             gross, least = _gross(before, others, usual, 0.0), 0.0
-            right = all(usual[name] <= constants.MISREAD_SHARE for name in gross)
             rest = [other for other in parts if other is not part]
-            candidates = _confirmed_labels(part, points, signs, rest) if gross and right else iter(())
+            candidates = _confirmed_labels(part, points, signs, rest) if gross else iter(())
         tolerated = {
             n: max(constants.CORRECTED_OVER_USUAL * usual[n], least, 0.0 if n in gross else before[n])
             for n in before
@@ -140,12 +136,9 @@ def _gross(
     }
 
 
-def _candidates(
-    part: Points, points: Points, signs: Mapping[str, float], *, with_labels: bool
-) -> Iterator[tuple[Mistake, Points]]:
+def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
     """Known mistakes, and labels of other sweeps, with the points of a sweep as they are without them."""
-    labels = LABELS if with_labels else ()
-    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in labels)
+    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in LABELS)
     for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
         yield mistake, mistake.undone(part, signs)
 

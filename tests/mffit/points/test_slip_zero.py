@@ -14,7 +14,9 @@ def readings(near: float) -> Driven:
     n = len(slip)
     some = np.tile([0.0, 0.02, -0.02, 0.01], n // 4)
     Fz = 1400.0 * (1.0 + 0.2 * some)
-    return Driven(slip, force * Fz, Fz, some, 0.0 * some, np.full(n, 250e3), np.full(n, np.nan), np.full(n, 16.7))
+    return Driven(
+        slip, force * Fz, Fz, some, 0.0 * some, np.full(n, 250e3), np.full(n, np.nan), np.full(n, 16.7)
+    )
 
 
 def test_few_readings_near_zero_that_contradict_the_whole_curve_name_no_sign():

@@ -125,3 +125,12 @@ def test_the_scatter_of_every_point_counts(simulation, sweep):
     assert (
         explanation(sweep.replace(Fy=out.Fy), errors, simulation, ISO) == "a zero offset of +40.0 N in Fy_N"
     )
+
+
+def test_what_no_rig_can_have_is_no_suggestion(simulation, sweep):
+    """Readings of the other sign, a third larger: the best multiple is a gain of -1.3, or a load that was -226 % off."""
+    out = simulation.readings(sweep)
+    assert "gain" not in said(simulation, sweep, -1.3 * out.Fy, -1.3 * out.Mz)
+    assert "load" not in said(simulation, sweep, -1.3 * out.Fy, -1.3 * out.Mz)
+    turned = run_at(simulation, sweep, alpha=sweep.alpha + np.radians(9.0))
+    assert "axis" not in said(simulation, sweep, *turned)
