@@ -112,7 +112,10 @@ class SlipZero:
 
 
 def slip_zero(of: Driven) -> SlipZero | None:
-    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie on either side of zero force."""
+    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie near zero force.
+
+    Enough lie on either side of it, or at it: those of an undriven wheel, beside slip that was run in steps.
+    """
     if (
         not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
         >= constants.SMALLEST_SWEEP_OF_SLIP
@@ -126,7 +129,8 @@ def slip_zero(of: Driven) -> SlipZero | None:
     )
     near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
     some = 0.3 * constants.FORCE_NEAR_FREE_ROLLING
-    if min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO:
+    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO
+    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS_AT_ZERO:
         return None
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
@@ -143,6 +147,9 @@ def slip_zero(of: Driven) -> SlipZero | None:
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     every = np.isfinite(of.slip) & np.isfinite(force)
+    if in_steps:  # few readings show the slope at zero: the whole curve shows sign and unit
+        driven = every & (np.abs(force) > some)
+        inverse = float(np.median((of.slip - _conditions(of, middle) @ found)[driven] / force[driven]))
     if inverse * float(np.mean(of.slip[every] * force[every])) < 0.0:
         return None  # few points near zero: their line contradicts the whole curve
     return SlipZero(

@@ -11,45 +11,12 @@ import numpy as np
 import pandas as pd
 import pytest
 import small_rigs
+from driven_rig import FX, SAMPLE, against_loaded_radius, driven
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.diagnosis import wording
 from mffit.report import text
-
-SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
-SLIP = {"from": -0.2, "to": 0.2, "step": 0.01}
-ANGLES = {"from": -12, "to": 12, "step": 1.5}
-FX = 15.0
-
-
-def driven(folder: Path, **faults: float) -> Path:
-    """Drive and brake at three loads and under sideslip, two sweeps of sideslip; ISO axes."""
-    content = {
-        "truth": {"tyre": "true.tir"},
-        "faults": faults,
-        "noise": {"Fx_N": FX, "Fy_N": 12.0, "Mz_Nm": 1.5, "RL_m": 0.0002, "omega_radps": 0.005},
-        "conditions": {"V_mps": 16.7},
-        "tyre": {
-            "name": "drive",
-            "unloaded_radius": 0.3185,
-            "width": 0.225,
-            "rim_radius": 0.2159,
-            "nominal_load": 4200,
-            "nominal_pressure": 240,
-            "nominal_speed": 16.7,
-            "side": "left",
-        },
-        "rig": {"type": "flat-track", "axes": "iso"},
-        "sweep": [
-            *({"file": f"drive_{load}.csv", "load_N": load, "kappa": SLIP} for load in (2000, 4200, 6500)),
-            {"file": "combined.csv", "load_N": 4200, "kappa": SLIP, "alpha_deg": [-6, -2, 2, 6]},
-            *({"file": f"side_{load}.csv", "load_N": load, "alpha_deg": ANGLES} for load in (2000, 4200)),
-        ],
-    }
-    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=5)
-    return folder
 
 
 def gap_by_hand(folder: Path, channel: str, unit: str, sample: Path = SAMPLE) -> float:
@@ -90,10 +57,7 @@ def test_a_zero_of_the_slip_is_in_the_gap_and_an_effect(tmp_path):
 def test_a_slip_against_the_loaded_radius_is_in_the_gap_and_in_a_line(tmp_path):
     """Wheel speed times loaded radius over speed: no effect of the library has this zero, which falls with load."""
     driven(tmp_path)
-    for path in tmp_path.glob("*.csv"):
-        table = pd.read_csv(path)
-        table["kappa"] = table["omega_radps"].abs() * table["RL_m"] / table["V_mps"] - 1.0
-        table.to_csv(path, index=False)
+    against_loaded_radius(tmp_path)
     found = diagnosed(tmp_path)
     by_hand = gap_by_hand(tmp_path, "Fx", "N")
     assert by_hand > 50.0 * FX

@@ -127,10 +127,19 @@ def test_the_scatter_of_every_point_counts(simulation, sweep):
     )
 
 
+def first_order(simulation, points, name, step, size):
+    """Readings that change with a setting as their slope at the labels says, by ``size`` of its unit."""
+    here, there = simulation.readings(points), simulation.readings(points.replace(**{name: step(points)}))
+    return [getattr(here, c) + size * (getattr(there, c) - getattr(here, c)) for c in ("Fy", "Mz")]
+
+
 def test_what_no_rig_can_have_is_no_suggestion(simulation, sweep):
-    """Readings of the other sign, a third larger: the best multiple is a gain of -1.3, or a load that was -226 % off."""
+    """A gain below zero, a load that was -226 % off, an axis that is 9 deg out: the formula of each fits exactly."""
     out = simulation.readings(sweep)
-    assert "gain" not in said(simulation, sweep, -1.3 * out.Fy, -1.3 * out.Mz)
-    assert "load" not in said(simulation, sweep, -1.3 * out.Fy, -1.3 * out.Mz)
-    turned = run_at(simulation, sweep, alpha=sweep.alpha + np.radians(9.0))
-    assert "axis" not in said(simulation, sweep, *turned)
+    assert said(simulation, sweep, -1.3 * out.Fy, out.Mz) == "its side force reversed"
+    load = first_order(simulation, sweep, "Fz", lambda p: 1.0001 * p.Fz, -22600.0)
+    assert "load" not in said(simulation, sweep, *load)
+    axis = first_order(simulation, sweep, "alpha", lambda p: p.alpha + np.radians(0.001), 9000.0)
+    assert "axis" not in said(simulation, sweep, *axis)
+    sound = first_order(simulation, sweep, "Fz", lambda p: 1.0001 * p.Fz, -4000.0)
+    assert said(simulation, sweep, *sound).startswith("a load that was -40")
