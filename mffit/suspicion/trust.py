@@ -196,13 +196,13 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "{ratio:.1f} times the scatter of neighbouring readings (none states its uncertainty); check this sweep or repeat it",
 )
 def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of a sweep that states no uncertainty, over that of the median sweep and over the scatter of its readings."""
+    """Misfit of a sweep that states no uncertainty, over the median sweep's and over its scatter, unless it is the formula's."""
     sweeps = np.unique(fit.points.sweep).tolist()
     for name in fit.used:
-        per_load = np.where(
-            fit.used[name], (fit.model[name] - fit.points.channel(name)) / fit.points.Fz, np.nan
-        )
-        own = {k: rms(per_load[fit.points.sweep == k]) for k in sweeps}
+        if fit.of_the_formula(name):
+            continue
+        missed = np.where(fit.used[name], fit.model[name] - fit.points.channel(name), np.nan)
+        own = {k: rms(missed[fit.points.sweep == k]) for k in sweeps}
         usual = finite_median(np.array(list(own.values())))
         seen = {
             k: fit.over_scatter(name, fit.points.sweep == k)
