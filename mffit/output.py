@@ -140,8 +140,8 @@ def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
     folder = out.absolute().parent if is_file else out.absolute()
     nearest = next(path for path in (folder, *folder.parents) if os.path.lexists(path))
     if not nearest.is_dir():
-        shown = out if nearest == out.absolute() else nearest
-        raise InputError(f"is a file, but the output needs a folder; {ELSEWHERE}", file=shown)
+        where = "" if nearest == out.absolute() else f"cannot be written to: {nearest} "
+        raise InputError(f"{where}is a file, but the output needs a folder; {ELSEWHERE}", file=out)
     # The temporary folder of the run is beside the output folder.
     for place in {nearest, nearest if is_file or nearest != folder else folder.parent}:
         try:

@@ -23,7 +23,6 @@ from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import (
-    another_tyre,
     named_of_this_tyre,
     noise_beyond_stated,
     offsets_or_memory,
@@ -92,7 +91,7 @@ def diagnose(
     given_points, given_start, every = points, start, points if as_read is None else as_read
     start = on_surfaces(points, start, channels, rigs, seen=seen)
     kept, wrong = np.ones(len(points), dtype=bool), None
-    if culprits and another_tyre(tyre, config) is None:
+    if culprits:
         kept, wrong = _without_misread(points, start, rigs, channels)
     points = points.select(kept)
     points, origin = with_uncertainties(by_condition(points), start, channels)

@@ -100,6 +100,7 @@ def diagnose(
             repair_all=repair_all,
             as_read=reading.as_read,
             taken_off=reading.taken_off,
+            culprits=other is None,
             progress=progress,
         )
     hashes = input_hashes(config)
