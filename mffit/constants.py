@@ -51,6 +51,12 @@ LEAST_PREDICTED_SHARE = Real(
 )
 WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
+ODD_SWEEP_RATIO = Real(
+    5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
+)
+ASSUMED_NOISE_SHARE = Real(
+    1e-3, "-", "Assumed ratio of noise to rms reading where readings have no noise. The best rigs reach it."
+)
 HOTTEST_TREAD = Real(
     110.0, "degC", "Median of a tread's temperature that no tread keeps; in degF it is usual, 43 degC."
 )

@@ -44,7 +44,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 @click.argument(
     "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir... | tyre.toml"
 )
-@out_option("Page to write [default: FILE.html in the current folder].")
+@out_option("Page to write [default: FILE.html in the current folder].", is_file=True)
 @click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
 @voiced
 def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
@@ -68,7 +68,7 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 
 @click.command()
 @click.argument("old", type=click.Path(path_type=Path), metavar="OLD.tir")
-@out_option("File to write.", required=True)
+@out_option("File to write.", is_file=True, required=True)
 @click.option("--unloaded-radius", type=float, metavar="M", help="UNLOADED_RADIUS [m] if the file lacks it.")
 @click.option(
     "--fittyp",

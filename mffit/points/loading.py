@@ -23,7 +23,7 @@ from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
-from mffit.points.slip_zero import against_free_rolling
+from mffit.points.slip_zero import Driven, SlipZero, against_free_rolling
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
@@ -49,6 +49,10 @@ class Reading(NamedTuple):
     lags: tuple[
         Lag, ...
     ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path at a known speed
+    taken_off: tuple[
+        str, ...
+    ] = ()  #: sentences about errors of the rig that nobody declared and that were taken off
+    as_read: Points | None = None  #: the points with these errors; None without any
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -63,7 +67,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     Parameters
     ----------
     config : the checked ``tyre.toml``
-    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read
+    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read; and a zero of the
+        longitudinal slip that is an error of the rig
     may_be_empty : return no points instead of raising an error if no recording gives one
 
     Returns
@@ -86,7 +91,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
     timed = [evenly_timed(sweep) for sweep in found.sweeps]
-    sweeps, of_slip = against_free_rolling(with_common_clock([sweep for sweep, _ in timed]), config)
+    clocked = with_common_clock([sweep for sweep, _ in timed])
+    sweeps, of_slip = against_free_rolling(clocked, config, with_errors=continuous)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
@@ -121,7 +127,30 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
     lags = [one for part in reduced for one in part.lags if straight and is_known and np.isfinite(one.lag)]
     excluded = _excluded(found.excluded, phi_t)
-    return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes, tuple(lags))
+    return Reading(
+        kept,
+        tuple(warnings),
+        stretches,
+        left_out,
+        excluded,
+        stepped,
+        of_slip.notes,
+        tuple(lags),
+        tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
+        _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
+    )
+
+
+def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points | None:
+    """The points with the slip as the rig read it; None if nothing was taken off."""
+    if not taken_off:
+        return None
+    kappa = points.kappa.copy()
+    of = Driven(points.kappa, points.Fx, points.Fz, points.alpha, points.gamma, points.p, points.RL, points.V)
+    for file, zero in taken_off.items():
+        own = points.file == points.files.index(file) if file in points.files else np.zeros(len(points), bool)
+        kappa[own] = ((1.0 + kappa) * (1.0 + zero.at(of)) - 1.0)[own]
+    return points.replace(kappa=kappa)
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:

@@ -190,6 +190,25 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
 
 
 @of_all_files(
+    id="nominal-load-of-other-loads",
+    limits=(constants.NOMINAL_BEYOND_LOADS,),
+    sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
+    "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
+)
+def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
+    """Nominal load over the highest level of load, and the lowest level over the nominal load."""
+    loads, nominal = points.Fz[np.isfinite(points.Fz)], config.tyre.nominal_load
+    if not len(loads):
+        return
+    of_levels = levels.level_values(loads, levels.LOAD)
+    lowest, highest = float(of_levels.min()), float(of_levels.max())
+    if max(nominal / highest, lowest / nominal) > constants.NOMINAL_BEYOND_LOADS:
+        key = "tyre.nominal_load"
+        facts = {"nominal": nominal, "lowest": lowest, "highest": highest}
+        yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+
+
+@of_all_files(
     id="nominal-load-above-all",
     limits=(NOMINAL_OVER_HIGHEST_LOAD,),
     outcome=Outcome.WARNED,

@@ -57,6 +57,13 @@ LARGEST_ROLLING_RADIUS = Real(
     1.03, "-", "Rolling over unloaded radius; leaves room for growth with speed and pressure."
 )
 
+NOMINAL_BEYOND_LOADS = Real(
+    3.0,
+    "-",
+    "Nominal load over the highest level of load, or the lowest level over it, that no campaign has: loads reach from a fifth "
+    "of the nominal one to twice it, and a digit too few or too many is a factor of ten.",
+)
+
 # Single files
 STEEPEST_OVER_SIDESLIP = Real(
     120.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."

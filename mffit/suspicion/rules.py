@@ -41,6 +41,7 @@ RULES: tuple[Rule, ...] = (
     all_files.copied_sweep,
     other_tyre.two_tyres,
     other_tyre.other_radius,
+    all_files.nominal_load_of_others,
     single_files.angle_in_radians,
     single_files.dead_channel,
     single_files.force_and_moment_exchanged,

@@ -156,9 +156,29 @@ def test_a_misfit_that_might_be_a_mistake_s_is_a_reason(changed):
 
 
 def test_a_model_explains_half_of_the_variance_or_is_not_trusted():
-    assert judged(noise(), u=np.nan, r2=0.51).trusted
-    assert "49 %" in judged(noise(), u=np.nan, r2=0.49).reasons[0]
-    assert " 0 %" in judged(noise(), u=np.nan, r2=-3.0).reasons[0]
+    """Its misfit follows a slow curve in every sweep, beside which neighbouring readings hardly scatter."""
+    off = noise(0.1) + U * np.tile(np.sin(np.linspace(0.0, 6.0, EACH)), SWEEPS)
+    assert judged(off, u=np.nan, r2=0.51).trusted
+    assert "49 %" in judged(off, u=np.nan, r2=0.49).reasons[0]
+    assert " 0 %" in judged(off, u=np.nan, r2=-3.0).reasons[0]
+
+
+def test_a_misfit_that_is_the_scatter_of_neighbours_leaves_nothing_to_explain():
+    """Whether a noise is stated or not."""
+    off = RNG.normal(0.0, U, SWEEPS * EACH)
+    assert judged(off, u=np.nan, r2=0.04).trusted
+    assert judged(off, r2=0.04).trusted
+
+
+@pytest.mark.parametrize(("times", "named"), [(4.0, False), (40.0, True)])
+def test_a_sweep_without_a_stated_noise_is_judged_by_the_others_and_its_own_scatter(times, named):
+    """Nine sweeps scatter by 6 N; the tenth scatters as they do about an offset."""
+    off = RNG.normal(0.0, U, SWEEPS * EACH)
+    off[SWEEP == 3] += times * U
+    u = np.where(SWEEP == 3, np.nan, U)
+    reasons = judged(off, u=u).reasons
+    assert any("sweep_3" in reason for reason in reasons) == named
+    assert judged(np.where(SWEEP == 3, 1.0, off), u=u).trusted
 
 
 @pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.51, True), (0.49, False), (1.25, False)])
