@@ -14,7 +14,10 @@ from mffit import constants
 from tir.derivatives import gradient, plain, traced
 
 NEGLIGIBLE = 0.01
-"""Share of the fall that ends a search below which a step is not worth trying."""
+"""Share of the fall that ends a search below which a step is not worth trying, and a rise is none."""
+
+UNDAMPED = 1e-9
+"""Damping that only keeps a form positive where rounding would not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,9 +165,12 @@ def minimum(
         if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
             here, at_x = problem.linear(x), True
         form = _Quadratic.around(objective, x, here)
-        close = form.left < tolerance * cost  # the step from here is the last one, and hardly damped
-        damping = min(damping, 1e-9) if close else damping
-        step = _step(objective, x, cost, form, damping, NEGLIGIBLE * tolerance * cost)
+        close, least = form.left < tolerance * cost, NEGLIGIBLE * tolerance * cost
+        step = (
+            _last_step(objective, x, cost, form, least)
+            if close
+            else _step(objective, x, cost, form, damping, least)
+        )
         if step is None:
             break
         x, cost, damping, at_x = step.x, step.cost, step.damping, False
@@ -281,6 +287,21 @@ def _step(
     return None
 
 
+def _last_step(
+    objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, least: float
+) -> _Step | None:
+    """The undamped step from a place close to the minimum; None if the sum of squares rises by more than ``least``.
+
+    Its fall may be too small to be seen beside rounding, which is not asked: damped steps before left the answer short.
+    """
+    move = form.move(UNDAMPED)
+    if move is None:
+        return None
+    trial = np.clip(x + move, objective.lower, objective.upper)
+    new = objective.cost(trial, *objective.problem.residual(trial))
+    return _Step(trial, new, UNDAMPED) if new <= cost + least else None
+
+
 class _Quadratic(NamedTuple):
     """The sum of squares around a place, of linearised residuals: data and priors as a quadratic form, limits one by one."""
 
@@ -310,7 +331,7 @@ class _Quadratic(NamedTuple):
     @property
     def left(self) -> float:
         """Fall of the sum of squares by the undamped move to the minimum of the form."""
-        move = self.move(1e-9)
+        move = self.move(UNDAMPED)
         return math.inf if move is None else self.gain(move)
 
     def move(self, damping: float) -> np.ndarray | None:

@@ -171,3 +171,16 @@ def test_a_small_gain_of_a_damped_step_does_not_end_a_search(steepness, noise, t
     found = solve(problem, [FreeNumber("x", -1.2), FreeNumber("y", 1.0)], tolerance=tolerance)
     assert found.cost - noise**2 < 2.0 * tolerance * noise**2
     assert found.left < tolerance * noise**2
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0, 100.0, 1000.0])
+def test_an_answer_is_exact_however_little_it_gains(noise):
+    """A constant under scatter of mean zero: the answer is the mean, whatever share of the sum of squares it explains."""
+    data = 0.5 + noise * np.tile([1.0, -1.0, 3.0, -3.0], 10)
+
+    def linear(x):
+        return Linear(x[0] - data, np.ones((40, 1)), np.zeros(0), np.zeros((0, 1)))
+
+    problem = LeastSquaresProblem(lambda x: (x[0] - data, np.zeros(0)), linear)
+    found = solve(problem, [FreeNumber("a", 0.0)])
+    assert found.values["a"] == pytest.approx(0.5, rel=1e-6)
