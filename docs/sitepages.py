@@ -64,6 +64,8 @@ class ParameterTable(Directive):
 
 def cells(row: Parameter) -> tuple[str, ...]:
     bounds = "" if row.lower is None and row.upper is None else f"{bound(row.lower)} to {bound(row.upper)}"
+    if row.bounds != row.usual:
+        bounds += f" (limits {bound(row.least)} to {bound(row.most)})"
     values = (
         row.name,
         row.unit,

@@ -39,7 +39,7 @@ NAMES_IN_A_SENTENCE = Count(6, "-", "Most keys that a message names; it counts t
 LONGEST_WRITTEN_LINE = Count(118, "-", "Longest written line in characters; some readers stop at 120.")
 LONGEST_READABLE_LINE = Count(200, "-", "Longest line that the smallest known buffers hold.")
 MARGIN_INSIDE_RANGE = Real(
-    1e-3, "-", "Distance of starting values from the ends of a plausible range, over its width."
+    1e-3, "-", "Distance of starting values from the ends of a usual range, over its width."
 )
 
 # Single values that can only be in another unit

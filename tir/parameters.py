@@ -33,8 +33,10 @@ class Parameter:
     kind: str  #: "number" or "text"
     unit: str  #: SI; "-" dimensionless, "" for text
     default: float | str  #: value of a key that the file lacks
-    lower: float | None  #: plausible range, used by the fit; None where nothing is fitted
+    lower: float | None  #: usual range, in units of which priors are stated; None where nothing is fitted
     upper: float | None
+    least: float | None  #: limits of the fit, beyond which no published tyre lies
+    most: float | None
     divisor: bool  #: the equations divide by it, so that it cannot be 0
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
     channel: (
@@ -50,20 +52,27 @@ class Parameter:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """The plausible range; infinite if the table has none."""
-        return (
-            -math.inf if self.lower is None else self.lower,
-            math.inf if self.upper is None else self.upper,
-        )
+        """The limits of the fit; infinite if the table has none."""
+        return _range(self.least, self.most)
+
+    @property
+    def usual(self) -> tuple[float, float]:
+        """The usual range, outside which a value is rare; infinite if the table has none."""
+        return _range(self.lower, self.upper)
 
     @property
     def width(self) -> float:
-        """Width of the plausible range."""
-        lower, upper = self.bounds
+        """Width of the usual range."""
+        lower, upper = self.usual
         return upper - lower
 
+    def rare(self, value: float) -> bool:
+        """Whether the value lies outside the usual range."""
+        lower, upper = self.usual
+        return not lower <= value <= upper
+
     def inside(self, value: float) -> float:
-        """The value, moved slightly inside the plausible range: a search that starts on a bound can stay there."""
+        """The value, moved slightly inside the limits: a search that starts on a bound can stay there."""
         lower, upper = self.bounds
         margin = MARGIN_INSIDE_RANGE * self.width if math.isfinite(self.width) else 0.0
         return min(max(value, lower + margin), upper - margin)
@@ -99,6 +108,10 @@ class Parameter:
         return any(need.word in ("kappa", "combined", "side_force") for need in self.needs)
 
 
+def _range(lower: float | None, upper: float | None) -> tuple[float, float]:
+    return -math.inf if lower is None else lower, math.inf if upper is None else upper
+
+
 def _load() -> tuple[Parameter, ...]:
     text = (resources("tir") / "parameters.csv").read_text(encoding="ascii")
     return tuple(_parameter(i, row) for i, row in enumerate(csv.DictReader(text.splitlines()), start=1))
@@ -106,6 +119,7 @@ def _load() -> tuple[Parameter, ...]:
 
 def _parameter(order: int, row: dict[str, str]) -> Parameter:
     number = row["kind"] == "number"
+    (lower, least), (upper, most) = (_end(row[side]) for side in ("lower", "upper"))
     tied = dict(word.split(":") for word in row["tied"].split())
     return Parameter(
         name=row["name"],
@@ -114,8 +128,10 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         kind=row["kind"],
         unit=row["unit"],
         default=float(row["default"]) if number else row["default"],
-        lower=float(row["lower"]) if row["lower"] else None,
-        upper=float(row["upper"]) if row["upper"] else None,
+        lower=lower,
+        upper=upper,
+        least=least,
+        most=most,
         divisor=row["divisor"] == "yes",
         stage=row["stage"],
         channel=row["channel"],
@@ -127,6 +143,12 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         equation=row["equation"],
         description=row["description"],
     )
+
+
+def _end(text: str) -> tuple[float | None, float | None]:
+    """An end of the usual range, and the limit, which is written behind a colon where it lies further out."""
+    usual, _, limit = text.partition(":")
+    return (float(usual), float(limit or usual)) if usual else (None, None)
 
 
 def _need(text: str) -> Need:

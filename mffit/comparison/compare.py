@@ -53,6 +53,7 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
         curves=tuple(curves),
         sweeps=(),
         notes=wording.notes_between(first, second),
+        nominal=wording.on_nominal(first, second),
     )
 
 

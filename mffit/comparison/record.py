@@ -61,7 +61,7 @@ class Difference:
 
     @property
     def relative(self) -> float:
-        """The change over the plausible range of a coefficient, over 1 for eps_gamma, else over the larger side."""
+        """The change over the usual range of a coefficient, over 1 for eps_gamma, else over the larger side."""
         size = max(abs(self.first), abs(self.second))
         if self.key in OF_ORDER_ONE:
             size = 1.0
@@ -122,5 +122,6 @@ class Comparison(Brief):
     curves: tuple[CurveGap, ...]
     sweeps: tuple[SweepGap, ...]  #: against data, worst first
     notes: tuple[str, ...]
+    nominal: str = ""  #: how the nominal conditions of two files differ; empty if they do not
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from mffit.comparison import constants
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
+from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from tir.errors import listed
@@ -24,7 +25,11 @@ def quantity(row: Difference) -> QuantityName:
 
 
 def headline(found: Comparison) -> str:
-    """The largest differences in a sentence."""
+    """What the files are relative to, if that differs, and the largest differences in a sentence."""
+    return " ".join(filter(None, (found.nominal, _differences(found))))
+
+
+def _differences(found: Comparison) -> str:
     if found.sweeps:
         parts = []
         for channel, known in CHANNELS.items():
@@ -60,6 +65,17 @@ def _significant(found: Comparison) -> str:
 def place(row: Difference) -> str:
     """Condition at which a number holds; empty for a coefficient."""
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
+
+
+def on_nominal(first: ComparedSubject, second: ComparedSubject) -> str:
+    """How the nominal conditions differ; empty if they do not."""
+    one, other = Nominal.of(first.tyre.values).beside(Nominal.of(second.tyre.values))
+    if not one:
+        return ""
+    return (
+        f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that equal "
+        "ones give other forces."
+    )
 
 
 def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str, ...]:

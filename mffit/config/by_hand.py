@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -194,6 +195,8 @@ def _no_number(given: Any) -> str:
         return f'"{shortened(given)}" is a text, not a number; {"remove the quotes" if quoted else HOW}'
     if isinstance(given, bool) or not isinstance(given, int | float):
         return f"is not a number; {HOW}"
+    if isinstance(given, int):
+        return "" if abs(given) <= sys.float_info.max else q.TOO_MANY_DIGITS
     return "" if math.isfinite(given) else f"{given:g} is not a finite number; write one"
 
 
@@ -256,5 +259,5 @@ def _parsed(text: str, key: str) -> Any:
         return BASE
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, KeyError):
-        raise InputError(f'"{text}" is not a value; {HOW}', key=key) from None
+    except (ValueError, KeyError):
+        raise InputError(f'"{shortened(text)}" is not a value; {HOW}', key=key) from None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -15,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from mffit import constants
 from mffit.config.locate import line_of
+from mffit.config.quantities import TOO_MANY_DIGITS
 from mffit.errors import InputError, shortened
 
 Keys = Mapping[str, tuple[str, ...]]
@@ -65,6 +67,7 @@ def validated(
     InputError
         The problem to solve first, with the keys of all others.
     """
+    _refuse_unholdable(content, path, lines)
     try:
         return model.model_validate(dict(content))
     except ValidationError as error:
@@ -76,6 +79,21 @@ def validated(
     others = sorted({mistake.key for mistake in mistakes} - solved)
     also = f" (also wrong: {', '.join(_shown(key, lines) for key in others)})" if others else ""
     raise InputError(first.sentence + also, file=path, line=first.line, key=_shown(first.key, lines))
+
+
+def _refuse_unholdable(
+    content: Any, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
+) -> None:
+    """Refuse a whole number that no float can hold, under any key; TOML sets no limit to its digits."""
+    if isinstance(content, Mapping):
+        for name, inner in content.items():
+            _refuse_unholdable(inner, path, lines, (*key, str(name)))
+    elif isinstance(content, list | tuple):
+        for number, inner in enumerate(content):
+            _refuse_unholdable(inner, path, lines, (*key, str(number)))
+    elif isinstance(content, int) and not abs(content) <= sys.float_info.max:
+        dotted = ".".join(key)
+        raise InputError(TOO_MANY_DIGITS, file=path, line=line_of(dotted, lines), key=_shown(dotted, lines))
 
 
 def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:

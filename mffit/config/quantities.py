@@ -54,6 +54,8 @@ def wrong(sentence: str, key: str = "") -> PydanticCustomError:
     return PydanticCustomError("sentence", "{sentence}", {"sentence": sentence, "key": key})
 
 
+TOO_MANY_DIGITS = "has more digits than a number can have; correct it"
+"""The sentence about a whole number that no float can hold."""
 MILLIMETRES = "it looks like millimetres, write metres"
 
 RADII = OtherUnits(

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from mffit.config.locate import lines_of_keys
+from mffit.config.quantities import TOO_MANY_DIGITS
 from mffit.errors import InputError, readable
 
 PROPERTY_FILE = re.compile(r"^\s*\[(MDI_HEADER|\w+_COEFFICIENTS)\]", re.MULTILINE)
 """A section that only property files have."""
+LONG_NUMBER = re.compile(rf"\d[\d_]{{{sys.int_info.default_max_str_digits},}}")
 DECIMAL_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\s*(#|$)")
 
 
@@ -48,6 +51,13 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, Any], dict[str, int
         if not is_toml:
             raise _other_file(path, kind) from None
         raise _syntax_error(error, path, text) from None
+    except ValueError:  # Python reads no longer whole number
+        found = LONG_NUMBER.search(text)
+        if found is None:
+            raise
+        line = 1 + text.count("\n", 0, found.start())
+        key = next((name for name, at in lines_of_keys(text).items() if at == line), None)
+        raise InputError(TOO_MANY_DIGITS, file=path, line=line, key=key) from None
     if not is_toml and content.keys().isdisjoint(kind.tables):
         raise _other_file(path, kind)
     return content, lines_of_keys(text)

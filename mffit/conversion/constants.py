@@ -28,20 +28,23 @@ WEIGHT_OF_LARGE_CAMBER = Real(
 )
 LOADS_OF_THE_GRID = Count(6, "-", "Loads of the grid: the load terms are parabolas.")
 SIDESLIPS_OF_THE_GRID = Count(21, "-", "Angles of sideslip of the grid, closer together around zero.")
-CAMBERS_OF_THE_GRID = Count(9, "-", "Angles of camber of the grid, closer together around zero.")
+CAMBERS_OF_THE_GRID = Count(
+    3, "-", "Angles of camber of the grid to either side, within the small camber and beyond."
+)
 SLIPS_OF_THE_GRID = Series(
-    (0.0, 0.25, 1.0), "-", "Longitudinal slips of the grid to either side, over the largest."
+    (0.0, 0.08, 0.3, 1.0), "-", "Longitudinal slips of the grid to either side, over the largest."
 )
 MISFIT_UNIT_OF_CONVERSION = Real(
-    0.01, "-", "Unit of the residuals over the largest old force: a hundredth, what the aim is stated in."
+    0.01,
+    "-",
+    "Unit of the residuals over the largest old force of the same load and region: a hundredth, what the aim is stated in.",
 )
 STEPS_OF_THE_CONVERSION = Count(60, "-", "Most steps of the search for the new coefficients.")
 END_OF_THE_CONVERSION = Real(1e-5, "-", "Relative decrease of the sum of squares at which the search ends.")
 GOOD_SHARE = Real(
-    0.02, "-", "Misfit over the largest force up to which a converted condition counts as reproduced."
-)
-GOOD_CONDITIONS = Real(
-    0.95, "-", "Share of the conditions at small camber that a good conversion of a moment reproduces."
+    0.02,
+    "-",
+    "Misfit over the largest force of the same load and region up to which a condition, or the rms of a moment, is reproduced.",
 )
 WEIGHT_OF_CURVATURE_LIMIT = Real(
     300.0,

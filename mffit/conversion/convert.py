@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mffit.conversion import constants, mf52, wording
+from mffit.conversion.curvature_limits import held
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
 from mffit.conversion.old_files import OldFile, read_old
 from mffit.conversion.refit import refit
@@ -33,8 +34,9 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     """The MF 6.2 file that has the forces of an MF 5.2 or PAC2002 file.
 
     Most coefficients mean the same. Those of camber are fitted to the old side force and aligning moment over the ranges of the
-    file, because MF 6.2 has another camber force, and leaves camber out of the force that acts on the trail. Curvature factors
-    that exceed 1, where the old formula holds them, are fitted to the old forces within that limit.
+    file, because MF 6.2 has another camber force, and leaves camber out of the force that acts on the trail; the upright wheel
+    keeps its forces exactly. Curvature factors of the upright wheel that exceed 1, where the old formula holds them, are fitted
+    to the old forces within that limit.
 
     Parameters
     ----------
@@ -64,7 +66,7 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     misfit = tuple(_misfits(tyre, at, goal))
     provenance = {ORIGIN: _origin(old, found), MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
-    return Conversion(tyre, old, reach, misfit, tuple(found))
+    return Conversion(tyre, old, reach, misfit, tuple(found), held(p, reach))
 
 
 def _camber_stiffness(p: Any, reach: Reach) -> dict[str, float]:
@@ -129,19 +131,27 @@ def _origin(old: OldFile, found: Mapping[str, float]) -> str:
 def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:
     """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
     new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
-    small = np.abs(at.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
     slipping = at.kappa != 0.0
     out = []
     for channel in CHANNELS_COMPARED:
-        most = float(np.max(np.abs(goal[channel])))
-        off = np.broadcast_to(new[channel], at.Fz.shape) - goal[channel]
+        most = at.largest_alike(goal[channel])
+        off = np.abs(np.broadcast_to(new[channel], at.Fz.shape) - goal[channel])
         for region in ((True, False), (True, True), (False, False), (False, True)):
-            chosen = (small == region[0]) & (slipping == region[1])
-            if np.any(chosen) and most > 0.0:
-                here = np.abs(off[chosen])
-                within = float(np.mean(here <= float(constants.GOOD_SHARE) * most))
-                rms, largest = float(np.sqrt(np.mean(here**2))), float(np.max(here))
-                out.append(RegionMisfit(channel, *region, rms, largest, most, within))
+            chosen = (at.small_camber == region[0]) & (slipping == region[1]) & (most > 0.0)
+            if np.any(chosen):
+                here, alike = off[chosen], most[chosen]
+                worst = int(np.argmax(here / alike))
+                out.append(
+                    RegionMisfit(
+                        channel, *region,
+                        rms=float(np.sqrt(np.mean(here**2))),
+                        rms_share=float(np.sqrt(np.mean((here / alike) ** 2))),
+                        load=float(at.Fz[chosen][worst]),
+                        largest=float(here[worst]),
+                        greatest_force=float(alike[worst]),
+                        within=float(np.mean(here <= float(constants.GOOD_SHARE) * alike)),
+                    )
+                )  # fmt: skip
     return out
 
 

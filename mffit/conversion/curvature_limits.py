@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.conversion import constants
-from mffit.conversion.grid import Reach
+from mffit.conversion.grid import Reach, cambers, loads
 from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, longitudinal, normalise
 
@@ -20,9 +19,7 @@ class CurvatureFactor(NamedTuple):
 
     channel: str  #: the force or moment that it bends
     names: tuple[str, ...]  #: its coefficients without those of camber
-    at_loads: Callable[
-        [Any, normalise.Inputs, float], list[Any]
-    ]  #: E before limits, upright, to the largest sideslip
+    at_loads: Callable[[Any, normalise.Inputs, float], list[Any]]  #: E before limits, to the largest sideslip
 
 
 FACTORS = (
@@ -35,7 +32,7 @@ FACTORS = (
     CurvatureFactor(
         "Fy",
         ("PEY1", "PEY2", "PEY3"),
-        lambda p, q, _: [lateral.curvature(p, q, 0.0, side) for side in SIDES],
+        lambda p, q, _: [lateral.curvature(p, q, q.gamma, side) for side in SIDES],
     ),
     CurvatureFactor("Fy", ("REY1", "REY2"), lambda p, q, _: [lateral.weight_factors(p, q).E]),
     CurvatureFactor(
@@ -49,14 +46,18 @@ FACTORS = (
 
 
 def excess(
-    p: Any, factors: Sequence[CurvatureFactor], reach: Reach, by: Sequence[Traced] = ()
+    p: Any,
+    factors: Sequence[CurvatureFactor],
+    reach: Reach,
+    by: Sequence[Traced] = (),
+    camber: np.ndarray | float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """E - 1 (k,) of the factors over load and side, above 0 where they exceed the limit, and its derivatives (k, m).
+    """E - 1 (k,) of the factors over load, side and cambers, above 0 where they exceed the limit, and its derivatives (k, m).
 
     ``p`` has the coefficients as attributes, plain or traced; ``by`` are the m traced ones.
     """
-    Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
+    Fz, gamma = (axis.ravel() for axis in np.meshgrid(loads(reach), camber))
+    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, p.INFLPRES, False, False)
     rows = [row - 1.0 for factor in factors for row in factor.at_loads(p, q, reach.alpha)]
     value = np.concatenate([np.broadcast_to(plain(row), Fz.shape) for row in rows])
     if not by:
@@ -65,5 +66,14 @@ def excess(
 
 
 def exceeding(p: Any, reach: Reach) -> list[CurvatureFactor]:
-    """The curvature factors that exceed 1 somewhere in the range."""
+    """The curvature factors of the upright wheel that exceed 1 somewhere in the range."""
     return [factor for factor in FACTORS if np.max(excess(p, [factor], reach)[0]) > 0.0]
+
+
+def held(p: Any, reach: Reach) -> dict[str, float]:
+    """The curvature factors that exceed 1 somewhere in the range, with camber or without: largest E, by key without number."""
+    largest = {
+        factor.names[0][:-1]: 1.0 + float(np.max(excess(p, [factor], reach, camber=cambers(reach))[0]))
+        for factor in FACTORS
+    }
+    return {key: E for key, E in largest.items() if E > 1.0}

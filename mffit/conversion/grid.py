@@ -28,10 +28,22 @@ class Conditions(NamedTuple):
     kappa: np.ndarray
 
     @property
+    def small_camber(self) -> np.ndarray:
+        """Whether each condition is within the camber up to which cars use their tyres."""
+        return np.abs(self.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
+
+    @property
     def weight(self) -> np.ndarray:
         """Weight of each condition in the fit."""
-        large = np.abs(self.gamma) > constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
-        return np.where(large, float(constants.WEIGHT_OF_LARGE_CAMBER), 1.0)
+        return np.where(self.small_camber, 1.0, float(constants.WEIGHT_OF_LARGE_CAMBER))
+
+    def largest_alike(self, force: np.ndarray) -> np.ndarray:
+        """The largest absolute force among the conditions of the same load and region: small camber or not, slipping or not."""
+        key = np.column_stack([self.Fz, self.small_camber, self.kappa != 0.0])
+        _, group = np.unique(key, axis=0, return_inverse=True)
+        most = np.zeros(group.max() + 1)
+        np.maximum.at(most, group.ravel(), np.abs(force))
+        return most[group.ravel()]
 
 
 def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
@@ -54,16 +66,28 @@ def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
 
 def conditions(reach: Reach) -> Conditions:
     """A grid over the ranges, closer together at small angles, where the curves bend."""
-    loads = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
     slips = float(reach.kappa) * np.array(constants.SLIPS_OF_THE_GRID)
     axes = np.meshgrid(
-        loads,
+        loads(reach),
         _towards_zero(reach.alpha, int(constants.SIDESLIPS_OF_THE_GRID)),
-        _towards_zero(reach.gamma, int(constants.CAMBERS_OF_THE_GRID)),
+        cambers(reach),
         np.unique(np.concatenate([-slips, slips])),
         indexing="ij",
     )
     return Conditions(*(axis.ravel() for axis in axes))
+
+
+def loads(reach: Reach) -> np.ndarray:
+    """The loads of the grid [N]."""
+    return np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
+
+
+def cambers(reach: Reach) -> np.ndarray:
+    """The cambers of the grid to either side [rad]: half of them within the small camber, its end among them."""
+    n = int(constants.CAMBERS_OF_THE_GRID)
+    small = min(constants.SMALL_CAMBER.rad, reach.gamma)
+    side = np.unique(np.concatenate([np.linspace(0.0, small, n), np.linspace(small, reach.gamma, n)]))
+    return np.concatenate([-side[:0:-1], side])
 
 
 def _towards_zero(end: float, n: int) -> np.ndarray:

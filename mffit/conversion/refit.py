@@ -12,19 +12,20 @@ import numpy as np
 from mffit.conversion import constants
 from mffit.conversion.curvature_limits import CurvatureFactor, exceeding, excess
 from mffit.conversion.grid import Conditions, Reach
-from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT, STARTS
+from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
 from tir.derivatives import traced
 from tir.outputs import outputs_of
-from tir.parameters import BY_NAME
 
 FREE: Mapping[str, Sequence[str]] = {
     "Fx": (),
     "Fy": CAMBER_FORCE,
-    "Mz": (*CAMBER_MOMENT, "QBZ9", "QBZ10", "QDZ6", "QDZ7"),
+    "Mz": CAMBER_MOMENT,
 }
-"""By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae."""
-WITHOUT_START: Sequence[Mapping[str, float]] = ({},)
+"""By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae, so that the
+upright wheel keeps its forces."""
+UNBOUNDED = (-np.inf, np.inf)
+"""Of a converted coefficient: exact forces determine it, and what it multiplies may be tiny in the old file."""
 
 
 def refit(
@@ -57,7 +58,7 @@ class _ChannelFit(NamedTuple):
 def _of_channel(
     fit: _ChannelFit, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
 ) -> Mapping[str, float]:
-    unit = float(constants.MISFIT_UNIT_OF_CONVERSION) * float(np.max(np.abs(goal)))
+    unit = float(constants.MISFIT_UNIT_OF_CONVERSION) * at.largest_alike(goal)
     u = unit / np.sqrt(at.weight / at.weight.sum())
     inputs = at._asdict()
 
@@ -67,16 +68,9 @@ def _of_channel(
     problem = of_model(force, fit.names, goal, u)
     if fit.limited:
         problem = _held_to_one(problem, fit, values)
-    ends = [
-        solve(
-            problem,
-            [_number(name, float(start.get(name, values[name]))) for name in fit.names],
-            max_steps=int(constants.STEPS_OF_THE_CONVERSION),
-            tolerance=float(constants.END_OF_THE_CONVERSION),
-        )
-        for start in STARTS.get(fit.channel, WITHOUT_START)
-    ]
-    return min(ends, key=lambda end: end.cost).values
+    numbers = [FreeNumber(name, float(values[name]), *UNBOUNDED) for name in fit.names]
+    steps, tolerance = int(constants.STEPS_OF_THE_CONVERSION), float(constants.END_OF_THE_CONVERSION)
+    return solve(problem, numbers, max_steps=steps, tolerance=tolerance).values
 
 
 def _held_to_one(
@@ -100,9 +94,3 @@ def _held_to_one(
         return replace(problem.linear(x), limits=limits, limits_slope=slope)
 
     return LeastSquaresProblem(residual, linear)
-
-
-def _number(name: str, start: float) -> FreeNumber:
-    """A coefficient within its plausible range, and within twice the old value where that lies outside."""
-    lower, upper = BY_NAME[name].bounds
-    return FreeNumber(name, start, min(lower, 2.0 * start), max(upper, 2.0 * start))

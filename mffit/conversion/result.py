@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,9 +22,18 @@ class RegionMisfit(NamedTuple):
     small_camber: bool  #: within SMALL_CAMBER, or beyond
     slipping: bool  #: with longitudinal slip, or without
     rms: float  #: [N] or [Nm]
-    largest: float  #: [N] or [Nm]
-    greatest_force: float  #: largest old force over all conditions [N] or [Nm]
-    within: float  #: share of the conditions within GOOD_SHARE of the largest force
+    rms_share: float  #: rms of the misfit over the largest old force of the same load and region
+    load: float  #: at which it is the largest share of the old force [N]
+    largest: float  #: at this load [N] or [Nm]
+    greatest_force: float  #: largest old force of the region at this load [N] or [Nm]
+    within: (
+        float  #: share of the conditions within GOOD_SHARE of the largest force of the same load and region
+    )
+
+    @property
+    def share(self) -> float:
+        """The largest misfit over the largest old force, both of one load and region."""
+        return self.largest / self.greatest_force
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -37,17 +47,16 @@ class Conversion(Brief):
     fitted: tuple[
         str, ...
     ]  #: names of the coefficients that were fitted; the others mean the same in both formulae
+    held: Mapping[
+        str, float
+    ]  #: curvature factors that the old formula holds to 1 in this file, and what they would be
 
     @property
     def poor(self) -> tuple[RegionMisfit, ...]:
-        """Where the aim is missed: forces at small camber off by more than GOOD_SHARE, moments in too many conditions."""
+        """Where the aim is missed at small camber: a force somewhere off by more than GOOD_SHARE, a moment in rms."""
         return tuple(
             row
             for row in self.misfit
             if row.small_camber
-            and (
-                row.within < constants.GOOD_CONDITIONS
-                if row.channel in MOMENTS
-                else row.largest > constants.GOOD_SHARE * row.greatest_force
-            )
+            and (row.rms_share if row.channel in MOMENTS else row.share) > constants.GOOD_SHARE
         )

@@ -19,7 +19,18 @@ def headline(found: Conversion) -> str:
         f"{math.degrees(reach.alpha):.3g} deg, camber to {math.degrees(reach.gamma):.3g} deg, longitudinal slip to "
         f"{reach.kappa:g}. "
         f"{len(found.fitted)} coefficients were fitted to the old forces, those of {refitted(found.fitted)}; all others mean the "
-        "same in both formulae."
+        f"same in both formulae.{curvature(found)}"
+    )
+
+
+def curvature(found: Conversion) -> str:
+    """What the old formula does where a curvature factor exceeds 1; empty if none does."""
+    if not found.held:
+        return ""
+    most = " and ".join(f"{E:.3g} ({key})" for key, E in found.held.items())
+    return (
+        f" The equations of {found.old.kind} hold curvature factors to 1, and the old forces are taken so; by the file's "
+        f"coefficients they would reach {most} in these ranges."
     )
 
 
@@ -27,8 +38,8 @@ def refitted(names: Iterable[str]) -> str:
     """What the fitted coefficients describe."""
     curved = [factor.names[0][:-1] for factor in FACTORS if factor.names[0] in set(names)]
     if not curved:
-        return "camber and of the residual torque"
-    return f"camber, of the residual torque and of curvature above 1 ({', '.join(curved)}), which the old formula holds to 1"
+        return "camber"
+    return f"camber and of curvature above 1 ({', '.join(curved)})"
 
 
 def region(row: RegionMisfit) -> str:
@@ -38,23 +49,25 @@ def region(row: RegionMisfit) -> str:
 
 
 def worst(misfit: Iterable[RegionMisfit]) -> str:
-    """The misfit of the channel that differs most, as a share of its largest value."""
-    row = max(misfit, key=lambda row: row.largest / row.greatest_force)
-    quantity = MODEL[row.channel]
+    """The misfit of the channel that differs most, as a share of its largest value at the same load."""
+    row = max(misfit, key=lambda row: row.share)
     return (
-        f"{quantity.symbol} differs most from the old file, by up to {row.largest:.3g} {quantity.unit} "
-        f"({row.largest / row.greatest_force:.1%} of its largest value), at {region(row)}"
+        f"{MODEL[row.channel].symbol} differs most from the old file, by up to {size(row)}, at {region(row)}"
     )
+
+
+def size(row: RegionMisfit) -> str:
+    """The largest misfit of a region, beside the largest value at its load."""
+    unit = MODEL[row.channel].unit
+    return f"{row.largest:.3g} of {row.greatest_force:.3g} {unit} ({row.share:.1%}) at {row.load:.0f} N"
 
 
 def reasons(found: Conversion) -> list[str]:
     """Why the converted file is not to be trusted; empty if its misfit is small."""
     out = []
     for row in found.poor:
-        quantity = MODEL[row.channel]
         out.append(
-            f"{quantity.symbol} at {region(row)} is off by up to {row.largest:.0f} {quantity.unit}, "
-            f"{row.largest / row.greatest_force:.1%} of its largest value; {row.within:.0%} of the conditions are within "
-            f"{constants.GOOD_SHARE:.0%}"
+            f"{MODEL[row.channel].symbol} at {region(row)} is off by up to {size(row)}, in rms by {row.rms_share:.1%} of the "
+            f"largest of the same load; {row.within:.0%} of the conditions are within {constants.GOOD_SHARE:.0%}"
         )
     return out

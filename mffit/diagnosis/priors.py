@@ -15,6 +15,7 @@ from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME, OF_RUN, ZEROS, number_of
+from tir.parameters import BY_NAME as COEFFICIENTS
 
 SWITCH = "turn_slip"
 
@@ -39,8 +40,8 @@ def anchor(free: Free, start: Simulation, points: Points) -> tuple[float, float]
     current = start.number(free.name, points)
     if not free.relative:
         return current, 1.0
-    # A coefficient that the model has at zero gives no scale; the width of its plausible range does.
-    return current, abs(current) if current else constants.ZERO_COEFFICIENT_SCALE * (free.upper - free.lower)
+    # A coefficient that the model has at zero gives no scale; the width of its usual range does.
+    return current, abs(current) or constants.ZERO_COEFFICIENT_SCALE * COEFFICIENTS[free.name].width
 
 
 def number(free: Free, at: Mapping[str, float], start: Simulation, points: Points) -> FreeNumber:

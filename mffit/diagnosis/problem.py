@@ -16,6 +16,7 @@ from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
 from mffit.points import Points
 from mffit.rig import Simulation
+from tir.parameters import BY_NAME as COEFFICIENTS
 
 
 class DiagnosisProblem:
@@ -88,17 +89,26 @@ class DiagnosisProblem:
     def refine(
         self, chosen: Hypothesis, inexact: Inexactness = EXACT
     ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
-        """The hypothesis with the model's coefficients estimated too, and these: name -> (value, standard error)."""
+        """The hypothesis with the model's coefficients estimated too, and these: name -> (value, standard error).
+
+        The prior of a coefficient that changes by more than usual is as wide as the change that was found, so that it does not
+        pull the answer back.
+        """
         frees = moving(chosen.effects)
         prior = inexact.without(frozenset(free.name for free in frees))
-        if not prior:
+        usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
+        numbers = [
+            replace(n, spread=max(n.spread, abs(n.start - n.expected))) if n.name in COEFFICIENTS else n
+            for n in usual
+        ]
+        if not prior and numbers == usual:
             return chosen, {}
         fixed = switched(chosen.effects)
-        numbers = [number(free, chosen.numbers, self.start, self.points) for free in frees]
         numbers += [FreeNumber(name, self.start.number(name, self.points)) for name in prior.names]
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
+        problem = plain.within([n.name for n in numbers], fixed)
         found = solve(
-            prior.added_to(plain.within([n.name for n in numbers], fixed), first=len(frees)),
+            prior.added_to(problem, first=len(frees)) if prior else problem,
             numbers,
             max_steps=constants.MOST_HYPOTHESIS_STEPS,
             tolerance=constants.HYPOTHESIS_CONVERGED,

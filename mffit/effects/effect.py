@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mffit.rig_errors import OF_RUN, number_of
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,12 +21,18 @@ class Free:
     name: str  #: coefficient of the file, rig error, or "turn_slip"
     spread: float
     scan: tuple[float, ...] = (0.0,)
-    lower: float = float("-inf")  #: of the number itself, not of its change
+    lower: float = float("-inf")  #: of the number itself; the limits of a coefficient hold anyway
     upper: float = float("inf")
     relative: bool = False  #: spread and scan are relative to the current value
     per_run: bool = False  #: one such number for every run, added to the fault of this name
 
     per_setup: bool = False  #: one such number for every set-up of the rig, if there are several
+
+    def __post_init__(self) -> None:
+        if self.name in BY_NAME:
+            lower, upper = BY_NAME[self.name].bounds
+            object.__setattr__(self, "lower", max(self.lower, lower))
+            object.__setattr__(self, "upper", min(self.upper, upper))
 
     def of_run(self, file: str) -> Free:
         """The number of the run that a file holds."""

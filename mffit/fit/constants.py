@@ -24,10 +24,10 @@ STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coeff
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
 LEAST_SPREAD_BASE_FILE = Real(
-    0.05, "-", "Smallest standard deviation around a base file's value, over the plausible range."
+    0.05, "-", "Smallest standard deviation around a base file's value, over the usual range."
 )
 LEAST_SPREAD_DEFAULT = Real(
-    0.1, "-", "Smallest standard deviation around the table's default, over the plausible range."
+    0.1, "-", "Smallest standard deviation around the table's default, over the usual range."
 )
 CAMBER_REDUCTION_SPREAD = Real(
     0.3, "-", "Standard deviation of PECP1 among tyres: near 0 for motorcycles, 0.5 to 0.7 for cars."
@@ -36,6 +36,12 @@ LARGEST_CAMBER_REDUCTION = Real(
     0.9,
     "-",
     "Largest PECP1 that zeros without camber sweeps may suggest; beyond it the camber stiffness is wrong.",
+)
+CONDITIONS_OF_A_MISFIT = Count(
+    500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
+)
+EXACT_CONVERSION = Real(
+    1e-6, "-", "Difference over the largest force up to which a converted base has the same forces: rounding."
 )
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
@@ -299,10 +305,14 @@ UNTESTED_SIDESLIP = Real(
 UNTESTED_SHARE = Real(
     0.1, "-", "Relative range of a single load or pressure that the model leaves no room for."
 )
-LEAST_REMAINING_FORCE = Real(0.5, "-", "Share of its peak that the side force keeps over the sideslip range.")
-REMAINING_FORCE_ALPHA = Real(0.07, "rad", "Sideslip from which this is tested, if it was run.")
-REMAINING_FORCE_GRID = Series((13, 3), "-", "Sideslip angles and loads of this test.")
-REMAINING_FORCE_CAMBERS = Series((-0.5, 0.0, 0.5), "-", "Cambers of this test over the largest one.")
+FASTEST_CHANGE = Real(
+    3.0,
+    "-",
+    "Fastest change of the logarithm of grip or stiffness over load, per unit of the logarithm of load or pressure and per "
+    "radian of camber, and fastest fall of the side force per radian of sideslip: just above what public tyres do.",
+    "docs/fit.md",
+)
+STEPS_TO_AN_END = Count(9, "-", "Values from a tested to a written end of a range at which this is tested.")
 
 # Conditions at which files are derived and compared
 WEIGHT_OUTSIDE_TESTED = Real(

@@ -27,7 +27,19 @@ class Envelope(NamedTuple):
     @property
     def size(self) -> int:
         """Number of conditions at which the limits are tested."""
-        return _grid(self)[0].size
+        return grid(self)[0].size
+
+
+def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndarray) -> list[np.ndarray]:
+    """Friction and stiffness over load [-], lateral and, of a file that has them, longitudinal."""
+    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
+    found = (
+        stiffness.lateral_friction(p, q, gamma),
+        stiffness.cornering_stiffness(p, q, gamma) / Fz,
+        stiffness.longitudinal_friction(p, q),
+        stiffness.longitudinal_slip_stiffness(p, q) / Fz,
+    )
+    return [np.broadcast_to(x, Fz.shape) for x in found if np.any(x)]
 
 
 def violations(p: Any, envelope: Envelope) -> np.ndarray:
@@ -58,7 +70,7 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     trail at zero slip not negative; where longitudinal slip was run, those of :func:`_longitudinal` and
     :func:`_under_slip` too.
     """
-    Fz, gamma, pressure = _grid(envelope)
+    Fz, gamma, pressure = grid(envelope)
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
     B_t = aligning.slope_factor(p, q)
     rows = [
@@ -156,7 +168,7 @@ def _with_slips(
 
 
 @lru_cache(maxsize=8)
-def _grid(envelope: Envelope) -> tuple[np.ndarray, ...]:
+def grid(envelope: Envelope) -> tuple[np.ndarray, ...]:
     """Load, camber and pressure (n,) of the conditions at which the limits are tested."""
     loads, cambers, pressures = (int(n) for n in constants.LIMIT_GRID)
     low, high = envelope.pressure

@@ -14,6 +14,8 @@ from tir.parameters import BY_NAME
 
 CONVERTED = "converted"
 """Origin of a value that a conversion of the base file gave, and the first word of its comment there."""
+NOT_MEASURED = ("default", "estimate")
+"""First words of the comment of a value that nobody measured."""
 FROM_BASE = ("base", CONVERTED)
 """Origins of what the base file states."""
 

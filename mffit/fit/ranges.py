@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.constraints import Envelope, violations
+from mffit.fit.constraints import Envelope, characteristics, grid, violations
 from mffit.points import Points, levels
 from tir.evaluate import evaluate
 
@@ -81,29 +81,36 @@ def plausible_ranges(
     stop following the sideslip at 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
     load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
     degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end goes
-    as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half its peak.
+    as far as the limits of :mod:`mffit.fit.constraints` hold and no characteristic changes faster than in public tyres.
     """
     model = SimpleNamespace(**values)
-    alpha = tested["ALPMAX"]
     ranges = dict(tested)
     allowed = max(constants.LIMIT_MARGIN, _worst_violation(model, ranges)) + 1e-9
     for name, end in _wished_ends(tested).items():
         for share in constants.RANGE_SHARES:
-            wider = _with_end(ranges, name, tested[name] + share * (end - tested[name]))
-            if _worst_violation(model, wider) <= allowed and _keeps_its_force(model, wider, alpha, turn_slip):
+            stop = tested[name] + share * (end - tested[name])
+            wider, alone = (_with_end(inside, name, stop) for inside in (ranges, tested))
+            if _worst_violation(model, wider) <= allowed and _as_in_public_tyres(
+                model, alone, name, tested[name], turn_slip
+            ):
                 ranges = wider
                 break
     return ranges
 
 
 def with_room(
-    values: Mapping[str, Any], written: Mapping[str, float], stated: Mapping[str, float]
+    values: Mapping[str, Any],
+    written: Mapping[str, float],
+    stated: Mapping[str, float],
+    *,
+    turn_slip: bool = False,
 ) -> tuple[dict[str, float], dict[str, str]]:
     """The ranges to write, none of them empty; and where those that the sweeps do not vary come from, by quantity.
 
     ``stated`` are the ranges that the base states. A simulation holds its inputs to the range of the file, so that an empty one
     would fix them. What was not varied gets the range of the base if the model stays plausible in it, else a small one.
     """
+    model = SimpleNamespace(**values)
     ranges, origin = dict(written), {}
     for word, low, high, small in (
         ("camber", "CAMMIN", "CAMMAX", constants.UNTESTED_CAMBER.rad),
@@ -115,7 +122,11 @@ def with_room(
         origin[word] = f"{np.degrees(small):.0f} deg to either side"
         end = max(-stated.get(low, 0.0), stated.get(high, 0.0))
         theirs = {**ranges, low: -end, high: end}
-        if end > small and _worst_violation(SimpleNamespace(**values), theirs) <= constants.LIMIT_MARGIN:
+        if (
+            end > small
+            and _worst_violation(model, theirs) <= constants.LIMIT_MARGIN
+            and _as_in_public_tyres(model, theirs, high, small, turn_slip)
+        ):
             ranges = theirs
             origin[word] = f"the base's {np.degrees(end):.0f} deg to either side"
     for word, low, high in (("load", "FZMIN", "FZMAX"), ("pressure", "PRESMIN", "PRESMAX")):
@@ -152,18 +163,39 @@ def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
     return max(float(violations(model, envelope(ranges)._replace(Fz=loads)).max()) for loads in halves)
 
 
-def _keeps_its_force(model: Any, ranges: Mapping[str, float], tested_alpha: float, turn_slip: bool) -> bool:
-    """Whether the side force opposes large sideslip up to the end of the range, at each load, upright and cambered."""
-    begin = min(tested_alpha, constants.REMAINING_FORCE_ALPHA)
-    angles, loads = (int(n) for n in constants.REMAINING_FORCE_GRID)
-    slip = np.linspace(begin, ranges["ALPMAX"], angles)
-    alpha, gamma, Fz = np.meshgrid(
-        np.concatenate([-slip[::-1], slip]),
-        np.array(constants.REMAINING_FORCE_CAMBERS) * ranges["CAMMAX"],
-        np.linspace(ranges["FZMIN"], ranges["FZMAX"], loads),
-        indexing="ij",
+def _as_in_public_tyres(
+    model: Any, ranges: Mapping[str, float], name: str, begin: float, turn_slip: bool
+) -> bool:
+    """Whether grip and stiffness over load, and the side force over sideslip, change no faster than those of public tyres.
+
+    Tested in steps from ``begin`` to the end ``name`` of the ranges, over the grid of the others. A step is one of the logarithm
+    of load or pressure, or of an angle in radians. With sideslip only a fall counts: a force may rise to its peak.
+    """
+    if ranges[name] == begin:
+        return True
+    relative, n = name.startswith(("FZ", "PRES")), int(constants.STEPS_TO_AN_END)
+    x = (np.geomspace if relative else np.linspace)(begin, ranges[name], n)
+    others = grid(envelope(ranges))
+    along = np.tile(x, others[0].size)
+    Fz, gamma, pressure = (
+        along if name.startswith(axis) else np.repeat(values, n)
+        for axis, values in zip(("FZ", "CAM", "PRES"), others, strict=True)
     )
-    Fy = evaluate(model, Fz, alpha, gamma, turn_slip=turn_slip)[0].Fy
-    span = Fy[: len(slip)][::-1] - Fy[len(slip) :]  # of opposite sideslip, so that camber thrust cancels
-    remaining = constants.LEAST_REMAINING_FORCE * span.max(axis=0)
-    return bool(np.all(span > 0.0) and np.all(span[-1] >= remaining))
+    if name == "ALPMAX":
+        left, right = (
+            evaluate(model, Fz, alpha, gamma, pressure=pressure, turn_slip=turn_slip)[0].Fy
+            for alpha in (-along, along)
+        )
+        found = [left - right]  # of opposite sideslip, so that camber thrust cancels
+    else:
+        found = characteristics(model, Fz, gamma, pressure)
+    step = np.diff(np.log(x) if relative else x)
+    for quantity in found:
+        line = quantity.reshape(-1, n)
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # a change of sign is NaN, which is not below the limit
+            change = np.diff(np.log(line / line[:, :1]), axis=1) / step
+        if not np.all((-change if name == "ALPMAX" else np.abs(change)) <= constants.FASTEST_CHANGE):
+            return False
+    return True

@@ -14,8 +14,9 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
+from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
-from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE, with_expected_signs
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
 from mffit.least_squares import minimum
 from mffit.points import Points, levels, main_pressure
 from mffit.progress import Progress, silent

@@ -29,8 +29,6 @@ NONZERO_STARTS = {
     "RVY6": 10.0,
 }
 """Starting values instead of zero, where all derivatives vanish at zero and no step would leave it."""
-WITHOUT_SIGN = (("RBX2",), ("RBY2",), ("RVY4",), ("RVY6", "RVY5"))
-"""Coefficients whose sign, alone or together, changes no force: factors of a slip in an even function (4.E54, 4.E62, 4.E66)."""
 ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
     "a round side-force curve": {"PCY1": 1.2, "PEY1": 0.3, "PEY2": 0.0},
     "a peaked side-force curve": {"PCY1": 1.7, "PEY1": -1.5, "PEY2": 0.0},
@@ -70,16 +68,6 @@ def starting_values(
         C_gamma = {load: rolling * value for load, value in C_gamma.items()}
         start |= camber_stiffness_terms(start, C_gamma, float(points.p[main_pressure(points)].mean()), held)
     return start
-
-
-def with_expected_signs(values: Mapping[str, Any], expected: Mapping[str, float]) -> dict[str, float]:
-    """Coefficients whose sign changes no force, with the sign of their expected values."""
-    return {
-        name: -float(values[name])
-        for group in WITHOUT_SIGN
-        if expected.get(group[0], 0.0) * float(values[group[0]]) < 0.0
-        for name in group
-    }
 
 
 def camber_stiffness_terms(

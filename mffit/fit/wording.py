@@ -23,6 +23,10 @@ from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity
+from tir.parameters import BY_NAME
+
+RARE = "the range of usual tyres"
+"""How sentences call the usual range of the table of parameters."""
 
 
 def explanations(
@@ -335,6 +339,10 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
     for name in sorted(fitted.at_bound & hand.bounded.keys()):
         lower, upper = hand.bounded[name]
         out.append(f"{name} is at a limit: [coefficients] allows {lower:g} to {upper:g}")
+    rare = [
+        name for name, x in hand.held.items() if name not in hand.from_base and BY_NAME[name].rare(float(x))
+    ]
+    out += [f"{name} is held in [coefficients] outside {RARE}" for name in rare]
     for name in hand.names:
         if name in free or name in hand.held:
             continue
@@ -366,10 +374,19 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
-    """The coefficients at a bound of the table and those at a limit; bounds that somebody set do not count."""
+    """The coefficients at a limit of the table, rare ones, and those at a limit of the curves; bounds by hand do not count."""
     at_bound = fitted.at_bound - fitted.hand.bounded.keys()
+    rare = {
+        n.name
+        for n in fitted.numbers
+        if n.name in BY_NAME
+        and n.name not in fitted.hand.bounded
+        and BY_NAME[n.name].rare(fitted.values[n.name])
+        and not BY_NAME[n.name].rare(n.expected)
+    }
     words = (
         ("at the bound of plausible values", at_bound - fitted.at_limit),
+        (f"outside {RARE}", rare - at_bound),
         (
             "at a limit of the curves, such as E <= 1",
             at_bound & fitted.at_limit,

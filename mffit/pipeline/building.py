@@ -23,7 +23,7 @@ from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.campaigns import campaigns_of, projects_of
-from mffit.pipeline.inputs import base_warnings, input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
@@ -92,7 +92,8 @@ def build(
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
-    fitted = replace(fitted, explanations=(*fitted.explanations, *(f"{note}." for note in reading.notes)))
+    notes = (*base_notes(config, base), *(f"{note}." for note in reading.notes))
+    fitted = replace(fitted, explanations=(*fitted.explanations, *notes))
     tyres = {use: annotated(files[use].tyre, use) for use in names}
     if fitted.temperature is not None:
         tyres[TEMPERATURE] = annotated(fitted.temperature.file.tyre, TEMPERATURE)

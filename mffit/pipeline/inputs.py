@@ -11,6 +11,9 @@ from mffit.config import Config
 from mffit.conversion import convert, is_old
 from mffit.conversion.convert import MISFIT, ORIGIN
 from mffit.errors import InputError
+from mffit.fit.borrowed.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
+from mffit.fit.known import given_values
+from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading
 from mffit.recordings import with_recognised
@@ -34,7 +37,10 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
 
 
 def read_base(config: Config) -> Tyre | None:
-    """The base file that the configuration names, one of MF 5.2 or PAC2002 converted; None without one."""
+    """The base file that the configuration names, at the nominal conditions of ``[tyre]``; None without one.
+
+    A file of MF 5.2 or PAC2002 is converted.
+    """
     if config.tyre.base is None:
         return None
     path = config.folder / config.tyre.base
@@ -44,7 +50,27 @@ def read_base(config: Config) -> Tyre | None:
             file=config.path,
             key="tyre.base",
         )
-    return convert(path).tyre if is_old(path) else tir.read(path)
+    found = convert(path).tyre if is_old(path) else tir.read(path)
+    wanted = Nominal.of(given_values(config.tyre))
+    try:
+        return tyre_at_nominal(tyre_in_one_form(found), wanted)
+    except ArithmeticError as error:
+        raise InputError(
+            f"the base file {config.tyre.base} cannot be converted to the nominal conditions of [tyre], at which a factor of its "
+            f"formulae vanishes ({error}): give conditions nearer to its own, or another base",
+            file=config.path,
+            line=config.line_of("tyre.base"),
+            key="tyre.base",
+        ) from None
+
+
+def base_notes(config: Config, base: Tyre | None) -> tuple[str, ...]:
+    """A remark on a base file for other nominal conditions."""
+    if base is None or CONDITIONS not in base.provenance:
+        return ()
+    return (
+        f"The base file {config.tyre.base} is at other nominal conditions: {base.provenance[CONDITIONS]}.",
+    )
 
 
 def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:

@@ -105,12 +105,22 @@ def _sound_range(row: Parameter) -> None:
     assert lower < upper
     if row.stage:
         assert math.isfinite(row.width), row.name
-        assert lower <= float(row.default) <= upper, row.name
+        assert lower <= row.usual[0] <= float(row.default) <= row.usual[1] <= upper, row.name
         assert row.equation, row.name
     if row.divisor:
         assert float(row.default) > 0.0, row.name
     if row.equation:
         assert row.equation in EQUATIONS, f"{row.name}: {row.equation} is not in the code"
+
+
+def test_no_limit_excludes_a_published_tyre():
+    """Extremes of 33 public files, in the signs of the table; 0, an effect that a file does not have, left out."""
+    with (Path(__file__).parent / "published_extremes.csv").open(encoding="ascii", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) > 100
+    for row in rows:
+        least, most = BY_NAME[row["name"]].bounds
+        assert least <= float(row["lowest"]) <= float(row["highest"]) <= most, row
 
 
 @pytest.fixture(scope="module")

@@ -1,50 +1,285 @@
-"""Coefficients of longitudinal and combined slip converted to another nominal load and pressure."""
+"""Coefficients converted to other nominal conditions: load, pressure, speed and free radius.
+
+Nearly all forms of the equations are closed under such a change, which is then exact. :func:`misfit` says what is left.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
-LINEAR_IN_LOAD = (
+import numpy as np
+
+from mffit.fit import constants
+from mffit.fit.priors import CONVERTED, NOT_MEASURED
+from tir import Tyre
+from tir.equations.forces import Forces
+from tir.mode import BLOCK, asks_for_turn_slip
+
+OVER_LOAD: tuple[tuple[str, ...], ...] = (
     ("PDX1", "PDX2"),
+    ("PEX1", "PEX2", "PEX3"),
     ("PHX1", "PHX2"),
     ("PVX1", "PVX2"),
     ("REX1", "REX2"),
+    ("PDY1", "PDY2"),
+    ("PEY1", "PEY2"),
+    ("PKY6", "PKY7"),
+    ("PHY1", "PHY2"),
+    ("PVY1", "PVY2"),
+    ("PVY3", "PVY4"),
     ("REY1", "REY2"),
     ("RHY1", "RHY2"),
     ("RVY1", "RVY2"),
+    ("QBZ1", "QBZ2", "QBZ3"),
+    ("QDZ1", "QDZ2"),
+    ("QEZ1", "QEZ2", "QEZ3"),
+    ("QHZ1", "QHZ2"),
+    ("QHZ3", "QHZ4"),
+    ("QDZ6", "QDZ7"),
+    ("QDZ8", "QDZ9"),
+    ("QDZ10", "QDZ11"),
     ("SSZ3", "SSZ4"),
+    ("PHYP2", "PHYP3"),
 )
-"""Coefficients of a + b dfz."""
-OVER_PRESSURE = {("PPX1", "PPX2"): ("PKX1", "PKX2"), ("PPX3", "PPX4"): ("PDX1", "PDX2")}
-"""Coefficients of 1 + a dpi + b dpi^2, and those that this factor multiplies."""
+"""Coefficients of a + b dfz + c dfz^2."""
+FACTOR_OVER_LOAD: Mapping[tuple[str, ...], tuple[str, ...]] = {
+    ("PDXP2",): ("PDXP1",),
+    ("PDYP2",): ("PDYP1",),
+    ("PECP2",): ("PECP1",),
+    ("PCFX1", "PCFX2"): ("LONGITUDINAL_STIFFNESS",),
+    ("PCFY1", "PCFY2"): ("LATERAL_STIFFNESS",),
+}
+"""Coefficients of 1 + a dfz + b dfz^2, and those that this factor multiplies."""
+FACTOR_OVER_PRESSURE: Mapping[tuple[str, ...], tuple[str, ...]] = {
+    ("PPX1", "PPX2"): ("PKX1", "PKX2"),
+    ("PPX3", "PPX4"): ("PDX1", "PDX2"),
+    ("PPY1",): ("PKY1",),
+    ("PPY2",): ("PKY2", "PKY5"),
+    ("PPY3", "PPY4"): ("PDY1", "PDY2"),
+    ("PPY5",): ("PKY6", "PKY7"),
+    ("PPMX1",): ("QSX2",),
+    ("PCFX3",): ("LONGITUDINAL_STIFFNESS",),
+    ("PCFY3",): ("LATERAL_STIFFNESS",),
+    ("PCMZ1",): ("YAW_STIFFNESS",),
+}
+"""The same over dpi."""
 
 
-def at_nominal(values: Mapping[str, Any], load: float, pressure: float) -> dict[str, Any]:
-    """The values with FNOMIN [N] and NOMPRES [Pa] replaced, and coefficients that give the same Fx and the same weights.
+class Powers(NamedTuple):
+    """How a coefficient grows with the nominal conditions if its force is to stay."""
 
-    The forms of the equations are closed under such a change, so it is exact. The moment arms SSZ1-4 stay relative to the radius.
+    load: float = 0.0
+    radius: float = 0.0
+    speed: float = 0.0
+
+
+OVER_RADIUS = Powers(radius=-1.0)
+POWERS: Mapping[str, Powers] = {
+    **dict.fromkeys(("PKY1", "PKY2", "PKY5"), Powers(load=-1.0)),
+    **dict.fromkeys(("QSX6", "QSX9", "QSX11", "BREFF", "Q_FCX", "Q_FCY"), Powers(load=1.0)),
+    **dict.fromkeys(("QDZ1", "QDZ2", "SSZ2", "QSX3"), Powers(load=1.0, radius=-1.0)),
+    **dict.fromkeys(("QDZ6", "QDZ7", "QDZ8", "QDZ9", "QDZ10", "QDZ11", "SSZ1", "SSZ3", "SSZ4"), OVER_RADIUS),
+    **dict.fromkeys(("QSX1", "QSX2", "QSX4", "QSX10", "QSX12", "QSX13", "QSX14"), OVER_RADIUS),
+    **dict.fromkeys(("PDXP1", "PDYP1", "QDTP1", "QBRP1", "QCRP2"), OVER_RADIUS),
+    "PDYP4": Powers(radius=0.5),
+    "PKYP1": Powers(radius=-2.0),
+    "QCRP1": Powers(load=0.5, radius=-1.0),
+    "Q_V1": Powers(radius=-3.0, speed=2.0),
+    "Q_V2": Powers(radius=-1.0, speed=1.0),
+}
+"""Coefficients without dfz and dpi; those of My have a factor of their own."""
+OF_ROLLING = {
+    "QSY1": Powers(),
+    "QSY2": Powers(load=1.0),
+    "QSY3": Powers(speed=1.0),
+    "QSY4": Powers(speed=4.0),
+    "QSY5": Powers(),
+    "QSY6": Powers(load=1.0),
+}
+"""The same of the terms of My, which is relative to nominal load, nominal pressure and radius as a whole."""
+
+
+KEYS = ("FNOMIN", "NOMPRES", "LONGVL", "UNLOADED_RADIUS")
+"""The keys of a file that hold its nominal conditions."""
+
+
+UNITS = ((1.0, "N"), (1e-3, "kPa"), (1.0, "m/s"), (1.0, "m radius"))
+"""How sentences give them: factor and unit."""
+
+
+class Nominal(NamedTuple):
+    """The conditions to which coefficients are relative."""
+
+    load: float  #: FNOMIN [N]
+    pressure: float  #: NOMPRES [Pa]
+    speed: float  #: LONGVL [m/s]
+    radius: float  #: UNLOADED_RADIUS [m]
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Nominal:
+        return cls(*(float(values[name]) for name in KEYS))
+
+    def beside(self, other: Nominal) -> tuple[str, str]:
+        """What differs between the two, in words for each; empty if nothing does."""
+        rows = [
+            (f"{scale * a:.5g} {unit}", f"{scale * b:.5g} {unit}")
+            for a, b, (scale, unit) in zip(self, other, UNITS, strict=True)
+            if not math.isclose(a, b)
+        ]
+        return ", ".join(row[0] for row in rows), ", ".join(row[1] for row in rows)
+
+
+def at_nominal(values: Mapping[str, Any], wanted: Nominal) -> dict[str, Any]:
+    """The values with other nominal conditions, and coefficients that give the same forces in N and moments in Nm.
+
+    The deflection of the wheel under a load stays too; its free radius is the wanted one. A block of turn slip that holds the
+    common defaults stays as it is: a guess is recognised by them.
     """
+    before = Nominal.of(values)
     v = dict(values)
-    scale = load / float(v["FNOMIN"])  # dfz of the file = scale * the new dfz + shift
+    load, pressure = wanted.load / before.load, wanted.pressure / before.pressure
+    radius, speed = wanted.radius / before.radius, wanted.speed / before.speed
+    for names in OVER_LOAD:
+        _polynomial(v, names, load)
+    for names, multiplied in FACTOR_OVER_LOAD.items():
+        _factor(v, names, multiplied, load)
+    growth = math.exp(v["PKX3"] * (load - 1.0))
+    _polynomial(v, ("PKX1", "PKX2"), load)
+    v |= {"PKX1": growth * v["PKX1"], "PKX2": growth * v["PKX2"], "PKX3": load * v["PKX3"]}
+    for names, multiplied in FACTOR_OVER_PRESSURE.items():
+        _factor(v, names, multiplied, pressure)
+    if not asks_for_turn_slip(values):
+        _factor(v, ("PPZ2",), ("QDZ8", "QDZ9"), pressure)  # turn slip has these two without the factor
+    v["PPZ1"] *= -1.0  # the one factor with a minus sign, 1 - PPZ1 dpi
+    _factor(v, ("PPZ1",), ("QDZ1", "QDZ2"), pressure)
+    v["PPZ1"] *= -1.0
+    _vertical(v, load, pressure, radius)
+    _camber_reduction(v, radius)
+    rolling = load ** (v["QSY7"] - 1.0) * pressure ** v["QSY8"] / radius
+    for factor, table in ((1.0, POWERS), (rolling, OF_ROLLING)):
+        for name, power in table.items():
+            v[name] *= factor * load**power.load * radius**power.radius * speed**power.speed
+    if _guessed(values):
+        v |= {row.name: values[row.name] for row in BLOCK}
+    return {**v, **dict(zip(KEYS, wanted, strict=True))}
+
+
+def _guessed(values: Mapping[str, Any]) -> bool:
+    """Whether the coefficients of turn slip are the common defaults, which nobody measured."""
+    return all(values[row.name] == row.default for row in BLOCK)
+
+
+def _polynomial(v: dict[str, Any], names: tuple[str, ...], scale: float) -> None:
+    """a + b x + c x^2 in the new x', where x = scale x' + scale - 1."""
     shift = scale - 1.0
-    for first, second in LINEAR_IN_LOAD:
-        v[first], v[second] = v[first] + v[second] * shift, v[second] * scale
-    a, b, c = (float(v[name]) for name in ("PEX1", "PEX2", "PEX3"))
-    v["PEX1"] = a + b * shift + c * shift**2
-    v["PEX2"] = (b + 2.0 * c * shift) * scale
-    v["PEX3"] = c * scale**2
-    growth = math.exp(v["PKX3"] * shift)
-    v["PKX1"], v["PKX2"] = growth * (v["PKX1"] + v["PKX2"] * shift), growth * v["PKX2"] * scale
-    v["PKX3"] *= scale
-    v["SSZ2"] *= scale
-    scale = pressure / float(v["NOMPRES"])
-    shift = scale - 1.0
-    for (first, second), multiplied in OVER_PRESSURE.items():
-        a, b = float(v[first]), float(v[second])
-        here = 1.0 + a * shift + b * shift**2
-        for name in multiplied:
-            v[name] *= here
-        v[first], v[second] = (a + 2.0 * b * shift) * scale / here, b * scale**2 / here
-    return {**v, "FNOMIN": load, "NOMPRES": pressure}
+    a, b, c = (*(float(v[name]) for name in names), 0.0, 0.0)[:3]
+    new = (a + b * shift + c * shift**2, (b + 2.0 * c * shift) * scale, c * scale**2)
+    v.update(zip(names, new, strict=False))
+
+
+def _factor(v: dict[str, Any], names: tuple[str, ...], multiplied: tuple[str, ...], scale: float) -> None:
+    """1 + a x + b x^2 in the new x', relative to its value at x' = 0, which the multiplied coefficients take over."""
+    v["1"] = 1.0
+    _polynomial(v, ("1", *names), scale)
+    here = v.pop("1")
+    v.update({name: v[name] / here if here else math.inf for name in names})
+    v.update({name: v[name] * here for name in multiplied})
+
+
+def _vertical(v: dict[str, Any], load: float, pressure: float, radius: float) -> None:
+    """The same load over deflection, fall of the rolling radius with load, and contact patch.
+
+    VERTICAL_STIFFNESS is the slope at the nominal load; the others are relative to it.
+    """
+    here = 1.0 + float(v["PFZ1"]) * (pressure - 1.0)
+    if not here > 0.0:
+        v["PFZ1"] = math.inf
+        return
+    stiffness, quadratic = float(v["VERTICAL_STIFFNESS"]), float(v["Q_FZ2"])
+    slope = (stiffness * float(v["UNLOADED_RADIUS"]) / float(v["FNOMIN"])) ** 2
+    new = (here / load) ** 2 * (slope - 4.0 * quadratic) + 4.0 * quadratic * here / load
+    change = load / here * math.sqrt(new / slope) if quadratic and new > 0.0 < slope else 1.0
+    powers = {"Q_RA1": 0.5, "Q_RA2": 1.0, "Q_RB1": 1.0 / 3.0, "Q_RB2": 1.0}
+    across = {"Q_RA1": -0.5, "Q_RA2": 0.0, "Q_RB1": 1.0 / 3.0, "Q_RB2": 1.0}
+    v |= {name: v[name] * change**power * radius ** across[name] for name, power in powers.items()}
+    v |= {
+        "PFZ1": v["PFZ1"] * pressure / here,
+        "VERTICAL_STIFFNESS": stiffness * here * change,
+        "Q_FZ2": quadratic * radius**2 * here / load,
+        "DREFF": v["DREFF"] * change / load,
+        "FREFF": v["FREFF"] * change,
+    }
+
+
+def _camber_reduction(v: dict[str, Any], radius: float) -> None:
+    """The same force of path curvature, which is in proportion to radius over 1 - eps_gamma."""
+    first = 1.0 - radius * (1.0 - v["PECP1"])
+    if radius != 1.0:
+        slope = radius * v["PECP1"] * v["PECP2"]
+        v |= {"PECP1": first, "PECP2": slope / first if first else math.inf * slope if slope else 0.0}
+
+
+class ForceMisfit(NamedTuple):
+    """The largest difference of a channel's forces, over its largest force."""
+
+    channel: str
+    turn_slip: bool
+    share: float
+
+
+def misfit(before: Tyre, after: Tyre) -> ForceMisfit:
+    """Where two tyres differ most, over the ranges of the first; draws of conditions, straight and on curves."""
+    p, random = before.p, np.random.default_rng(0)
+    ends = (
+        (p.FZMIN, p.FZMAX), (p.ALPMIN, p.ALPMAX), (p.CAMMIN, p.CAMMAX), (p.KPUMIN, p.KPUMAX),
+        np.sin([p.CAMMIN, p.CAMMAX]) / p.UNLOADED_RADIUS, (p.LONGVL, p.LONGVL), (p.PRESMIN, p.PRESMAX),
+    )  # fmt: skip
+    drawn = [random.uniform(min(end), max(end), int(constants.CONDITIONS_OF_A_MISFIT)) for end in ends]
+    found = []
+    for turn_slip in (False,) if _guessed(before.values) else (False, True):
+        one, other = (np.array(tyre(*drawn, turn_slip=turn_slip)) for tyre in (before, after))
+        for channel, a, b in zip(Forces._fields, one, other, strict=True):
+            rows = np.isfinite(a)
+            most = float(np.max(np.abs(a[rows]), initial=0.0))
+            off = float(np.max(np.abs(b - a)[rows], initial=0.0))
+            found.append(ForceMisfit(channel, turn_slip, off / most if most else 0.0))
+    return max(found, key=lambda row: row.share)
+
+
+CONDITIONS = "nominal conditions"
+"""Entry of the provenance of a converted tyre."""
+
+
+def tyre_at_nominal(tyre: Tyre, wanted: Nominal) -> Tyre:
+    """The tyre with other nominal conditions and, as far as the equations allow, the same forces; its provenance says so.
+
+    Raises
+    ------
+    ArithmeticError
+        The tyre has no finite coefficients there, because a factor of load or pressure is 0; the message names them.
+    """
+    old, new = Nominal.of(tyre.values).beside(wanted)
+    rest = {key: text for key, text in tyre.provenance.items() if key != CONDITIONS}
+    if not new:
+        return replace(tyre, provenance=MappingProxyType(rest))
+    values = at_nominal(tyre.values, wanted)
+    lost = [name for name, x in values.items() if isinstance(x, float) and not math.isfinite(x)]
+    if lost:
+        raise ArithmeticError(", ".join(lost))
+    changed = [name for name in tyre.present if values[name] != tyre.values[name] and name not in KEYS]
+    known = [name for name in changed if not tyre.status.get(name, "").startswith(NOT_MEASURED)]
+    status = {**tyre.status, **dict.fromkeys(known, f"{CONVERTED} to other nominal conditions")}
+    found = replace(tyre, values=MappingProxyType(values), status=MappingProxyType(status))
+    said = f"its coefficients hold for {old} and are converted to {new}, {_agreement(misfit(tyre, found))}"
+    return replace(found, provenance=MappingProxyType({**rest, CONDITIONS: said}))
+
+
+def _agreement(worst: ForceMisfit) -> str:
+    if worst.share <= constants.EXACT_CONVERSION:
+        return "with the same forces"
+    mode = "with" if worst.turn_slip else "without"
+    return f"but {worst.channel} {mode} turn slip differs by up to {worst.share:.1%} of its largest value"

@@ -21,11 +21,10 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.borrowed.at_nominal import at_nominal
 from mffit.fit.constraints import Envelope, violations
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
-from mffit.fit.priors import scatter
+from mffit.fit.priors import NOT_MEASURED, scatter
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.upright import sideways
 from mffit.points import Points, main_pressure
@@ -36,8 +35,6 @@ from tir.parameters import BY_NAME, TABLE
 
 NEEDED = ("PCX1", "PDX1", "PKX1", "PDY1", "PKY1")
 """Coefficients that a sister's file must state."""
-NOT_MEASURED = ("default", "estimate")
-"""Beginnings of the comment of a value that nobody measured."""
 BY_FRICTION = (("PDX1", "PDX2"), ("PVX1", "PVX2"))
 """Coefficients of a + b dfz that friction scales."""
 BY_STIFFNESS = (("PKX1", "PKX2"),)
@@ -63,7 +60,7 @@ class Sister(NamedTuple):
     """The sister tyre, and how alike the two tyres are expected to be."""
 
     file: str  #: as tyre.toml names it
-    tyre: Tyre
+    tyre: Tyre  #: at the nominal conditions of the fitted one
     u_friction: float  #: of mu_x over mu_y, relative, between the two tyres
     u_stiffness: float  #: of K_xk over K_ya
     loads: np.ndarray  #: (n,) at which the two tyres are compared [N]
@@ -78,7 +75,7 @@ class Lent:
     sister: Sister
     friction: Quantity  #: longitudinal friction over the sister's, at nominal load
     stiffness: Quantity  #: slip stiffness over the sister's, at nominal load
-    theirs: Mapping[str, float]  #: the sister's coefficients at the nominal load and pressure of this tyre
+    theirs: Mapping[str, float]  #: the sister's coefficients
     found: Mapping[str, Quantity]  #: every borrowed coefficient with its standard uncertainty
     spread: Mapping[str, float]  #: of each of them, among tyres with these two ratios
     posterior: Posterior  #: of the fitted and of the borrowed coefficients
@@ -149,8 +146,7 @@ def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
 
 def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
     """The borrowed coefficients of a fitted tyre; those that the points or the engineer decided keep their values."""
-    at = at_nominal(sister.tyre.values, float(known.values["FNOMIN"]), float(known.values["NOMPRES"]))
-    theirs = {name: float(at[name]) for name in LENT}
+    theirs = {name: float(sister.tyre[name]) for name in LENT}
     kept = {*known.hand.names, *(name for name in LENT if known.origin[name] in DETERMINED)}
     wanted = [name for name in LENT if name in sister.tyre.present and name not in kept]
     rows = [i for i, name in enumerate(posterior.names) if name not in wanted]

@@ -1,7 +1,7 @@
-"""Coefficients that the points push to the end of their plausible range although nothing is predicted better there.
+"""Coefficients that the points push out of their usual range although nothing is predicted better there.
 
 Three degrees of camber do not show what the square of camber does. Where the formula misses the points by more than their
-noise, such a coefficient takes up some of the misfit and ends at its bound.
+noise, such a coefficient takes up some of the misfit and becomes large.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from mffit.fit.plan import FitPlan
 from mffit.least_squares import touches
 from mffit.left_out import Predicted
 from mffit.suspicion import parts_of_sweeps
+from tir.parameters import BY_NAME
 
 
 def without_runaways(fitted: Fitted, plan: FitPlan, choice: NuisanceChoice) -> FitPlan:
-    """The plan with coefficients held at their expected values that end at a bound of the table for nothing.
+    """The plan with coefficients held at their expected values that leave their usual range for nothing.
 
     One after the other is held if left-out sweeps are then predicted as well as before, both without and with the influences that
     are modelled: each of the two fits gives a file. Bounds that somebody set stay.
@@ -40,14 +41,18 @@ def without_runaways(fitted: Fitted, plan: FitPlan, choice: NuisanceChoice) -> F
 
 
 def _pushed(fitted: Fitted, plan: FitPlan) -> list[str]:
-    """Coefficients at a bound of the table, the one first whose return costs least."""
+    """Coefficients at or beyond the end of their usual range, the one first whose return costs least."""
     own = set(plan.free) - plan.hand.bounded.keys()
     cost = {
         n.name: abs(fitted.values[n.name] - n.expected) / fitted.stderr[n.name]
         for n in fitted.numbers
-        if n.name in own and touches(fitted.values[n.name], n.lower, n.upper)
+        if n.name in own and _beyond(n.name, fitted.values[n.name])
     }
     return sorted(cost, key=lambda name: cost[name])
+
+
+def _beyond(name: str, value: float) -> bool:
+    return BY_NAME[name].rare(value) or touches(value, *BY_NAME[name].usual)
 
 
 def _needless(
@@ -55,7 +60,7 @@ def _needless(
 ) -> list[str]:
     """Those of the names without which left-out sweeps are predicted as well; found with some of the points.
 
-    In ``model`` the names are at their bounds; numbers in ``held``, at a bound or limit, do not move with a left-out sweep.
+    In ``model`` the names are where the points push them; numbers in ``held``, at a bound or limit, stay there.
     """
     if not names:
         return []
@@ -83,6 +88,6 @@ def _needless(
 def _said(names: Sequence[str]) -> str:
     them, value = ("them", "their expected values") if len(names) > 1 else ("it", "its expected value")
     return (
-        f"these sweeps do not determine {', '.join(names)}: the misfit pushes {them} to the end of the plausible range, and "
+        f"these sweeps do not determine {', '.join(names)}: the misfit pushes {them} out of the usual range, and "
         f"left-out sweeps are predicted as well with {value}"
     )

@@ -71,9 +71,8 @@ def make_files(
     disc = config.rig.on_disc
     tested = tested_ranges(points)
     stated = {} if base is None else {name: float(base[name]) for name in RANGES if name in base.present}
-    written, untested = with_room(
-        known.values, plausible_ranges(known.values, tested, turn_slip=disc), stated
-    )
+    plausible = plausible_ranges(known.values, tested, turn_slip=disc)
+    written, untested = with_room(known.values, plausible, stated, turn_slip=disc)
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
     asked = config.normal.camber_max if disc else None

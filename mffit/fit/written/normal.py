@@ -147,12 +147,14 @@ def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
 
 
 def _numbers(start: Mapping[str, float], measured: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
-    """The numbers with their bounds; camber stiffness has a weak prior at the measured one."""
+    """The numbers within their usual ranges, or as far as they start; camber stiffness has a weak prior at the measured one."""
     size = max(abs(measured.get("PKY6", 1.0)), constants.LEAST_CAMBER_STIFFNESS)
     spread = constants.CAMBER_STIFFNESS_TIE * size / constants.CAMBER_STIFFNESS_TIE_WEIGHT
     out = []
     for name, value in start.items():
         tied = name in CAMBER_STIFFNESS and name in measured
         prior = {"expected": measured[name], "spread": spread} if tied else {}
-        out.append(FreeNumber(name, hand.inside(name, value), *hand.bounds(name), **prior))
+        lower, upper = hand.bounded.get(name, BY_NAME[name].usual)
+        begin = hand.inside(name, value)
+        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin), **prior))
     return out

@@ -9,18 +9,20 @@ from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import number
 
 ROUNDING = 1e-9
-"""Misfit over the largest force that is rounding."""
+"""Misfit over the largest force of the same load that is rounding."""
 
 
 def conversion_summary(found: Conversion) -> str:
     """The text that ``mffit convert`` prints: what was fitted, and the misfit of every channel and region."""
-    head = ("channel", "region", "rms", "largest", "of the largest force", "within 2 %")
+    head = ("channel", "region", "rms", "largest", "at", "of the largest there", "rms of that", "within 2 %")
     rows = [
         (
             row.channel,
             wording.region(row),
             *(_size(x, row) for x in (row.rms, row.largest)),
-            f"{row.largest / row.greatest_force:.1%}",
+            f"{row.load:.0f} N",
+            f"{row.share:.1%}",
+            f"{row.rms_share:.1%}",
             f"{row.within:.1%}",
         )
         for row in found.misfit

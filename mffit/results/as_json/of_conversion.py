@@ -20,6 +20,7 @@ def conversion(found: Conversion, out: Path) -> dict[str, Any]:
         "reasons": reasons,
         "ranges": found.reach._asdict(),
         "fitted": list(found.fitted),
+        "curvature_held_to_1": dict(found.held),
         "misfit": [row._asdict() for row in found.misfit],
         "problems": [asdict(problem) for problem in found.old.problems],
     }

@@ -26,12 +26,15 @@ def line_of(path: Path, name: str) -> int:
 
 
 WRONG = [
-    ("PCY1 = 2.5", "PCY1", "2.5 is outside 0.9 to 2, the physically plausible range of PCY1; correct it"),
-    ("PEY1 = { min = -20.0 }", "PEY1.min", "-20 is outside -10 to 1, the physically plausible range of PEY1; correct it"),
+    ("PCY1 = 2.5", "PCY1", "2.5 is outside 0.5 to 2, the physically plausible range of PCY1; correct it"),
+    ("PEY1 = { min = -20.0 }", "PEY1.min", "-20 is outside -10 to 2, the physically plausible range of PEY1; correct it"),
     ("PEY1 = { min = 0.5, max = -3.0 }", "PEY1.min", "0.5 is not below max, -3; exchange the two"),
     ("PEY1 = { min = 0.5, max = 0.5 }", "PEY1.min", "0.5 is not below max, 0.5; write PEY1 = 0.5 to hold it"),
     ("PEY1 = { start = 0.9, max = 0.5 }", "PEY1.start", "0.9 is outside the bounds -10 to 0.5; correct one of them"),
-    ("PEY1 = { value = -4.0, u = 1, min = -3 }", "PEY1.value", "-4 is outside the bounds -3 to 1; correct one of them"),
+    ("PEY1 = { value = -4.0, u = 1, min = -3 }", "PEY1.value", "-4 is outside the bounds -3 to 2; correct one of them"),
+    ("PCY1 = " + 400 * "1", "PCY1", "has more digits than a number can have; correct it"),
+    ("PCY1 = " + 5000 * "1", "PCY1", "has more digits than a number can have; correct it"),
+    ("PCY1 = { min = -" + 400 * "1" + " }", "PCY1.min", "has more digits than a number can have; correct it"),
     ("PEY1 = nan", "PEY1", "nan is not a finite number; write one"),
     ("PEY1 = { max = inf }", "PEY1.max", "inf is not a finite number; write one"),
     ("PDY2 = { value = -0.1 }", "PDY2.u", "is missing; add one standard deviation of the value, or write PDY2 = -0.1 to hold it"),
@@ -51,7 +54,7 @@ WRONG = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "key", "sentence"), WRONG, ids=[text for text, _, _ in WRONG])
+@pytest.mark.parametrize(("text", "key", "sentence"), WRONG, ids=[text[:60] for text, _, _ in WRONG])
 def test_a_contradiction_is_refused_with_line_and_reason(tmp_path, text, key, sentence):
     path = project(tmp_path, text)
     with pytest.raises(InputError) as caught:
@@ -109,10 +112,12 @@ def test_the_command_line_replaces_single_entries(tmp_path):
     ("word", "said"),
     [
         ("PCY1", '--set: "PCY1" is not NAME=VALUE; write for example --set PCY1=1.3'),
+        (f"PCY1={400 * '1'}", "--set PCY1: has more digits than a number can have; correct it"),
+        (f"PCY1={5000 * '1'}", '--set PCY1: "1111111'),
         ("PCY1=much", '--set PCY1: "much" is not a value; write a number to hold it'),
         (
             "PCY1=2.5",
-            "--set PCY1: 2.5 is outside 0.9 to 2, the physically plausible range of PCY1; correct it",
+            "--set PCY1: 2.5 is outside 0.5 to 2, the physically plausible range of PCY1; correct it",
         ),
         (
             "RBX1=base",

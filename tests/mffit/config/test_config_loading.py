@@ -267,6 +267,17 @@ def test_a_mistake_is_reported_with_key_and_line(tmp_path, old, new, key, line, 
     assert "\n" not in str(error)
 
 
+@pytest.mark.parametrize("digits", [400, 5000])
+def test_a_number_that_no_float_holds_is_refused_under_any_key(tmp_path, digits):
+    number = digits * "1"
+    error = refusal(tmp_path, MINIMAL.replace("[tyre]", f"[tyre]\nnominal_speed = {number}", 1))
+    assert (error.key, error.line) == ("tyre.nominal_speed", MINIMAL.splitlines().index("[tyre]") + 2)
+    assert error.sentence == "has more digits than a number can have; correct it"
+    error = refusal(tmp_path, MINIMAL + f"\n[lab]\nhumidity = {{ air = [1, {number}] }}\n")
+    assert error.sentence == "has more digits than a number can have; correct it"
+    assert error.key.startswith("lab.humidity")
+
+
 RANGES = [
     ("tyre.unloaded_radius", 0.03, 1.5, " m"),
     ("tyre.rim_radius", 0.03, 1.5, " m"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from combined_cases import HIDDEN, Hidden, backwards, diagnosed, simulated
 
+import tir
 from mffit import config, points
 from mffit.diagnosis import wording
 from mffit.diagnosis.conditions import by_condition
@@ -48,6 +49,16 @@ def test_a_backward_run_separates_drag_from_the_zero(tmp_path, effect):
     found = gains(effect, tmp_path, backwards())
     assert next(iter(found)) == effect
     assert found[effect] - found[next(iter(LIKE[effect]))] > 6.0
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_an_effect_as_large_as_published_is_found_in_full(tmp_path, seed):
+    """MFeval's own tyre has RBX3 186; neither a limit of the table nor the usual size of the effect holds the answer back."""
+    found = diagnosed(Hidden(tyre={"RBX3": 155.0}), 1.0, seed, tmp_path)
+    (effect,) = found.effects
+    assert effect.effect.id == "combined-camber"
+    value, u = effect.parameters["RBX3"]
+    assert abs(value - tir.read(tmp_path / "drawn.tir")["RBX3"]) < 2.0 * u < 6.0
 
 
 def test_every_effect_of_these_channels_is_hidden_once():

@@ -52,6 +52,7 @@ def test_freed_numbers_exist_and_can_be_started_from(effect):
         assert free.lower < free.upper
         if free.name in BY_NAME:
             assert free.lower <= BY_NAME[free.name].default <= free.upper or free.relative
+            assert (free.lower, free.upper) == BY_NAME[free.name].bounds or free.name == "PECP1"
 
 
 @pytest.mark.parametrize("error", RIG_ERRORS.values(), ids=lambda error: error.name)

@@ -198,11 +198,60 @@ def test_camber_grows_by_half_to_45_degrees_and_never_shrinks(tyre, tested, writ
 
 
 def test_the_load_range_ends_before_the_grip_is_lost(tyre):
-    """mu = 1.2 - 1.2 (Fz/1400 - 1) is 0.6 at 2100 N, 0.15 at 2625 and 0 at 2800: half of the way is the last plausible share."""
-    weak = tyre.replace(PDY1=1.2, PDY2=-1.2, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    """mu = 1.2 - 0.96 (Fz/1400 - 1): d ln mu / d ln Fz = -0.96 Fz / (1400 mu) is -2 at 2100 N, -3 at 2362 N."""
+    weak = tyre.replace(PDY1=1.2, PDY2=-0.96, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
     found = plausible_ranges(weak.values, TESTED, turn_slip=False)
-    assert found["FZMAX"] == pytest.approx(2100.0 + 0.5 * 1050.0)
+    assert found["FZMAX"] == pytest.approx(2100.0 + 0.25 * 1050.0)
     assert found["FZMIN"] == pytest.approx(90.0)
+
+
+def steepest(c0, c1, c2, x):
+    """d ln c / d ln p of c = c0 + c1 dpi + c2 dpi^2 at p = 250 kPa (1 + dpi), by hand."""
+    return np.abs((c1 + 2.0 * c2 * x) * (1.0 + x) / (c0 + c1 * x + c2 * x**2))
+
+
+@pytest.mark.parametrize(
+    ("linear", "quadratic"),
+    [("PPY3", "PPY4"), ("PPX3", "PPX4"), ("PPX1", "PPX2")],
+    ids=["mu_y", "mu_x", "K_xk"],
+)
+def test_the_pressure_range_ends_before_grip_or_stiffness_falls_faster_than_in_public_tyres(
+    tyre, linear, quadratic
+):
+    """1.09 and 0.70 of the nominal value at 0.85 and 1.15 of the pressure, which the sweeps cover, but 0.1 at 1.38."""
+    sound = tyre.replace(
+        PDX1=1.1, PKX1=20.0, PDX2=0.0, PKX2=0.0, PKX3=0.0, PDX3=0.0, PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0,
+    )  # fmt: skip
+    tested = {**TESTED, "PRESMIN": 212.5e3, "PRESMAX": 262.5e3}
+    whole = plausible_ranges(sound.values, tested, turn_slip=False)
+    assert (whole["PRESMIN"], whole["PRESMAX"]) == (pytest.approx(170e3), pytest.approx(315e3))
+    found = plausible_ranges(sound.replace(**{linear: -1.2, quadratic: -4.0}).values, tested, turn_slip=False)
+    inside = np.linspace(tested["PRESMAX"], found["PRESMAX"], 50) / 250e3 - 1.0
+    assert np.max(steepest(1.0, -1.2, -4.0, inside)) < 3.05
+    beyond = found["PRESMAX"] + 0.25 * (315e3 - tested["PRESMAX"])
+    assert steepest(1.0, -1.2, -4.0, beyond / 250e3 - 1.0) > 2.9
+    assert tested["PRESMAX"] <= found["PRESMAX"] < 315e3
+    assert {name: found[name] for name in ("FZMIN", "FZMAX", "CAMMAX")} == {
+        name: whole[name] for name in ("FZMIN", "FZMAX", "CAMMAX")
+    }
+
+
+def test_the_camber_range_ends_before_grip_falls_faster_than_in_public_tyres(tyre):
+    """mu_y = mu0 (1 - 1.9 gamma^2): d ln mu_y / d gamma is -2.9 per rad at 0.45 and -3.1 at 0.47; at 0.6 a third is left."""
+    sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    tested = {**TESTED, "CAMMAX": 0.4, "CAMMIN": -0.4}
+    assert plausible_ranges(sound.values, tested, turn_slip=False)["CAMMAX"] == pytest.approx(0.6)
+    found = plausible_ranges(sound.replace(PDY3=1.9).values, tested, turn_slip=False)
+    assert found["CAMMAX"] == pytest.approx(0.45)
+    assert found["CAMMIN"] == -found["CAMMAX"]
+
+
+def test_two_signs_that_are_the_same_curve_count_as_one(tyre):
+    """D sin(C ...) with both signs reversed; public files have such pairs."""
+    sound = tyre.replace(PDX1=1.1, PKX1=20.0, PDX2=-0.1, PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    other = sound.replace(PDX1=-1.1, PDX2=0.1, PCX1=-sound["PCX1"])
+    both = (plausible_ranges(one.values, TESTED, turn_slip=False) for one in (sound, other))
+    assert next(both) == next(both)
 
 
 def test_a_side_force_that_reverses_ends_the_sideslip_range(tyre):

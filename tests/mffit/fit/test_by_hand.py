@@ -96,6 +96,7 @@ def disc(tmp_path_factory) -> Path:
     words = (
         "PKY3=base",
         "PDX1=1.5",
+        "RBX3=155",
         "QSY1=0.02",
         "Q_RE0=0.99",
         "PEY1={max=-0.95}",
@@ -130,11 +131,18 @@ def test_a_bound_is_kept_to_the_last_digit(result):
     assert any("PEY1 is at a limit: [coefficients] allows -10 to -0.95" in w for w in result["warnings"])
 
 
+def test_a_rare_value_is_held_with_a_warning(disc, result):
+    """MFeval's own tyre has RBX3 186."""
+    assert tir.read(disc / "out" / result["tir"])["RBX3"] == 155.0
+    assert "RBX3 is held in [coefficients] outside the range of usual tyres" in result["warnings"]
+    assert not any("PDX1 is held" in text for text in result["warnings"])
+
+
 def test_the_json_marks_what_was_set_by_hand(result):
     found = result["fit"]["coefficients"]
     marked = {name for name, row in found.items() if row["by"] == "hand"}
-    assert marked == {"PKY3", "PDX1", "QSY1", "Q_RE0", "PEY1", "PPY1"}
-    assert {name for name, row in found.items() if row["held"]} == {"PKY3", "PDX1", "QSY1", "Q_RE0"}
+    assert marked == {"PKY3", "PDX1", "RBX3", "QSY1", "Q_RE0", "PEY1", "PPY1"}
+    assert {name for name, row in found.items() if row["held"]} == {"PKY3", "PDX1", "RBX3", "QSY1", "Q_RE0"}
     assert all(found[name]["stderr"] is None for name, row in found.items() if row["held"])
     assert (found["PKY3"]["status"], found["PDX1"]["status"]) == ("base", "given")
     assert found["PPY1"]["prior"] == {"value": -0.3, "u": 0.1}
@@ -156,7 +164,7 @@ def test_a_prior_counts_where_the_points_show_nothing(result):
 def test_the_page_names_what_was_set_by_hand(disc):
     page = (disc / "out" / "report.html").read_text(encoding="utf-8")
     assert "Set by hand in [coefficients]" in page
-    assert page.count(">held by hand<") == 3
+    assert page.count(">held by hand<") == 4
     assert page.count(">bounds by hand<") == 1
 
 

@@ -21,6 +21,7 @@ from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
 from mffit.fit.start import starting_values
 from mffit.fit.wheel.overturning import overturning_terms
+from mffit.fit.wording import _held_by_bounds
 from mffit.pipeline.measuring import measure
 from tests.mffit.fit import combined_programme as belt
 
@@ -213,7 +214,7 @@ def plan(points):
 
 @pytest.fixture(scope="module")
 def pushed(found):
-    """The fit with a coefficient at its bound that these sweeps do not need there."""
+    """The fit with a coefficient at the end of its usual range that these sweeps do not need there."""
     fitted = found.search
     return replace(
         fitted,
@@ -231,6 +232,15 @@ def test_a_coefficient_at_its_bound_for_nothing_is_put_back(found, plan, pushed)
     row = next(row for row in later.cover if row.stage == "combined-Fx")
     assert "RBX3" in row.held
     assert "left-out sweeps are predicted as well" in row.missing[-1]
+
+
+def test_a_rare_value_is_warned_of_unless_the_base_has_it(found):
+    rare = replace(found.search, values={**found.search.values, "RBX3": 300.0}, at_bound=frozenset())
+    assert _held_by_bounds(rare) == "outside the range of usual tyres: RBX3"
+    like_the_base = [
+        replace(n, start=310.0, expected=310.0) if n.name == "RBX3" else n for n in found.search.numbers
+    ]
+    assert _held_by_bounds(replace(rare, numbers=like_the_base)) == ""
 
 
 def test_a_coefficient_that_the_file_at_temperature_needs_at_its_bound_stays(found, plan, pushed):

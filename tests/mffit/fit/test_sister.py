@@ -14,7 +14,6 @@ import tomli_w
 import mffit
 import tir
 from mffit.errors import InputError
-from mffit.fit.borrowed.at_nominal import at_nominal
 from mffit.fit.borrowed.sister import LENT, Sister, _scaled
 from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Band
@@ -147,15 +146,6 @@ def test_stated_uncertainties_cover_tyres_that_differ_from_their_sister(built, t
             z[name].append((lent.found[name].value - true) / lent.found[name].u)
     for name, rows in z.items():
         assert 0.90 < np.mean(np.abs(rows) < 1.96) <= 0.99, name
-
-
-def test_another_nominal_load_and_pressure_change_no_force(truth):
-    values = at_nominal(truth.values, 5000.0, 200e3)
-    # what depends on the nominal condition sideways is left out of the comparison
-    other = truth.replace(**{name: x for name, x in values.items() if isinstance(x, float)})
-    Fz, kappa, p = np.meshgrid([1500.0, 4000.0, 7000.0], [-0.15, -0.02, 0.03, 0.2], [190e3, 260e3])
-    found, expected = (t(Fz, 0.06, 0.03, kappa, p=p, turn_slip=False).Fx for t in (other, truth))
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
 def test_contradictions_are_refused_with_their_line(tmp_path, sister):

@@ -1,0 +1,83 @@
+"""Signs that change no force: coefficients that change sign together, and the one form that mffit writes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+from mffit.fit.priors import CONVERTED
+from tir import Tyre
+from tir.parameters import BY_NAME
+
+SAME_CURVE = (
+    ("PCX1",),
+    ("PDX1", "PDX2"),
+    ("RBX1", "RBX3"),
+    ("RBX2",),
+    ("RCX1",),
+    ("QSX5",),
+    ("QSX6",),
+    ("QSX8", "QSX9"),
+    ("QSX10", "QSX11"),
+    ("PCY1",),
+    ("PDY1", "PDY2", "RVY1", "RVY2", "RVY3", "QBZ10"),
+    ("PKY1", "PKY4"),
+    ("PKY2", "PKY4", "PKY5"),
+    ("RBY1", "RBY4"),
+    ("RBY2",),
+    ("RCY1",),
+    ("RVY4",),
+    ("RVY6", "RVY5"),
+    ("QBZ1", "QBZ2", "QBZ3", "QEZ4", "QEZ5"),
+    ("QBZ9", "QBZ10"),
+    ("QCZ1", "QEZ4", "QEZ5"),
+    ("PDXP1",),
+    ("PDXP3",),
+    ("PKYP1",),
+    ("PDYP1",),
+    ("PDYP3",),
+    ("PHYP1",),
+    ("PHYP2", "PHYP3"),
+    ("QDTP1",),
+    ("QCRP1",),
+    ("QCRP2",),
+    ("QBRP1",),
+)
+"""Coefficients whose sign, alone or together, changes no force: factors within an even function, or two that divide out."""
+
+
+def in_one_form(values: Mapping[str, Any]) -> dict[str, float]:
+    """Coefficients with the other sign, where that brings more of those that go together inside the limits of the table."""
+    found: dict[str, float] = {}
+    for group in SAME_CURVE:
+        here = {name: found.get(name, float(values[name])) for name in group}
+        other = {name: -x for name, x in here.items()}
+        if _outside(other) < _outside(here):
+            found |= other
+    return {name: x for name, x in found.items() if x != values[name]}
+
+
+def _outside(values: Mapping[str, float]) -> int:
+    return sum(not BY_NAME[name].bounds[0] <= x <= BY_NAME[name].bounds[1] for name, x in values.items())
+
+
+def tyre_in_one_form(tyre: Tyre) -> Tyre:
+    """The tyre with the signs that the table allows and the same forces."""
+    changed = in_one_form(tyre.values)
+    status = {**tyre.status, **dict.fromkeys(changed, f"{CONVERTED} to the usual signs")}
+    values = {**tyre.values, **changed}
+    return (
+        replace(tyre, values=MappingProxyType(values), status=MappingProxyType(status)) if changed else tyre
+    )
+
+
+def with_expected_signs(values: Mapping[str, Any], expected: Mapping[str, float]) -> dict[str, float]:
+    """Coefficients whose sign changes no force, with the sign of their expected values."""
+    return {
+        name: -float(values[name])
+        for group in SAME_CURVE
+        if expected.get(group[0], 0.0) * float(values[group[0]]) < 0.0
+        for name in group
+    }
