@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu
-    from mffit.pipeline import align, build, compare, diagnose, plan, show, spin, verify, write_tydex
+    from mffit.pipeline import (
+        align,
+        build,
+        compare,
+        diagnose,
+        plan,
+        predict,
+        show,
+        spin,
+        verify,
+        write_tydex,
+    )
 
     __version__: str
 
@@ -22,6 +33,7 @@ __all__ = [
     "convert",
     "diagnose",
     "plan",
+    "predict",
     "show",
     "spin",
     "verify",

@@ -89,14 +89,16 @@ def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) 
     """The components of the largest evidence, near their first guess; residuals are of size ``unit``."""
     begin = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
+    held = np.ones(len(begin))
+    held[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
         found = model.evidence(given)
         slope = found.common @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
-        far = (x - begin) / (3.0 * usual)
-        return -found.value + 0.5 * float(far @ far), -slope + far / (3.0 * usual)
+        far = held * (x - begin) / usual
+        return -found.value + 0.5 * float(far @ far), -slope + far / usual
 
     readings = sum(len(group) for group in model.groups)
     found = minimize(

@@ -29,5 +29,10 @@ USUAL_RATIO = Real(
     "-",
     "Standard deviation of the logarithm of a component around its first guess, so that few runs move it little.",
 )
+WIDER_THAN_THE_FIT = Real(
+    10.0,
+    "-",
+    "Variance of a coefficient beside what the formula misses, over that of the fit, which takes all of its readings as free of that.",
+)
 COMPONENT_STEPS = Count(60, "-", "Most steps of the search for the components.")
 COMPONENT_TOLERANCE = Real(0.05, "-", "Gain of log evidence at which the search for the components ends.")

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from mffit.linearised import constants
 from mffit.linearised.components import Components, most_probable, own_columns, variances
 from mffit.linearised.inputs import along, inputs_of, settings_of
-from mffit.linearised.mixed import Mixed, Posterior, Predicted
+from mffit.linearised.mixed import Mixed, Posterior, Predicted, Variances
 from mffit.linearised.smooth import Smooth
+from mffit.least_squares import inverse, root
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -24,27 +26,35 @@ class LinearisedChannel:
 
     name: str
     rows: np.ndarray  #: (n,) of the points that are looked at
+    stride: int  #: readings for each of them
     unit: np.ndarray  #: (n,) their noise as stated, or usual [N], [Nm], [m]
     smooth: Smooth
     components: Components
-    model: Mixed  #: of residuals, measured less model, over ``unit``
+    model: Mixed
+    """Of residuals, measured less model, over ``unit``; its common numbers are the functions of ``smooth``, then the changes of the
+    numbers of the fit."""
+    variances: Variances  #: of these
+    missed: np.ndarray  #: (m,) weights of the functions with the numbers of the fit as they are [unit of the channel]
+    turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
     @cached_property
     def posterior(self) -> Posterior:
-        """Of the functions of ``smooth``."""
-        return self.model.posterior(self._variances)
+        """Of the common numbers."""
+        return self.model.posterior(self.variances)
 
-    @property
-    def _variances(self):  # type: ignore[no-untyped-def]
-        return variances(self.components.logarithms, self.smooth)[0]
+    def of_readings(self, columns: np.ndarray) -> np.ndarray:
+        """Covariance (k, k) of ``columns.T`` @ readings, columns (n, k), by what differs from run to run and by noise.
 
-    def missed(self, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """What the formula misses at conditions (n,), and its standard uncertainty (n,), in the unit of the channel."""
-        columns, likeness = self.smooth.columns(at), self.smooth.likeness(at, np.array(self.components.lengths))
-        mean = likeness * (columns @ self.posterior.mean)
-        within = likeness**2 * np.sum((columns @ self.posterior.root) ** 2, axis=1)
-        return mean, np.sqrt(within + (1.0 - likeness**2) * self.components.missed**2)
+        Readings of a run are not independent, so that runs count and not readings; what the formula misses is no chance.
+        """
+        own, stride = np.exp(0.5 * self.variances.own), self.stride
+        scaled = columns * self.unit[:, None]
+        out = stride * self.components.noise**2 * scaled.T @ scaled
+        for group in self.model.groups:
+            through = stride * scaled[group].T @ (self.model.own[group] * own)
+            out += through @ through.T
+        return np.asarray(out)
 
     @property
     def noise(self) -> float:
@@ -54,12 +64,12 @@ class LinearisedChannel:
     @property
     def size(self) -> float:
         """Root mean square of what the formula misses at the readings."""
-        return rms(self.unit * (self.model.common @ self.posterior.mean))
+        return rms(self.unit * (self.model.common[:, : len(self.missed)] @ self.missed))
 
     def left_out(self, groups: Sequence[np.ndarray] | None = None) -> list[Predicted]:
         """Each sweep, or each set of groups, as all others predict it; rows count those of ``rows``."""
         which = [np.array([k]) for k in range(len(self.sweeps))] if groups is None else groups
-        found = self.model.left_out(self._variances, which)
+        found = self.model.left_out(self.variances, which)
         return [
             Predicted(
                 one.rows,
@@ -70,15 +80,27 @@ class LinearisedChannel:
         ]
 
 
+class Uncertain(NamedTuple):
+    """A number of the fit that may change, with the standard deviation of its prior."""
+
+    name: str
+    spread: float
+
+
 @dataclass(frozen=True, eq=False)
 class LinearisedFit:
     """The channels of a fit at its solution."""
 
+    numbers: tuple[Uncertain, ...]  #: (k,) coefficients and rig errors
     channels: Mapping[str, LinearisedChannel]
 
 
 def linearised(
-    points: Points, simulation: Simulation, sigma: Mapping[str, np.ndarray], only: Iterable[str] | None = None
+    points: Points,
+    simulation: Simulation,
+    sigma: Mapping[str, np.ndarray],
+    numbers: Sequence[Uncertain],
+    only: Iterable[str] | None = None,
 ) -> LinearisedFit:
     """The linear model of what a simulation leaves of the points.
 
@@ -87,6 +109,7 @@ def linearised(
     points : (n,)
     simulation : the fitted tyre on its rig
     sigma : by channel, uncertainty (n,) that the fit used; inf where a reading has no weight
+    numbers : of the fit, each with a prior
     only : channels to look at; all that were fitted if None
     """
     readings = simulation.readings(points, sigma)
@@ -95,16 +118,28 @@ def linearised(
     for name in sigma if only is None else only:
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
-            found[name] = _channel(name, points, felt, readings[name], sigma[name], used)
-    return LinearisedFit(found)
+            sight = _Sight(points, felt, simulation, numbers)
+            found[name] = _channel(name, sight, readings[name], sigma[name], used)
+    return LinearisedFit(tuple(numbers), found)
+
+
+class _Sight(NamedTuple):
+    """What all channels share."""
+
+    points: Points
+    felt: Points
+    simulation: Simulation
+    numbers: Sequence[Uncertain]
 
 
 def _channel(
-    name: str, points: Points, felt: Points, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
+    name: str, sight: _Sight, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
 ) -> LinearisedChannel:
+    """The components are found with the numbers of the fit as they are: free, they would leave nothing that the formula misses."""
     every = np.flatnonzero(used)
-    rows = every[:: max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))]
-    part, at_tyre = points.select(rows, with_table=False), felt.select(rows, with_table=False)
+    stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
+    rows = every[::stride]
+    part, at_tyre = (p.select(rows, with_table=False) for p in (sight.points, sight.felt))
     residual = part.channel(name) - model[rows]
     stated = part.u(name)
     usual = float(np.median(sigma[rows]))
@@ -113,12 +148,15 @@ def _channel(
     smooth = Smooth.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], along(at_tyre, inputs))
-    mixed = Mixed(
-        residual=residual / unit,
-        common=smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None],
-        own=own / unit[:, None],
-        groups=groups,
-    )
+    missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
+    alone = Mixed(residual / unit, missed, own / unit[:, None], groups)
     size = max(rms(residual), 1e-12)
-    components = most_probable(mixed, smooth, Components.guess(smooth, size), size)
-    return LinearisedChannel(name, rows, unit, smooth, components, mixed, np.unique(part.sweep))
+    components = most_probable(alone, smooth, Components.guess(smooth, size), size)
+    names, spread = zip(*sight.numbers, strict=True) if sight.numbers else ((), ())
+    found = np.asarray(sight.simulation.sensitivities(part, names, [name])[1][name])
+    weighted = found / sigma[rows][:, None]
+    turn = root(inverse(np.diag(np.array(spread) ** -2.0) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+    joint = Mixed(alone.residual, np.hstack([missed, found @ turn / unit[:, None]]), alone.own, groups)
+    of_functions, _, _ = variances(components.logarithms, smooth)
+    prior = of_functions._replace(common=np.append(of_functions.common, np.zeros(turn.shape[1])))
+    return LinearisedChannel(name, rows, stride, unit, smooth, components, joint, prior, alone.posterior(of_functions).mean, turn, np.unique(part.sweep))

@@ -18,6 +18,7 @@ from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.members import write_members
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
+from mffit import prediction
 from mffit.quantities import column
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
@@ -26,7 +27,7 @@ from mffit.suspicion import marks
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
 REPORT = "report.html"
-WRITTEN = ("result.json", "information.json", "points.csv", REPORT)
+WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", REPORT)
 """Files that every build writes beside its property files."""
 
 
@@ -47,6 +48,9 @@ def write_build(
         as_json.write(folder / "result.json", as_json.build(result))
         as_json.write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
+        if result.prediction is not None:
+            fitted = result.files["turn-slip" if "turn-slip" in result.files else "normal"]
+            prediction.write(folder / prediction.FILE, result.prediction, result.tir_path, fitted)
         if stretches:
             write_csv(stretch_table(stretches), folder / "stretches.csv")
         (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))

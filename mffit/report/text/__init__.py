@@ -8,10 +8,12 @@ from mffit.report.text.direct import alignment_table, budget_table, spin_summary
 from mffit.report.text.fleet import fleet_summary
 from mffit.report.text.many import lacking, many_line, many_summary
 from mffit.report.text.plan import plan_summary
+from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary
 from mffit.report.text.verification import verification_summary
 
 __all__ = [
+    "prediction_summary",
     "alignment_table",
     "budget_table",
     "build_summary",
