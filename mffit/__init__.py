@@ -7,7 +7,23 @@
 
 from __future__ import annotations
 
+import warnings
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+_TIR = find_spec("tir")
+if _TIR is None or _TIR.origin is None:  # a folder that pip left behind has no origin
+    raise ImportError(
+        "the package tir is missing, probably because mffit-tir, which has the same files as mffit, was removed: "
+        "pip install --force-reinstall --no-deps mffit"
+    )
+if any(Path(_TIR.origin).parents[1].glob("mffit_tir-*.dist-info")):
+    warnings.warn(
+        "mffit and mffit-tir are both installed and have the same files, so that removing one breaks the other: "
+        "pip uninstall mffit-tir, then pip install --force-reinstall --no-deps mffit",
+        stacklevel=2,
+    )
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu

@@ -32,7 +32,7 @@ ROWS_AT_ONCE = Count(
 )
 ROWS_AS_TEXT = Count(16_384, "-", "Rows of a table that are in memory as text at the same time.")
 LOOKS_AT_LIMITS = Count(
-    6, "-", "Most times a step is computed again because it would break a limit or cross a bound."
+    200, "-", "Most times a step is computed again because it meets a limit or a bound; 5 to 50 are usual."
 )
 ZERO_SIDESLIP = Real(
     0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."
@@ -46,9 +46,17 @@ LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a term
 
 # Judged by prediction
 PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any candidate pass (Bonferroni).")
-LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a candidate must remove.")
+LEAST_PREDICTED_SHARE = Real(
+    0.02, "-", "Share of the misfit that a candidate must remove; a channel that loses less is no worse."
+)
 WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
+ODD_SWEEP_RATIO = Real(
+    5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
+)
+ASSUMED_NOISE_SHARE = Real(
+    1e-3, "-", "Assumed ratio of noise to rms reading where readings have no noise. The best rigs reach it."
+)
 HOTTEST_TREAD = Real(
     110.0, "degC", "Median of a tread's temperature that no tread keeps; in degF it is usual, 43 degC."
 )

@@ -13,6 +13,9 @@ from scipy.linalg import cho_factor, cho_solve
 from mffit import constants
 from tir.derivatives import gradient, plain, traced
 
+NEGLIGIBLE = 0.01
+"""Share of the fall that ends a search below which a step is not worth trying."""
+
 
 @dataclass(frozen=True, slots=True)
 class FreeNumber:
@@ -32,10 +35,15 @@ class Linear:
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
-    limits: np.ndarray  #: (l,) residuals of physical limits; zero where a limit is kept
+    limits: (
+        np.ndarray
+    )  #: (l,) residuals of physical limits: above 0 where a limit is broken, and of no cost where it is kept
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
-    kept: Kept | None = None
-    """Limits that are kept here, if a step may look at them: where many are near, steps that ignore them are rejected."""
+
+
+def broken(limits: np.ndarray) -> np.ndarray:
+    """What physical limits (l,) cost: their residuals where they are broken, 0 where they are kept."""
+    return np.maximum(limits, 0.0)
 
 
 def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
@@ -64,18 +72,13 @@ def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
     return np.block([[slope.T @ slope, across[:, None]], [across, data @ data]])
 
 
-class Kept(NamedTuple):
-    """Residuals, below zero, that kept physical limits would have, and their derivatives."""
-
-    value: np.ndarray  #: (q,)
-    slope: np.ndarray  #: (q, k)
-
-
 @dataclass(frozen=True, slots=True)
 class LeastSquaresProblem:
     """Residuals as functions of the numbers (k,)."""
 
-    residual: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]  #: of data (m,) and limits (l,)
+    residual: Callable[
+        [np.ndarray], tuple[np.ndarray, np.ndarray]
+    ]  #: of data (m,) and limits (l,), as in :class:`Linear`
     linear: Callable[[np.ndarray], Linear]  #: the same with derivatives
 
 
@@ -114,6 +117,7 @@ class Solution:
     at_bound: frozenset[str]  #: numbers at one of their own bounds
     at_limit: frozenset[str]  #: numbers that a physical limit holds
     steps: int
+    left: float  #: fall of ``cost`` that an undamped step still promises: 0 at a minimum
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -145,7 +149,7 @@ def minimum(
     problem: LeastSquaresProblem,
     numbers: Sequence[FreeNumber],
     *,
-    max_steps: int = 60,
+    max_steps: int = 200,
     tolerance: float = 1e-6,
 ) -> Minimum:
     """The minimum that :func:`solve` finds, without the derivatives there."""
@@ -153,17 +157,18 @@ def minimum(
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
     here, at_x = problem.linear(x), True
     cost = objective.cost(x, here.data, here.limits)
-    damping, taken = 1e-3, 0
-    while taken < max_steps and len(x):
+    damping, taken, close = 1e-3, 0, False
+    while taken < max_steps and len(x) and not close:
         if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
             here, at_x = problem.linear(x), True
-        step = _step(objective, x, cost, here, damping)
+        form = _Quadratic.around(objective, x, here)
+        close = form.left < tolerance * cost  # the step from here is the last one, and hardly damped
+        damping = min(damping, 1e-9) if close else damping
+        step = _step(objective, x, cost, form, damping, NEGLIGIBLE * tolerance * cost)
         if step is None:
             break
-        gained, x, cost, damping, at_x = cost - step.cost, step.x, step.cost, step.damping, False
+        x, cost, damping, at_x = step.x, step.cost, step.damping, False
         taken += 1
-        if gained < tolerance * cost:
-            break
     return Minimum(tuple(n.name for n in numbers), x, cost, taken, here if at_x else None)
 
 
@@ -171,7 +176,7 @@ def solve(
     problem: LeastSquaresProblem,
     numbers: Sequence[FreeNumber],
     *,
-    max_steps: int = 60,
+    max_steps: int = 200,
     tolerance: float = 1e-6,
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
@@ -181,7 +186,8 @@ def solve(
     problem : residuals and exact derivatives
     numbers : the free numbers
     max_steps : accepted steps at most
-    tolerance : relative decrease of the sum of squares at which the search ends
+    tolerance : share of the sum of squares below which the gain that an undamped step promises ends the search (Bates and
+        Watts 1981); the gain of a damped step says nothing, because it is small wherever the damping is large
     """
     found = minimum(problem, numbers, max_steps=max_steps, tolerance=tolerance)
     objective = _Objective.of(problem, numbers)
@@ -197,6 +203,7 @@ def solve(
         ),
         at_limit=_held_by_limits([n.name for n in numbers], here),
         steps=found.steps,
+        left=_Quadratic.around(objective, found.x, here).left,
     )
 
 
@@ -241,7 +248,8 @@ class _Objective(NamedTuple):
         )
 
     def cost(self, x: np.ndarray, data: np.ndarray, limits: np.ndarray) -> float:
-        total = float(data @ data + limits @ limits + self.precision @ (x - self.expected) ** 2)
+        over = broken(limits)
+        total = float(data @ data + over @ over + self.precision @ (x - self.expected) ** 2)
         return total if math.isfinite(total) else math.inf
 
 
@@ -251,94 +259,126 @@ class _Step(NamedTuple):
     damping: float  #: for the next step
 
 
-def _step(objective: _Objective, x: np.ndarray, cost: float, here: Linear, damping: float) -> _Step | None:
-    """The next place with a smaller sum of squares; None if there is none."""
-    precision = objective.precision
-    gradient = (
-        here.slope.T @ here.data + here.limits_slope.T @ here.limits + precision * (x - objective.expected)
-    )
-    curvature = here.slope.T @ here.slope + here.limits_slope.T @ here.limits_slope + np.diag(precision)
-    at_bound = ((x <= objective.lower) & (gradient > 0.0)) | ((x >= objective.upper) & (gradient < 0.0))
-    free = ~at_bound
-    if not free.any():
-        return None
-    scale = np.maximum(np.diag(curvature), 1e-12 * np.max(np.diag(curvature), initial=1e-300))
-    H, g, d = curvature[np.ix_(free, free)], gradient[free], scale[free]
+def _step(
+    objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float, least: float
+) -> _Step | None:
+    """The next place with a smaller sum of squares; None if there is none.
+
+    A step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops, such steps
+    go to and fro, and rounding would decide on which side they end.
+    """
     while damping < 1e12:
-        move = _move(objective, x, here, _Quadratic(H, g, damping * d), free)
-        if move is None:
-            damping = max(10.0 * damping, 1e-8)
-            continue
-        trial = np.clip(x + move, objective.lower, objective.upper)
-        new = objective.cost(trial, *objective.problem.residual(trial))
-        if new < cost:
-            taken = trial - x
-            promised = -(2.0 * gradient @ taken + taken @ curvature @ taken)
-            kept = (cost - new) / max(promised, 1e-300)
-            return _Step(trial, new, _next_damping(damping, kept))
-        if np.all(np.abs(trial - x) <= 1e-12 * (1.0 + np.abs(x))):
-            return None
-        damping *= 6.0
+        move = form.move(damping)
+        if move is not None:
+            promised = form.gain(move)
+            if promised <= least:
+                return None
+            trial = np.clip(x + move, objective.lower, objective.upper)
+            new = objective.cost(trial, *objective.problem.residual(trial))
+            if new < cost:
+                return _Step(trial, new, _next_damping(damping, (cost - new) / promised))
+        damping = max(6.0 * damping, 1e-8)
     return None
 
 
 class _Quadratic(NamedTuple):
-    """A quadratic form of the free numbers (f,), with damping."""
+    """The sum of squares around a place, of linearised residuals: data and priors as a quadratic form, limits one by one."""
 
-    curvature: np.ndarray  #: (f, f)
-    gradient: np.ndarray  #: (f,)
-    damping: np.ndarray  #: (f,)
+    gradient: np.ndarray  #: (k,) half the derivative of the sum of squares of data and priors
+    curvature: np.ndarray  #: (k, k) half its second derivative
+    limits: np.ndarray  #: (l,) residuals of limits, above 0 where broken
+    limits_slope: np.ndarray  #: (l, k)
+    low: np.ndarray  #: (k,) moves to the bounds
+    high: np.ndarray
+
+    @classmethod
+    def around(cls, objective: _Objective, x: np.ndarray, here: Linear) -> _Quadratic:
+        return cls(
+            gradient=here.slope.T @ here.data + objective.precision * (x - objective.expected),
+            curvature=here.slope.T @ here.slope + np.diag(objective.precision),
+            limits=here.limits,
+            limits_slope=here.limits_slope,
+            low=objective.lower - x,
+            high=objective.upper - x,
+        )
+
+    def gain(self, move: np.ndarray) -> float:
+        """Fall of the sum of squares by a move (k,)."""
+        before, after = broken(self.limits), broken(self.limits + self.limits_slope @ move)
+        return float(before @ before - after @ after - (2.0 * self.gradient + self.curvature @ move) @ move)
 
     @property
-    def minimum(self) -> np.ndarray | None:
-        """Where it is smallest (f,); None if the form is not positive."""
-        try:
-            factor = cho_factor(self.curvature + np.diag(self.damping), check_finite=False)
-        except np.linalg.LinAlgError:
-            return None
-        lowest: np.ndarray = -cho_solve(factor, self.gradient, check_finite=False)
-        return lowest
+    def left(self) -> float:
+        """Fall of the sum of squares by the undamped move to the minimum of the form."""
+        move = self.move(1e-9)
+        return math.inf if move is None else self.gain(move)
 
+    def move(self, damping: float) -> np.ndarray | None:
+        """The move (k,) to the damped minimum within the bounds; None if the form is not positive.
 
-def _move(
-    objective: _Objective, x: np.ndarray, here: Linear, form: _Quadratic, free: np.ndarray
-) -> np.ndarray | None:
-    """The step (k,) to the minimum of the form; None if there is none.
-
-    Where kept limits are given, the step also respects those that it would break, and the bounds that it would cross.
-    """
-    move = np.zeros(len(x))
-    found = form.minimum
-    if found is None:
-        return None
-    move[free] = found
-    if here.kept is None:
+        Newton steps with the limits that are broken where the last one ended: each goes to the lowest place on its way, or to a
+        bound, which then holds its number as long as the slope presses against it. A move that looks at bounds and at limits
+        that are still kept is not rejected because of them.
+        """
+        over = self.limits > 0.0
+        size = np.diag(self.curvature) + np.sum(self.limits_slope[over] ** 2, axis=0)
+        damped = self.curvature + np.diag(damping * np.maximum(size, 1e-12 * np.max(size, initial=1e-300)))
+        move, limits, largest = np.zeros(len(size)), self.limits, 0.0
+        held: np.ndarray | None = None
+        for _ in range(int(constants.LOOKS_AT_LIMITS)):
+            over = limits > 0.0
+            by_limits = self.limits_slope[over]
+            slope = self.gradient + damped @ move + by_limits.T @ limits[over]
+            low, high = move <= self.low, move >= self.high
+            if held is None:
+                held = low & (slope > 0.0) | high & (slope < 0.0)
+            free = ~held
+            curvature = damped + by_limits.T @ by_limits
+            way = np.zeros(len(move))
+            try:
+                factor = cho_factor(curvature[np.ix_(free, free)], check_finite=False)
+            except np.linalg.LinAlgError:
+                return None
+            way[free] = -cho_solve(factor, slope[free], check_finite=False)
+            fall = -float(slope @ way)
+            largest = max(largest, fall)
+            if fall <= 1e-12 * largest:
+                inwards = held & ~(low & (slope >= 0.0) | high & (slope <= 0.0))
+                if not inwards.any():
+                    break
+                held[np.argmax(np.where(inwards, slope**2 / np.diag(curvature), 0.0))] = False
+                continue
+            with np.errstate(divide="ignore", invalid="ignore"):
+                room = np.where(
+                    way == 0.0, math.inf, np.where(way > 0.0, self.high - move, self.low - move) / way
+                )
+            nearest = int(np.argmin(room))
+            share = _lowest(float(slope @ way), float(way @ damped @ way), limits, self.limits_slope @ way)
+            reached = share >= room[nearest]
+            move = np.clip(move + min(share, room[nearest]) * way, self.low, self.high)
+            if reached:
+                held[nearest] = True
+                move[nearest] = (self.high if way[nearest] > 0.0 else self.low)[nearest]
+            limits = self.limits + self.limits_slope @ move
         return move
-    crossed = np.zeros(len(x), dtype=bool)
-    broken = np.zeros(len(here.kept.value), dtype=bool)
-    for _ in range(int(constants.LOOKS_AT_LIMITS)):
-        beyond = free & ((x + move < objective.lower) | (x + move > objective.upper)) & ~crossed
-        breaks = (here.kept.value + here.kept.slope @ move > 0.0) & ~broken
-        if not beyond.any() and not breaks.any():
-            break
-        crossed |= beyond
-        broken |= breaks
-        move[beyond] = np.clip(x + move, objective.lower, objective.upper)[beyond] - x[beyond]
-        inner = free & ~crossed
-        own, outer = inner[free], crossed[free]
-        slope = here.kept.slope[broken]
-        curvature = form.curvature + slope[:, free].T @ slope[:, free]
-        gradient = form.gradient + slope[:, free].T @ here.kept.value[broken]
-        reduced = _Quadratic(
-            curvature[np.ix_(own, own)],
-            gradient[own] + curvature[np.ix_(own, outer)] @ move[crossed],
-            form.damping[own],
-        )
-        found = reduced.minimum
-        if found is None:
-            return None
-        move[inner] = found
-    return move
+
+
+def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray) -> float:
+    """The place along a way, from 0, at which half the sum of squares is lowest.
+
+    ``slope`` is its derivative at 0, ``curvature`` the second one without limits, which rise (l,) from their residuals (l,).
+    """
+    over = limits > 0.0
+    turns = np.where(over, rise < 0.0, rise > 0.0)  # limits that are kept or broken from some place on
+    place = -limits[turns] / rise[turns]
+    order = np.argsort(place)
+    place, sign = place[order], np.where(over[turns], -1.0, 1.0)[order]
+    bend = np.cumsum(np.append(curvature + rise[over] @ rise[over], sign * rise[turns][order] ** 2))
+    bend = np.maximum(bend, curvature)  # steep limits leave rounding
+    # The derivative at 0 and at each of these places:
+    at = slope + np.cumsum(np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0)))
+    k = int(np.searchsorted(at, 0.0)) - 1
+    return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 
 
 def _next_damping(damping: float, kept: float) -> float:

@@ -1,8 +1,11 @@
-"""Prediction of left-out groups of points to first order, from one linearised fit; and the rule that compares predictions.
+"""Prediction of left-out groups of points to first order, from one linearised fit; and the rule by which numbers are chosen.
 
 No second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the covariance of the
 fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the group is taken out
 (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
+
+Further numbers are chosen by the likelihood of the joint fit of all groups, beside what differs from group to group. The gain
+over its scatter among the groups would not do: one group that carries most of it raises the scatter as much as the mean.
 """
 
 from __future__ import annotations
@@ -11,7 +14,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import fdtrc, ndtri
 
 from mffit import constants
 
@@ -37,14 +40,16 @@ class Predicted:
     ) -> bool:
         """Whether ``other`` predicts one of the channels, or of these by number, worse beyond chance and by more than ``loss``.
 
-        The loss [-] is one of chi-square, for each channel (c,) or all of them.
+        The loss [-] is one of chi-square, for each channel (c,) or all of them. Beyond chance is a loss in standard errors over
+        the groups, or a misfit larger than that of as many independent groups scatters: one group may hold all of it.
         """
-        change = (self.chi2 - other.chi2).T
-        allowed = np.broadcast_to(loss, len(change))
-        looked_at = range(len(change)) if channels is None else channels
+        allowed = np.broadcast_to(loss, self.chi2.shape[1])
+        looked_at = range(self.chi2.shape[1]) if channels is None else channels
         return any(
-            _z(change[k]) < -constants.WORSE_PREDICTION and -float(np.sum(change[k])) > allowed[k]
+            float(np.sum(there - here)) > allowed[k]
+            and (_z(here - there) < -constants.WORSE_PREDICTION or _larger(here, there))
             for k in looked_at
+            for here, there in [(self.chi2[:, k], other.chi2[:, k])]
         )
 
     def keeps(self, other: Predicted, share: float) -> bool:
@@ -105,22 +110,58 @@ def needed_fall(candidates: int) -> float:
     return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
 
 
+@dataclass(frozen=True, slots=True)
+class Support:
+    """What further numbers of a model explain, by the joint fit of all points."""
+
+    chi2: float  #: by which the sum of squares falls, in units of the noise and of what differs from group to group
+    removed: float  #: by which it falls in units of the noise alone
+    numbers: int  #: how many there are
+    freedom: float  #: degrees of freedom of the scatter among the groups, over the square of its share; infinite without any
+
+    @property
+    def chance(self) -> float:
+        """Probability that numbers without effect explain as much."""
+        freedom = min(self.freedom, 1.0 / np.finfo(float).eps)
+        return float(fdtrc(self.numbers, freedom, max(self.chi2, 0.0) / self.numbers))
+
+    def beyond_chance(self, candidates: int = 1) -> bool:
+        """Whether they explain more than the best of several candidates does by chance."""
+        return self.chance < constants.PREDICTION_FALSE_ALARM / max(candidates, 1)
+
+
+def alone(information: np.ndarray, gradient: np.ndarray, more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Information (k, k) and gradient (k,) of some numbers, by their index (k,), after all others are estimated."""
+    rest = np.setdiff1d(np.arange(len(gradient)), more)
+    through = np.linalg.solve(information[np.ix_(rest, rest)], information[np.ix_(rest, more)])
+    own = information[np.ix_(more, more)] - information[np.ix_(more, rest)] @ through
+    return own, gradient[more] - through.T @ gradient[rest]
+
+
 def improves(
     before: Predicted,
     after: Predicted,
+    support: Support,
     *,
-    least: float,
-    needed: float,
+    candidates: int = 1,
+    least: float = 0.0,
     channels: Collection[int] | None = None,
-    loss: np.ndarray | float = 0.0,
 ) -> bool:
-    """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse.
+    """Whether further numbers belong into a model: they explain more than chance, and no channel is predicted worse for it.
 
-    With ``channels`` only these, by number, must not be worse; the others count in the sum. A channel may lose ``loss``, one
-    for each (c,) or for all.
+    Without them left-out groups are predicted as ``before``, with them as ``after``. The sum of squares must fall by more than
+    ``least``. With ``channels`` only these, by number, must not be worse. That all are predicted better is not asked for: a
+    group at the end of the tested range is predicted so badly without its own readings that it hides a gain in all others.
     """
-    gain = float(np.sum(before.chi2 - after.chi2))
-    return bool(gain > least and before.falls(after) > needed and not before.raised(after, channels, loss))
+    loss = constants.LEAST_PREDICTED_SHARE * np.sum(before.chi2, axis=0)
+    seen = support.beyond_chance(candidates) and support.removed > least
+    return seen and not before.raised(after, channels, loss)
+
+
+def _larger(before: np.ndarray, after: np.ndarray) -> bool:
+    """Whether the second misfit (s,) is the larger one beyond chance, if each group counts as one reading."""
+    ratio = float(np.sum(after)) / max(float(np.sum(before)), np.finfo(float).tiny)
+    return bool(fdtrc(len(before), len(before), ratio) < constants.PREDICTION_FALSE_ALARM)
 
 
 def _z(change: np.ndarray) -> float:

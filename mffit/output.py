@@ -102,8 +102,7 @@ def output_folder(
 def _temporary_folder(out: Path) -> Path:
     """A new folder beside ``out``; folders that killed runs left are removed."""
     parent = out.absolute().parent
-    if out.exists() and not out.is_dir():
-        raise InputError(f"is a file, but the output needs a folder; {ELSEWHERE}", file=out)
+    refuse_unusable(out)
     try:
         parent.mkdir(parents=True, exist_ok=True)
         _remove_litter(out.absolute())
@@ -128,14 +127,38 @@ def _publish(temporary: Path, target: _Target) -> None:
         ) from error
 
 
+def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
+    """Raise before any work if an output folder, or a file, cannot be written; nothing is left behind.
+
+    Raises
+    ------
+    InputError
+        A file is in the place of a folder, or a folder in that of the file, or nothing can be written there.
+    """
+    if is_file and out.is_dir():
+        raise InputError("is a folder, but the output is a file; name a file with --out", file=out)
+    folder = out.absolute().parent if is_file else out.absolute()
+    nearest = next(path for path in (folder, *folder.parents) if os.path.lexists(path))
+    if not nearest.is_dir():
+        where = "" if nearest == out.absolute() else f"cannot be written to: {nearest} "
+        raise InputError(f"{where}is a file, but the output needs a folder; {ELSEWHERE}", file=out)
+    # The temporary folder of the run is beside the output folder.
+    for place in {nearest, nearest if is_file or nearest != folder else folder.parent}:
+        try:
+            os.rmdir(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=place))
+        except OSError as error:
+            raise InputError(f"cannot be written to ({error.strerror}); {ELSEWHERE}", file=place) from error
+
+
 def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
     """Raise before the work, if the names of the files are known, what :func:`output_folder` would raise after it.
 
     Raises
     ------
     InputError
-        ``out`` has a file of one of the names that may not be replaced.
+        ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
     """
+    refuse_unusable(out)
     if out.is_dir():
         _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -134,6 +135,22 @@ def test_tir_does_not_know_mffit():
         if name.split(".")[0] == "mffit"
     ]
     assert not wrong, "\n".join(wrong)
+
+
+DRAWN_WHEN_CALLED = ("tir.tyre", "tir.drawing")
+"""The one import that points upwards: a method of the user's class for what works on that class."""
+
+
+def test_no_modules_of_tir_import_each_other_in_a_circle():
+    """Imports for types, inside functions and of names from packages count too."""
+    names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in modules("tir")}
+    needed: dict[str, set[str]] = {}
+    for own, path in names.items():
+        found = {
+            other for _, name in imports(path) for other in (name, name.rpartition(".")[0]) if other in names
+        }
+        needed[own] = {other for other in found if (own, other) != DRAWN_WHEN_CALLED}
+    assert len(list(TopologicalSorter(needed).static_order())) == len(names)
 
 
 def test_tir_needs_nothing_but_numpy():

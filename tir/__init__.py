@@ -13,8 +13,9 @@ from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, TirWarning
-from tir.properties import read
-from tir.tyre import Quantity, Tyre
+from tir.reading import read
+from tir.record import Quantity
+from tir.tyre import Tyre
 
 __all__ = [
     "Forces",

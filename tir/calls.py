@@ -10,27 +10,29 @@ import math
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tir import constants, kernels
-from tir.codegen import kernel, single
-from tir.codegen.kernel import LANES
-from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen import single
+from tir.codegen.cpython import SCALARS, kernel
+from tir.codegen.cpython.kernel import LANES
+from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-from tir.evaluate import evaluate, refuse_zero_divisors
+from tir.evaluate import unchecked
+from tir.record import TyreRecord
 
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
-
+Function = Callable[..., Any]
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
 THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
 FORCES, STATE = Forces._fields, State._fields
+OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
+"""States that :mod:`tir.transient` needs."""
 DOUBLE = np.dtype(float)
 ONLY_DOUBLES = {DOUBLE}
 ROWS = itemgetter(*range(len(FORCES)))
@@ -71,12 +73,12 @@ def compile_kernels(
             kernels.load(kind, Switches(on, star, limits))
 
 
-def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
+def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
     """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
     arrays = [np.asarray(x) for x in inputs]
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
         if not _real(arrays):
-            return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[0]
+            return Forces(*_evaluated(tyre, _of_any_kind(inputs, arrays), switches, FORCES))
         arrays = [a.astype(float, copy=False) for a in arrays]
     shapes = {a.shape for a in arrays}
     shapes.discard(())
@@ -88,16 +90,23 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
         flat = [a if a.ndim == 0 else np.broadcast_to(a, shape).reshape(-1) for a in arrays]
     out = _many(tyre, flat, math.prod(shape), switches)
     if out is None:
-        return _evaluated(tyre, arrays, switches)[0]
+        return Forces(*_evaluated(tyre, arrays, switches, FORCES))
     return tuple.__new__(Forces, ROWS(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
-def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
+def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
+    return State(*some_of(tyre, inputs, switches, STATE))
+
+
+def some_of(
+    tyre: TyreRecord, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
+    """The named forces and states for the same."""
     arrays = [np.asarray(x) for x in inputs]
     if _real(arrays) and all(a.shape == () for a in arrays):
-        return State(*_one(tyre, arrays, switches, STATE))
-    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[1]
+        return _one(tyre, arrays, switches, outputs)
+    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches, outputs)
 
 
 def _of_any_kind(inputs: Sequence[Any], arrays: Sequence[np.ndarray]) -> list[Any]:
@@ -109,38 +118,44 @@ def _real(arrays: Sequence[np.ndarray]) -> bool:
     return all(a.dtype.kind in "fiub" for a in arrays)
 
 
-def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]) -> tuple:
+def _one(
+    tyre: TyreRecord, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
     """Outputs of a scalar call as floats; NaN or infinity, as numpy has them, where Python's arithmetic raises."""
     numbers = [float(x) for x in inputs]
     run = function_of(tyre, switches, outputs)
     try:
         if run is not None:
-            return run(*numbers)
+            found: tuple[Any, ...] = run(*numbers)
+            return found
     except (ArithmeticError, ValueError):
         pass
-    found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
-    return tuple(_plain(x) for x in found[outputs is STATE])
+    return tuple(map(_plain, _evaluated(tyre, [np.float64(x) for x in numbers], switches, outputs)))
 
 
-def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
-    """Forces and state by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
+def _evaluated(
+    tyre: TyreRecord, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
+) -> tuple[Any, ...]:
+    """Outputs by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
+    refuse_zero_divisors(tyre.p, switches, outputs)
     with np.errstate(all="ignore"):
         try:
-            return evaluate(tyre.p, *inputs, **switches._asdict())
+            forces, state = unchecked(tyre.p, *inputs, **switches._asdict())
         except ArithmeticError:
             numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-            return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+            forces, state = unchecked(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+    return tuple(getattr(forces if name in FORCES else state, name) for name in outputs)
 
 
 def _plain(x: Any) -> Any:
     return x.item() if isinstance(x, np.ndarray | np.generic) and np.ndim(x) == 0 else x
 
 
-def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
+def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Function | None:
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, outputs)
         if values is None:
             return None
         loaded = kernels.meter("one", switches).kernel() if outputs is FORCES else None
@@ -149,35 +164,36 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
         else:
             run = single.run_of(values, switches, outputs)
             tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if outputs is FORCES else run
-    return tyre.prepared[key]
+    found: Function | None = tyre.prepared[key]
+    return found
 
 
 def _counted(
-    prepared: dict[Any, Any], run: Callable, values: dict[str, float], switches: Switches
-) -> Callable:
+    prepared: dict[Any, Any], run: Function, values: dict[str, float], switches: Switches
+) -> Function:
     """The function for plain numbers, until the kernel is loaded; then it puts the kernel in its place among ``prepared``.
 
-    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.kernel.SCALARS`.
+    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.cpython.SCALARS`.
     """
     meter = kernels.meter("one", switches)
 
     def counting(*given: Any) -> tuple[float, ...]:
-        if not kernel.SCALARS.issuperset(map(type, given)):
+        if not SCALARS.issuperset(map(type, given)):
             raise TypeError("only plain numbers are computed here")
         meter.left -= 1
         if meter.left <= 0:
             loaded = meter.kernel()
             if loaded is not None:
                 prepared[switches] = faster = loaded.run_of(values)
-                return faster(*given)
-        return run(*map(float, given))
+                return faster(*given)  # type: ignore[no-any-return]
+        return run(*map(float, given))  # type: ignore[no-any-return]
 
     return counting
 
 
-def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
+def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None:
     """The kernel for arrays bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is no real number."""
-    bound = tyre.prepared.get(("batch", switches))
+    bound: Function | None = tyre.prepared.get(("batch", switches))
     if bound is not None:
         return bound
     meter = kernels.meter("batch", switches)
@@ -188,31 +204,33 @@ def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
     if loaded is None:
         return None
     if ("batch", switches) not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, FORCES)
         tyre.prepared["batch", switches] = None if values is None else loaded.run_of(values)
-    return tyre.prepared["batch", switches]
+    bound = tyre.prepared["batch", switches]
+    return bound
 
 
-def lag_of(tyre: Tyre, switches: Switches) -> tuple[Callable, Callable] | None:
+def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Function, Function] | None:
     """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
     if ("lag", switches) not in tyre.prepared:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
-        values = _values(tyre)
+        values = _values(tyre, switches, (*FORCES, *OF_CONTACT))
         tyre.prepared["lag", switches] = None if values is None else lag_functions(values, switches)
-    return tyre.prepared["lag", switches]
+    found: tuple[Function, Function] | None = tyre.prepared["lag", switches]
+    return found
 
 
-def _values(tyre: Tyre) -> dict[str, float] | None:
-    """The parameters as floats; None if one is not a real number. Refuses zeros by which the equations divide."""
-    refuse_zero_divisors(tyre.p)
+def _values(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...]) -> dict[str, float] | None:
+    """The parameters as floats; None if one is not a real number. Refuses zeros by which the outputs are divided."""
+    refuse_zero_divisors(tyre.p, switches, outputs)
     given = {name: tyre.values[name] for name in NUMBERS}
     if not all(isinstance(x, float | int | np.floating | np.integer) for x in given.values()):
         return None
     return {name: float(x) for name, x in given.items()}
 
 
-def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
+def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
     """Forces (6, n) of inputs that are scalars or (n,); None if a parameter is not a real number."""
     run = _kernel_for(tyre, n, switches)
     if run is not None:
@@ -225,26 +243,27 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
     return out
 
 
-def _arrays_of(tyre: Tyre, switches: Switches) -> Callable | None:
+def _arrays_of(tyre: TyreRecord, switches: Switches) -> Function | None:
     """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:
-        values = _values(tyre)
+        values = _values(tyre, switches, FORCES)
         if values is None:
             return None
         program = replay(switches, FORCES)
         tyre.prepared[key] = lambda *block: program({**values, **dict(zip(INPUTS, block, strict=True))})
-    return tyre.prepared[key]
+    found: Function | None = tyre.prepared[key]
+    return found
 
 
-def _in_numpy(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
+def _in_numpy(run: Function, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
     for start in range(0, out.shape[1], BLOCK):
         found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in inputs))
         for row, force in zip(out, found, strict=True):
             row[start : start + BLOCK] = force
 
 
-def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
+def _in_vectors(run: Function, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
     out = np.empty((len(FORCES), max(n, LANES)))
     if n < LANES:
         padded = [x if x.ndim == 0 else np.append(x, np.ones(LANES - n)) for x in inputs]

@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from tir import constants
+from tir.codegen.program import Switches, that_need
 from tir.consumers import target_problems
 from tir.envelope import over_the_range
 from tir.equations import normalise
-from tir.errors import Problem
+from tir.equations.forces import Forces, State
+from tir.errors import Problem, some
+from tir.evaluate import DIVISORS
 from tir.parameters import TABLE, TURN_SLIP
 from tir.plausible import SHAPES, SINGLE, broken
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
@@ -49,7 +52,9 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
     if not any(problem.level == "error" for problem in found):
         with np.errstate(all="ignore"):
             ranged = (_with_origin(problem, tyre) for problem in over_the_range(tyre))
-            found += [*_shape(tyre), *ranged, *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
+            found += [*broken(tyre, SHAPES), *ranged, *_clamps(tyre), *_moments(tyre)]
+            if tyre["VERTICAL_STIFFNESS"]:
+                found += [*_radius(tyre), *_spin(tyre)]
     for target in programs:
         found += target_problems(tyre, target)
     return [_with_line(problem, tyre) for problem in found]
@@ -92,8 +97,15 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         yield _warning(
             "RIM_RADIUS", f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
         )
-    for name in [row.name for row in TABLE if row.divisor] + ["INFLPRES"]:
-        if tyre[name] <= 0:
+    switches = Switches(tyre.turn_slip)
+    for name in (*DIVISORS, "INFLPRES"):
+        if tyre[name] == 0 and name in DIVISORS and not that_need(name, switches, Forces._fields):
+            need = some(that_need(name, switches, State._fields))
+            yield _warning(
+                name,
+                f"{name} is 0: no force needs it with turn slip off, but {need} and turn slip do; give its value",
+            )
+        elif tyre[name] <= 0:
             remedy = "reverse its sign" if tyre[name] < 0 else "give its value"
             yield _error(name, f"{name} is {tyre[name]:g}, but it must be positive; {remedy}")
     if 0.0 < tyre["VERTICAL_STIFFNESS"] * R0 < tyre["FNOMIN"]:
@@ -166,9 +178,8 @@ def _clamps(tyre: Tyre) -> Iterator[Problem]:
         )
 
 
-def _shape(tyre: Tyre) -> Iterator[Problem]:
+def _radius(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
-    yield from broken(tyre, SHAPES)
     ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
     smallest, largest = constants.EFFECTIVE_RADIUS_RANGE
     if not smallest < ratio < largest:
@@ -240,11 +251,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
         )
     rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
-    if default:
+    if default and not _known_default(tyre, rows[0].name):
         yield _warning(
             rows[0].name, f"the {len(rows)} turn-slip coefficients are the common defaults, not measurements"
         )
-    if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0):
+    if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0) and not _known_default(tyre, "PECP1"):
         yield _warning(
             "PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
         )
@@ -258,6 +269,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
             "PHYP1",
             "the camber force with turn slip on differs from the one with turn slip off times R0/Re: check PHYP1-4",
         )
+
+
+def _known_default(tyre: Tyre, name: str) -> bool:
+    """Whether a file for turn slip off says itself that the coefficient is a default, as after an export."""
+    return not tyre.turn_slip and tyre.status.get(name, "").startswith("default")
 
 
 def _moments(tyre: Tyre) -> Iterator[Problem]:

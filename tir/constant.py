@@ -66,7 +66,7 @@ class Count(_Judged, int):
         return int(self)
 
 
-class Series(_Judged, tuple):
+class Series(_Judged, tuple[float, ...]):
     """Several constants of one unit that belong together; a tuple of numbers."""
 
     def __new__(cls, values: Iterable[float], unit: str, why: str, study: str = "") -> Self:

@@ -11,15 +11,15 @@ from tir.equations.forces import Forces
 from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
 from tir.properties import number_of, unquoted
+from tir.record import TyreRecord
 from tir.targets import Target
-from tir.tyre import Tyre
 from tir.units import KINDS
 
 FIRST_OF_MODEL = 3
 """Keys of [MODEL] that a program uses that reads by position: version, side, reference speed."""
 
 
-def target_problems(tyre: Tyre, target: Target) -> Iterator[Problem]:
+def target_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")
@@ -28,7 +28,7 @@ def target_problems(tyre: Tyre, target: Target) -> Iterator[Problem]:
         yield Problem(problem.level, f"for {target.name}: {problem.sentence}", problem.name, problem.line)
 
 
-def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
+def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     version = int(tyre["FITTYP"])
     if version not in target.fittyps:
         known = ", ".join(map(str, target.fittyps))
@@ -69,7 +69,7 @@ def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
             yield Problem(level, f"the file lacks {some(shown)}; {why}: tyre.expand() adds the missing keys")
 
 
-def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
+def _text(tyre: TyreRecord, document: Document, target: Target) -> Iterator[Problem]:
     keys = {line.key: line for line in reversed(document.entries)}
     if not document.text.isascii():
         line = next(line for line in document.lines if not line.text.isascii())
@@ -105,7 +105,7 @@ def _other_units(document: Document) -> Iterator[Problem]:
             )
 
 
-def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
+def _out_of_place(tyre: TyreRecord, document: Document, target: Target) -> Iterator[Problem]:
     """For each section, the first key that a program which counts lines would read from a wrong line."""
     sections = dict.fromkeys(row.section for row in TABLE)
     for section in sections:

@@ -5,16 +5,19 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from tir.constants import LONGEST_WRITTEN_LINE
 from tir.errors import TirError
 
 SECTION = re.compile(r"^\s*\[([^\]]*)\]")
 ENTRY = re.compile(r"^(\s*)([A-Za-z_][\w.\- ]*?)(\s*=[^\S\r\n]*)(.*)$", re.DOTALL)
 QUOTED = re.compile(r"'([^']*)'|\"([^\"]*)\"")
 LINE_END = re.compile(r"(\r\n|\r|\n)")
+CONTINUED = "!>"
+"""Begins a line that continues the comment line above."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +51,8 @@ class FileLine:
     def with_comment(self, comment: str) -> FileLine:
         """The line with another comment behind the value."""
         before = self.text[: self.start + len(self.value)]
-        return replace(self, text=f"{before:<49} ${comment}", comment=comment)
+        text = commented(f"{before:<49}", comment)
+        return replace(self, text=text, comment=text[len(before) :].strip(" $"))
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -66,6 +70,22 @@ class Document:
     def entries(self) -> tuple[FileLine, ...]:
         """Lines that hold a key."""
         return tuple(line for line in self.lines if line.key)
+
+    @property
+    def comments(self) -> Iterator[tuple[list[int], str]]:
+        """Lines without a key, each with those that continue it: their numbers, and the whole text."""
+        numbers: list[int] = []
+        whole = ""
+        for line in self.lines:
+            if numbers and line.text.startswith(CONTINUED):
+                numbers.append(line.number)
+                whole += line.text[len(CONTINUED) :]
+                continue
+            if numbers:
+                yield numbers, whole
+            numbers, whole = ([], "") if line.key else ([line.number], line.text)
+        if numbers:
+            yield numbers, whole
 
     @property
     def text(self) -> str:
@@ -103,6 +123,22 @@ class Document:
                     out[-1] += end
                 out += [text + end for text in new]
         return parse_document("".join(out), encoding=self.encoding, path=self.path)
+
+
+def commented(line: str, comment: str) -> str:
+    """The line with a comment behind it, which is cut where readers may stop; the line itself is not."""
+    return f"{line} ${comment}"[: max(LONGEST_WRITTEN_LINE, len(line))].rstrip()
+
+
+def folded(line: str) -> list[str]:
+    """A comment line as lines that every reader takes; those behind the first begin with :data:`CONTINUED`."""
+    out = []
+    while len(line) > LONGEST_WRITTEN_LINE:
+        at = line.rfind(" ", len(CONTINUED) + 1, LONGEST_WRITTEN_LINE + 1)
+        at = at if at > 0 else LONGEST_WRITTEN_LINE
+        out.append(line[:at])
+        line = CONTINUED + line[at:]
+    return [*out, line]
 
 
 def read_document(path: str | Path) -> Document:

@@ -13,11 +13,10 @@ import numpy as np
 
 from tir import constants
 from tir.errors import TirError
+from tir.tyre import Tyre
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from tir.tyre import Tyre
+    from matplotlib.figure import Figure as Figure
 
 WIDEST = {
     "alpha": constants.DRAWN_SIDESLIP.rad,

@@ -11,7 +11,7 @@ import numpy as np
 from tir import constants
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness
 from tir.errors import Problem
-from tir.tyre import Tyre
+from tir.record import TyreRecord
 
 RANGES = (
     ("FZMIN", "FZMAX"),
@@ -123,7 +123,7 @@ CONDITIONS = (
 )
 
 
-def over_the_range(tyre: Tyre) -> Iterator[Problem]:
+def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     """Problems for the conditions that the tyre violates within its ranges or just outside."""
     box = _box(tyre)
     width = box[1] - box[0]
@@ -150,7 +150,7 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
             yield Problem(level, text, condition.name)
 
 
-def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:
+def worst(tyre: TyreRecord, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:
     """The smallest value over a box (2, 5) of Fz [N], gamma [rad], pressure [Pa], alpha [rad], kappa, and where.
 
     NaN, and the place, if the measure is NaN anywhere.
@@ -172,14 +172,14 @@ def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndar
     return best, place
 
 
-def _measured(tyre: Tyre, measure: Measure, points: np.ndarray) -> Any:
+def _measured(tyre: TyreRecord, measure: Measure, points: np.ndarray) -> Any:
     Fz, gamma, pressure, alpha, kappa = points
     with np.errstate(all="ignore"):
         q = normalise.inputs(tyre.p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
         return measure(tyre.p, q)
 
 
-def _box(tyre: Tyre) -> np.ndarray:
+def _box(tyre: TyreRecord) -> np.ndarray:
     """The file's ranges, reduced to what tyres are used for."""
     box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
     box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])

@@ -60,9 +60,27 @@ def evaluate(
     TirError
         If a value by which the equations divide is 0.
     """
+    for name in zero_divisors(p):
+        raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
     Vx = p.LONGVL if Vx is None else Vx
     pressure = p.INFLPRES if pressure is None else pressure
-    refuse_zero_divisors(p)
+    return unchecked(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits)
+
+
+def unchecked(
+    p: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
+) -> tuple[Forces, State]:
+    """As :func:`evaluate`, all given; what divides by a parameter that is 0 is infinite, NaN or an ArithmeticError."""
     if isinstance(pressure, float | int):
         pressure = np.float64(pressure)  # Python's own numbers raise at 0 ** -0.4, numpy's do not
     inputs, switches = (Fz, alpha, gamma, kappa, phi_t, Vx, pressure), (turn_slip, star, limits)
@@ -73,7 +91,17 @@ def evaluate(
 
 
 def forwards(
-    p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+    p: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
 ) -> tuple[Forces, State]:
     """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, all given."""
     unloaded = np.real(Fz) <= 0.0
@@ -94,7 +122,18 @@ def forwards(
 
 
 def either_way(
-    p, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+    p: Any,
+    backwards: Any,
+    Fz: Any,
+    alpha: Any,
+    gamma: Any,
+    kappa: Any,
+    phi_t: Any,
+    Vx: Any,
+    pressure: Any,
+    turn_slip: bool,
+    star: bool,
+    limits: bool,
 ) -> tuple[Forces, State]:
     """The model for either direction: where ``backwards`` holds, in a frame turned by half a revolution about z.
 
@@ -118,21 +157,18 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
     return mirrored
 
 
-def refuse_zero_divisors(p) -> None:
-    """Raise TirError if a parameter by which the equations divide is 0."""
-    for name in DIVISORS:
-        value = getattr(p, name)
-        if isinstance(value, Real) and value == 0.0:
-            raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
+def zero_divisors(p: Any) -> list[str]:
+    """Parameters by which some equation divides and that are 0."""
+    return [name for name in DIVISORS if isinstance(value := getattr(p, name), Real) and value == 0.0]
 
 
-def _clip(x, lower, upper):
+def _clip(x: Any, lower: Any, upper: Any) -> Any:
     if lower is not None:
         x = select(np.real(x) < lower, lower, x)
     return select(np.real(x) > upper, upper, x)
 
 
-def _loads_below_range(p, Fz, Fz_given) -> tuple[Any, Loads]:
+def _loads_below_range(p: Any, Fz: Any, Fz_given: Any) -> tuple[Any, Loads]:
     """Loads for the moments: below FZMIN these fall faster than the load, so that an unloaded wheel has no moment."""
     below = np.real(Fz) < p.FZMIN
     floor = select(p.FZMIN > 0.0, p.FZMIN, 1.0)

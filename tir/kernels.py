@@ -12,8 +12,8 @@ import os
 from typing import TYPE_CHECKING
 
 from tir import constants
-from tir.codegen import kernel
-from tir.codegen.kernel import Kernel
+from tir.codegen.cpython import kernel
+from tir.codegen.cpython.kernel import Kernel
 from tir.codegen.program import Switches
 from tir.errors import TirError
 

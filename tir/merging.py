@@ -12,13 +12,13 @@ from typing import Any
 
 from tir.document import Document, FileLine
 from tir.parameters import SECTIONS, TABLE, Parameter
-from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
+from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, described, parameter_of, units_of, unquoted
+from tir.record import TyreRecord
 from tir.rendering import comment_text, entry, remark, structured_comments, value_text
-from tir.tyre import Tyre
 from tir.units import factor
 
 
-def merged(tyre: Tyre, document: Document) -> Document:
+def merged(tyre: TyreRecord, document: Document) -> Document:
     """The document with the values, origins, measured quantities and provenance of the tyre.
 
     Raises
@@ -31,7 +31,7 @@ def merged(tyre: Tyre, document: Document) -> Document:
         if parameter_of(line) is not None:
             lines.setdefault(line.key, line)
     given_on_reading = {name: tyre[name] for name in ESSENTIAL if name not in lines}
-    before, words = interpret(document, given_on_reading), units_of(document, [])
+    before, words = described(TyreRecord, document, given_on_reading), units_of(document, [])
     added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
     changed = {}
     for row in (row for row in TABLE if row.name in lines):
@@ -66,7 +66,11 @@ def _text(row: Parameter, value: Any, words: dict[str, str], line: FileLine | No
 
 
 def _places(
-    document: Document, rows: list[Parameter], lines: dict[str, FileLine], tyre: Tyre, words: dict[str, str]
+    document: Document,
+    rows: list[Parameter],
+    lines: dict[str, FileLine],
+    tyre: TyreRecord,
+    words: dict[str, str],
 ) -> dict[int, list[str]]:
     """New lines, by the number of the line that each follows: that of the preceding key of the table."""
     heads = {line.section: line.number for line in reversed(document.lines) if line.head}
@@ -94,8 +98,13 @@ def _places(
     return dict(texts)
 
 
-def _with_structured_comments(document: Document, tyre: Tyre) -> Document:
-    old = [line.number for line in document.lines if MEASURED.match(line.text) or PROVENANCE.match(line.text)]
+def _with_structured_comments(document: Document, tyre: TyreRecord) -> Document:
+    old = [
+        number
+        for numbers, text in document.comments
+        if MEASURED.match(text) or PROVENANCE.match(text)
+        for number in numbers
+    ]
     header = [line.number for line in document.entries if line.section == "MDI_HEADER"]
     place = max(header, default=0)
     kept = document.without(old)

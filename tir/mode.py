@@ -5,14 +5,10 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from tir.codegen.program import Switches
 from tir.errors import TirWarning
 from tir.parameters import TABLE, TURN_SLIP
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
 
 BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == "")
 """The coefficients of turn slip."""
@@ -24,14 +20,6 @@ INSIDE = ("tir.", "functools")
 def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:
     """Whether the units digit of USE_MODE is 5; then spin acts unless a call or an export says otherwise."""
     return bool(abs(values["USE_MODE"]) % 10.0 // 1.0 == 5.0)
-
-
-def exported(tyre: Tyre, turn_slip: bool | None, star: bool, limits: bool) -> Switches:
-    """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
-    on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
-    if on:
-        warn_of_doubt(tyre.values, tyre.present)
-    return Switches(on, bool(star), bool(limits))
 
 
 def words(turn_slip: bool) -> str:

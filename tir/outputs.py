@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import replay
 from tir.derivatives import Traced, plain
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-from tir.evaluate import refuse_zero_divisors
 
 
 def outputs_of(
@@ -45,12 +44,13 @@ def outputs_of(
     _known(inputs, INPUTS, "input")
     if "Fz" not in inputs:
         raise TirError("the load Fz is missing among the inputs; give it")
-    refuse_zero_divisors(p)
+    switches = Switches(turn_slip, star)
+    refuse_zero_divisors(p, switches, names)
     given = {"Vx": p.LONGVL, "pressure": p.INFLPRES, **inputs}
     still = tuple(name for name in INPUTS if name not in given)
     every = {**vars(p), **given}
     leaves = {name: x for name in (*NUMBERS, *given) if isinstance(x := every[name], Traced)}
-    run = replay(Switches(turn_slip, star), names, tuple(leaves), still)
+    run = replay(switches, names, tuple(leaves), still)
     found = run({name: _real(plain(every[name])) for name in run.symbols})
     if not leaves:
         return found

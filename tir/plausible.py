@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tir import constants
 from tir.errors import Problem
 from tir.parameters import BY_NAME, TABLE
-from tir.tyre import Tyre
+from tir.record import TyreRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ SHAPES = tuple(
 """Coefficients of the shape of the curves."""
 
 
-def broken(tyre: Tyre, rules: Iterable[PlausibleRule]) -> Iterator[Problem]:
+def broken(tyre: TyreRecord, rules: Iterable[PlausibleRule]) -> Iterator[Problem]:
     """A problem for every key that breaks a rule."""
     for rule in rules:
         if rule.amplitude and tyre[rule.amplitude] == 0.0:

@@ -1,24 +1,24 @@
-"""Reading property files: Document and table to Tyre."""
+"""What a property file means: Document and table to the record of a tyre."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 from tir.codegen.program import Switches, trace
-from tir.document import Document, FileLine, read_document
+from tir.document import Document, FileLine
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
+from tir.record import Quantity, TyreRecord
 from tir.targets import FITTYPS, TARGETS, fittyps_text
-from tir.tyre import Quantity, Tyre
 from tir.units import KINDS, factor
 
+Kind = TypeVar("Kind", bound=TyreRecord)
 OLD_FITTYPS = {
     5: "MF-Tyre 5",
     6: "MF-Tyre 5.2",
@@ -26,7 +26,9 @@ OLD_FITTYPS = {
     51: "MF-MCTyre 1.0, a motorcycle tyre",
     52: "MF-MCTyre 1.1, a motorcycle tyre",
 }
-OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE", "PAC_MC"}
+CAR_FITTYPS = (5, 6, 21)
+OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE"}
+MOTORCYCLE_FORMATS = {"PAC_MC", "MF-MCTYRE"}
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
@@ -44,27 +46,8 @@ STATUS = re.compile(
 )
 
 
-def read(path: str | Path, **lacking: float | str) -> Tyre:
-    """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
-
-    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
-    unusual with its line.
-
-    Parameters
-    ----------
-    path : the file
-    lacking : values [SI] of keys that the file lacks, such as ``UNLOADED_RADIUS=0.3``; a key of the file keeps its value
-
-    Raises
-    ------
-    TirError
-        If the file is not a property file, is truncated, contains an unreadable number, or has another MF version.
-    """
-    return interpret(read_document(path), lacking)
-
-
-def interpret(document: Document, lacking: Mapping[str, float | str] = MappingProxyType({})) -> Tyre:
-    """The tyre that a document describes, with values of keys that it lacks; raises as :func:`read`."""
+def described(kind: type[Kind], document: Document, lacking: Mapping[str, float | str]) -> Kind:
+    """The tyre of a document, with values of keys that it lacks; raises as :func:`tir.read`."""
     entries = document.entries
     if not entries:
         raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
@@ -94,14 +77,14 @@ def interpret(document: Document, lacking: Mapping[str, float | str] = MappingPr
             status[line.key] = line.comment
     added = add_given(values, lacking, problems)
     status |= dict.fromkeys(added, "given when the file was read")
-    _refuse_other_versions(values, extra, document)
+    _refuse_other_versions(values, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
     stated = {line.key for line in entries if parameter_of(line)} | added
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
-    return Tyre(
+    return kind(
         values=MappingProxyType(complete),
         present=frozenset(values),
         status=MappingProxyType(status),
@@ -123,7 +106,7 @@ def add_given(
     TirError
         If a name is unknown, or a value is no finite number where one is needed.
     """
-    added = Tyre.from_values(given).present - values.keys()
+    added = TyreRecord.from_values(given).present - values.keys()
     for name, value in given.items():
         if not isinstance(value, str) and not math.isfinite(value):
             raise TirError(f"the given {name} is {value}, which no formula can use: give a number", name=name)
@@ -210,13 +193,15 @@ def _needed() -> frozenset[str]:
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
-def _refuse_other_versions(values, extra, document: Document) -> None:
+def _refuse_other_versions(values: Mapping[str, float | str], document: Document) -> None:
     version = values.get("FITTYP")
     form = str(values.get("PROPERTY_FILE_FORMAT", "")).upper()
-    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS):
+    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS | MOTORCYCLE_FORMATS):
         name = f"PROPERTY_FILE_FORMAT '{form}'"
         if version in OLD_FITTYPS:
-            name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
+            name = f"FITTYP {version:g}: {OLD_FITTYPS[int(version)]}"
+        if form in MOTORCYCLE_FORMATS if version is None else version not in CAR_FITTYPS:
+            raise TirError(of_motorcycles(name), path=document.path)
         raise TirError(
             f"is a file of the MF 5.2 generation ({name}); its coefficients have another meaning in MF 6.2, so "
             "renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
@@ -226,7 +211,15 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
         raise TirError(f"has FITTYP {version:g}, but only {fittyps_text()} are supported", path=document.path)
 
 
-def _refuse_truncated(values, document: Document) -> None:
+def of_motorcycles(stated: str) -> str:
+    """Why a file of the old formula for motorcycles cannot be used, and what to do; ``stated`` is how it says so."""
+    return (
+        f"is of MF-MCTyre, the old formula for motorcycles ({stated}), whose camber force is another one: fit the tyre's data "
+        "again; or, if it is a car's tyre of MF 5.2 with a wrong FITTYP, write FITTYP 6 or use mffit convert --fittyp 6"
+    )
+
+
+def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> None:
     coefficients = any(name in values for name in ESSENTIAL_COEFFICIENTS)
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
@@ -248,7 +241,7 @@ def _refuse_truncated(values, document: Document) -> None:
         )
 
 
-def _about_a_cut_number(values, document: Document) -> list[Problem]:
+def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -> list[Problem]:
     """A problem, or an error, if the file ends without a line end and may be truncated within its last number."""
     line = document.lines[-1]
     row = parameter_of(line)
@@ -273,7 +266,7 @@ def _about_a_cut_number(values, document: Document) -> list[Problem]:
     )
 
 
-def _about_missing(values, stated) -> list[Problem]:
+def _about_missing(values: Mapping[str, float | str], stated: Collection[str]) -> list[Problem]:
     """Problems for missing keys of the file's version; those without a usable value have been reported already."""
     version = values.get("FITTYP")
     missing = [
@@ -298,7 +291,7 @@ def _about_missing(values, stated) -> list[Problem]:
     return out
 
 
-def _about_unknown(extra) -> list[Problem]:
+def _about_unknown(extra: Mapping[str, str]) -> list[Problem]:
     names = [
         key
         for key in extra
@@ -313,14 +306,14 @@ def _about_unknown(extra) -> list[Problem]:
 
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:
     measured, provenance = {}, {}
-    for line in document.lines:
-        found = MEASURED.match(line.text)
+    for _, text in document.comments:
+        found = MEASURED.match(text)
         if found:
             name, unit = found.group(1, 4)
-            value, u = (number_of(text) for text in found.group(2, 3))
+            value, u = (number_of(x) for x in found.group(2, 3))
             if value is not None and u is not None:
                 measured[name] = Quantity(value, u, unit)
-        found = PROVENANCE.match(line.text)
+        found = PROVENANCE.match(text)
         if found:
             provenance[found.group(1).strip()] = found.group(2)
     return measured, provenance

@@ -6,15 +6,15 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from tir.constants import LONGEST_WRITTEN_LINE
+from tir.document import commented, folded
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
+from tir.record import TyreRecord
 from tir.targets import Target, use_mode_words, vendor
-from tir.tyre import Tyre
 from tir.units import SI
 
 
-def render(tyre: Tyre, target: Target) -> str:
+def render(tyre: TyreRecord, target: Target) -> str:
     """The complete file as text; the comment of a key marks a default.
 
     Raises
@@ -43,33 +43,33 @@ def render(tyre: Tyre, target: Target) -> str:
     return "\r\n".join(lines) + "\r\n"
 
 
-def _written(row: Parameter, tyre: Tyre, target: Target) -> bool:
+def _written(row: Parameter, tyre: TyreRecord, target: Target) -> bool:
     """Whether a key is written; one that common programs do not know only if it differs from its default."""
     if row.files == "62" and _value(BY_NAME["FITTYP"], tyre, target) < 62:
         return False
     return row.name not in target.without and (row.files != "rare" or tyre[row.name] != row.default)
 
 
-def _value(row: Parameter, tyre: Tyre, target: Target) -> Any:
+def _value(row: Parameter, tyre: TyreRecord, target: Target) -> Any:
     if row.name == "FITTYP":
         given = tyre["FITTYP"]
         return given if given in target.fittyps and row.name in tyre.present else target.fittyps[0]
     return target.values.get(row.name, tyre[row.name])
 
 
-def structured_comments(tyre: Tyre) -> Iterator[str]:
+def structured_comments(tyre: TyreRecord) -> Iterator[str]:
     """Provenance and measured quantities as comment lines that ``tir.read`` understands."""
     for key, text in tyre.provenance.items():
-        yield f"! provenance: {comment_text(key)}: {comment_text(text)}"
+        yield from folded(f"! provenance: {comment_text(key)}: {comment_text(text)}")
     for name, q in tyre.measured.items():
         unit = q.unit.encode("ascii", "backslashreplace").decode()
-        yield f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}"
+        yield from folded(f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}")
 
 
 def entry(key: str, value: str, comment: str = "") -> str:
     """One line with a key."""
     line = f"{key:<24} = {value}"
-    return f"{line:<50} ${comment_text(comment)}"[:LONGEST_WRITTEN_LINE] if comment else line
+    return commented(f"{line:<50}", comment_text(comment)) if comment else line
 
 
 def value_text(row: Parameter, value: Any) -> str:
@@ -93,7 +93,7 @@ def value_text(row: Parameter, value: Any) -> str:
     return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
 
 
-def remark(row: Parameter, tyre: Tyre) -> str:
+def remark(row: Parameter, tyre: TyreRecord) -> str:
     """The comment of a key: the origin of its value, else its description."""
     if row.name in tyre.status:
         return tyre.status[row.name]

@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 from tir.errors import Problem, TirError
+from tir.record import Quantity, TyreRecord
 
-if TYPE_CHECKING:
-    from tir.tyre import Quantity, Tyre
+Kind = TypeVar("Kind", bound=TyreRecord)
 
 SCALED_BY = MappingProxyType(
     {
@@ -33,7 +33,7 @@ LOWEST, HIGHEST = "T_min_degC", "T_max_degC"
 """Measured quantities with the range of temperature in which the terms were found."""
 
 
-def terms_of(tyre: Tyre) -> dict[str, Quantity]:
+def terms_of(tyre: TyreRecord) -> dict[str, Quantity]:
     """The temperature terms of a file, by name; empty for a file without."""
     if REFERENCE not in tyre.measured:
         return {}
@@ -49,7 +49,7 @@ def factors_at(terms: Mapping[str, Quantity], warmer: Any) -> dict[str, Any]:
     return found
 
 
-def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
+def at_temperature(tyre: Kind, T_degC: float) -> Kind:
     """The tyre at a temperature [degC]; see :meth:`tir.Tyre.at_temperature`."""
     terms = terms_of(tyre)
     if not terms:
@@ -90,7 +90,7 @@ def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
     return replace(moved, problems=(*tyre.problems, beyond)) if beyond else moved
 
 
-def _beyond(tyre: Tyre, T_degC: float) -> Problem | None:
+def _beyond(tyre: TyreRecord, T_degC: float) -> Problem | None:
     """A warning for a temperature outside the range of the terms."""
     if LOWEST not in tyre.measured or HIGHEST not in tyre.measured:
         return None

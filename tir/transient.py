@@ -15,19 +15,17 @@ length are stable.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tir.calls import lag_of
-from tir.codegen.kernel import SCALARS
+from tir.calls import OF_CONTACT, lag_of, some_of
+from tir.codegen.cpython import SCALARS
 from tir.codegen.program import Switches
 from tir.equations import contact as equations
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
+from tir.tyre import Tyre
 
 
 class Contact(NamedTuple):
@@ -92,7 +90,7 @@ def step(
     quick = _in_floats(tyre, contact, dt, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
     if quick is not None:
         return quick
-    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
+    state = _state(tyre, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
     before = equations.Deflection(*map(np.asarray, contact))
     load, ahead, along, across = (np.asarray(x, dtype=float) for x in (Fz, Vx, Vsx, Vsy))
     with np.errstate(all="ignore"):
@@ -139,13 +137,24 @@ def forces(
     limits: bool = False,
 ) -> Forces:
     """The forces of a deflected contact; arguments as in :func:`step`."""
-    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
+    state = _state(tyre, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
     slip = _slip(tyre, state, contact, Vx, Vsx, Vsy, damping)
     return _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
 
 
+def _state(
+    tyre: Tyre, Fz: Any, Vx: Any, gamma: Any, phi_t: Any, p: Any, turn_slip: bool | None, limits: bool
+) -> SimpleNamespace:
+    """What the contact needs of the state without slip."""
+    switches = Switches(tyre.turns(turn_slip, phi_t), False, bool(limits))
+    inputs = (
+        Fz, 0.0, gamma, 0.0, 0.0 if phi_t is None else phi_t, Vx, tyre["INFLPRES"] if p is None else p
+    )  # fmt: skip
+    return SimpleNamespace(**dict(zip(OF_CONTACT, some_of(tyre, inputs, switches, OF_CONTACT), strict=True)))
+
+
 def _slip(
-    tyre: Tyre, state: State, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
+    tyre: Tyre, state: SimpleNamespace, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
 ) -> tuple[Any, Any]:
     """kappa' and alpha' [rad] of a deflected contact, damping included."""
     deflection = equations.Deflection(*map(np.asarray, contact))

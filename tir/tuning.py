@@ -1,18 +1,17 @@
-"""What can be turned in an exported tyre: its scaling factors, and the temperature if its file has terms for it."""
+"""What exported code has of a tyre: its switches, and what can be turned: scaling factors, temperature if its file has terms."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from tir.codegen.graph import PARAMETER, Graph
 from tir.codegen.program import NUMBERS, Program, Switches, trace
 from tir.errors import TirError
+from tir.mode import warn_of_doubt
 from tir.parameters import TABLE
+from tir.record import TyreRecord
 from tir.temperature import REFERENCE, factors_at, terms_of
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
 
 TEMPERATURE = "T_degC"
 FACTORS = {row.name: row.description for row in TABLE if row.scaling}
@@ -26,7 +25,15 @@ class Tunable(NamedTuple):
     start: float  #: its value in the file
 
 
-def tunables(tyre: Tyre) -> tuple[Tunable, ...]:
+def exported(tyre: TyreRecord, turn_slip: bool | None, star: bool, limits: bool) -> Switches:
+    """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
+    on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
+    if on:
+        warn_of_doubt(tyre.values, tyre.present)
+    return Switches(on, bool(star), bool(limits))
+
+
+def tunables(tyre: TyreRecord) -> tuple[Tunable, ...]:
     """Everything that can be turned in the exported tyre, in the order of the file, the temperature last."""
     found = [Tunable(name, f"{text} [-]", float(tyre[name])) for name, text in FACTORS.items()]
     if terms_of(tyre):
@@ -35,7 +42,7 @@ def tunables(tyre: Tyre) -> tuple[Tunable, ...]:
     return tuple(found)
 
 
-def chosen(tyre: Tyre, names: Iterable[str]) -> tuple[Tunable, ...]:
+def chosen(tyre: TyreRecord, names: Iterable[str]) -> tuple[Tunable, ...]:
     """The named ones.
 
     Raises
@@ -51,7 +58,7 @@ def chosen(tyre: Tyre, names: Iterable[str]) -> tuple[Tunable, ...]:
 
 
 def trace_tuned(
-    tyre: Tyre, switches: Switches, outputs: tuple[str, ...], names: Iterable[str] | None = None
+    tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...], names: Iterable[str] | None = None
 ) -> Program:
     """The program of a tyre, in which the tunables are symbols and every other value is a number.
 
@@ -68,7 +75,7 @@ def trace_tuned(
     return trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS if key not in free}, warmed)
 
 
-def warm(tyre: Tyre, p: dict[str, Any], graph: Graph) -> None:
+def warm(tyre: TyreRecord, p: dict[str, Any], graph: Graph) -> None:
     """Multiply scaling factors by the temperature terms of the tyre's file, with the temperature as a symbol."""
     terms = terms_of(tyre)
     if not terms:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from tir.merging import merged
 from tir.parameters import TABLE
+from tir.record import TyreRecord
 from tir.rendering import render
 from tir.targets import DEFAULT, target_of
-from tir.tyre import Tyre
 
 
-def content(tyre: Tyre, target: str | None = None) -> tuple[str, str]:
+def content(tyre: TyreRecord, target: str | None = None) -> tuple[str, str]:
     """Text and encoding of the tyre's file; see :meth:`tir.Tyre.text`."""
     if target is None and tyre.document is not None:
         document = merged(tyre, tyre.document)
@@ -26,7 +26,7 @@ def content(tyre: Tyre, target: str | None = None) -> tuple[str, str]:
     return render(tyre, chosen), "ascii"
 
 
-def write(tyre: Tyre, path: str | Path, target: str | None = None) -> None:
+def write(tyre: TyreRecord, path: str | Path, target: str | None = None) -> None:
     """Write :func:`content`; the file at ``path`` is replaced only once the new one is complete."""
     path, (text, encoding) = Path(path), content(tyre, target)
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)

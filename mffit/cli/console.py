@@ -18,9 +18,17 @@ NOT_TRUSTED = 3
 tyre_toml_argument = click.argument("tyre_toml", type=click.Path(path_type=Path))
 
 
-def out_option(help_text: str, **settings: Any) -> Callable[..., Any]:
-    """The option ``--out`` with a path."""
-    return click.option("--out", type=click.Path(path_type=Path), help=help_text, **settings)
+def out_option(help_text: str, *, is_file: bool = False, **settings: Any) -> Callable[..., Any]:
+    """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work."""
+
+    def usable(context: click.Context, option: click.Parameter, out: Path | None) -> Path | None:
+        from mffit.output import refuse_unusable
+
+        if out is not None and not context.resilient_parsing:
+            refuse_unusable(out, is_file=is_file)
+        return out
+
+    return click.option("--out", type=click.Path(path_type=Path), help=help_text, callback=usable, **settings)
 
 
 def warn(warnings: Iterable[str]) -> None:

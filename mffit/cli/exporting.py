@@ -176,20 +176,32 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     """
     import tir
     from mffit.output import output_folder
+    from tir.consumers import target_problems
+    from tir.document import parse_document
+    from tir.errors import counted, some
+    from tir.parameters import TABLE
+    from tir.reading import interpret
+    from tir.targets import TARGETS
 
     names = list(filter(None, (name.strip() for name in targets.split(","))))
     if not names:
         raise InputError("names no program: write, for example, --for mfeval,simscape", key="--for")
     tyre = tir.read(file)
-    known = {problem.sentence for problem in tir.check(tyre)}
-    found = [problem.sentence for problem in tir.check(tyre, names) if problem.sentence not in known]
+    made = {name: interpret(parse_document(tyre.text(name))) for name in names}
+    found = [problem.sentence for name in made for problem in target_problems(made[name], TARGETS[name])]
+    lacking = {key for other in made.values() for key in other.present} - tyre.present
+    shown = [row.name for row in TABLE if row.name in lacking]
     with output_folder(_folder(out, ".tir", named=False), by="export", protected=[file]) as folder:
         for name in names:
             tyre.write(folder / f"{file.stem}-{name}.tir", target=name)
     written = [str(out / f"{file.stem}-{name}.tir") for name in names]
     voice.warn(found)
     voice.say(f"written: {', '.join(written)}")
-    voice.give(lambda: {"written": written})
+    if shown:
+        voice.say(
+            f"{counted(len(shown), 'key')} that {file} lacks got the default, marked as not measured: {some(shown)}"
+        )
+    voice.give(lambda: {"written": written, "defaults": shown})
 
 
 @export.command()

@@ -44,7 +44,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 @click.argument(
     "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir... | tyre.toml"
 )
-@out_option("Page to write [default: FILE.html in the current folder].")
+@out_option("Page to write [default: FILE.html in the current folder].", is_file=True)
 @click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
 @voiced
 def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
@@ -68,10 +68,15 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 
 @click.command()
 @click.argument("old", type=click.Path(path_type=Path), metavar="OLD.tir")
-@out_option("File to write.", required=True)
+@out_option("File to write.", is_file=True, required=True)
 @click.option("--unloaded-radius", type=float, metavar="M", help="UNLOADED_RADIUS [m] if the file lacks it.")
+@click.option(
+    "--fittyp",
+    type=click.Choice(["5", "6", "21"]),
+    help="Version of the file, if its own FITTYP is wrong or missing.",
+)
 @voiced
-def convert(old: Path, out: Path, unloaded_radius: float | None, voice: Voice) -> None:
+def convert(old: Path, out: Path, unloaded_radius: float | None, fittyp: str | None, voice: Voice) -> None:
     """Convert a property file of MF 5.2 or PAC2002 to MF 6.2.
 
     Fits the terms of camber to the forces of the old file, and states the misfit.
@@ -82,7 +87,7 @@ def convert(old: Path, out: Path, unloaded_radius: float | None, voice: Voice) -
     from mffit.results import as_json
 
     given = {} if unloaded_radius is None else {"UNLOADED_RADIUS": unloaded_radius}
-    found = conversion.convert(old, given)
+    found = conversion.convert(old, given, fittyp=None if fittyp is None else int(fittyp))
     conversion.write(found, out)
     voice.warn(problem.sentence for problem in found.old.problems)
     voice.say(text.conversion_summary(found))

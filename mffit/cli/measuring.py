@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import NOT_TRUSTED, Voice, out_option, tyre_toml_argument, voiced
 
 
 @click.command()
@@ -16,7 +16,8 @@ from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
 def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     """Measure eps_gamma directly.
 
-    Checks the alignment and applies the direct method, without a fit; prints eps_gamma with its uncertainty budget.
+    Checks the alignment and applies the direct method, without a fit; prints eps_gamma with its uncertainty budget. Exit code 3
+    if the result is not to be trusted.
     """
     from mffit import pipeline
     from mffit.report import text
@@ -30,6 +31,9 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     voice.warn(measured.warnings)
     voice.say(f"written to {out}: spin.json")
     voice.give(lambda: as_json.spin(measured))
+    if not measured.trusted:
+        click.echo("the measurement is not to be trusted: see above", err=True)
+        raise SystemExit(NOT_TRUSTED)
 
 
 @click.command()

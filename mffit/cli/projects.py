@@ -32,7 +32,7 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     voice.say(text.sniff_summary(found))
     voice.give(lambda: as_json.sniffed(found))
     if out is None:
-        project = recordings.project_text(found, Path(), unloaded_radius=None, nominal_load=None)
+        project = recordings.project_text(found, Path())
         voice.say("\n" + project, end="")
         return
     for path in pipeline.write_sniffed(found, out):

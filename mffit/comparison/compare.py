@@ -14,6 +14,7 @@ from mffit.fit import Posterior
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, make_points
+from mffit.points.noise import over_noise
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
@@ -196,13 +197,15 @@ def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
             if not np.any(rows):
                 continue
             known = u[rows][np.isfinite(u[rows])]
+            over = over_noise(read, points.channel(channel), u, rows)
             gap = SweepGap(
                 sweep=points.sweep_names[k],
                 channel=channel,
                 rms=rms(apart[rows]),
                 bias=float(apart[rows].mean()),
                 noise=float(np.median(known)) if len(known) else None,
+                over_noise=over.ratio if over.n else None,
                 n=int(rows.sum()),
             )
-            found.append((gap.rms / (gap.noise or size), gap))
+            found.append((gap.over_noise or gap.rms / size, gap))
     return tuple(gap for _, gap in sorted(found, key=lambda item: -item[0]))

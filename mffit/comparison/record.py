@@ -108,6 +108,7 @@ class SweepGap:
     rms: float
     bias: float  #: mean
     noise: float | None  #: typical stated uncertainty of a reading
+    over_noise: float | None  #: the gap over the stated uncertainty of the readings
     n: int
 
 

@@ -30,7 +30,9 @@ MARK = f"! provenance: {ORIGIN}:".encode()
 STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "PCFY1", "PCFY2")
 
 
-def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({})) -> Conversion:
+def convert(
+    path: str | Path, given: Mapping[str, float] = MappingProxyType({}), *, fittyp: int | None = None
+) -> Conversion:
     """The MF 6.2 file that has the forces of an MF 5.2 or PAC2002 file.
 
     Most coefficients mean the same. Those of camber are fitted to the old side force and aligning moment over the ranges of the
@@ -42,6 +44,7 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     ----------
     path : the old file
     given : values [SI] of keys that it lacks
+    fittyp : 5, 6 or 21: the version of the file, if its own FITTYP is wrong or missing
 
     Returns
     -------
@@ -53,7 +56,7 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     TirError
         If the file is of another version, or cannot be read.
     """
-    old = read_old(path, given)
+    old = read_old(path, given, fittyp)
     p = mf52.in_terms_of_62(old.values)
     reach = reach_of(old.values, old.present)
     at = conditions(reach)

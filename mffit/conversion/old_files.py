@@ -13,10 +13,13 @@ from tir import Problem, TirError
 from tir.document import Document, FileLine, read_document
 from tir.parameters import BY_NAME
 from tir.properties import (
+    CAR_FITTYPS,
+    MOTORCYCLE_FORMATS,
     OLD_FITTYPS,
     OLD_FORMATS,
     add_given,
     number_of,
+    of_motorcycles,
     parameter_of,
     units_of,
     unquoted,
@@ -34,8 +37,6 @@ OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
     }
 )
 """Keys that only old files have and that the forces need: value of a missing key, and unit."""
-MOTORCYCLE_FITTYPS = (51, 52)
-MOTORCYCLE_FORMATS = {"PAC_MC", "MF-MCTYRE"}
 VERSION = ("FITTYP", "PROPERTY_FILE_FORMAT")
 NEEDED = ("FNOMIN", "UNLOADED_RADIUS")
 OF_62 = {"PKY4": 2.0, "QSY7": 1.0, "QSY8": 0.0}
@@ -60,17 +61,19 @@ class OldFile:
 
 def is_old(path: str | Path) -> bool:
     """Whether a file states a version that :func:`read_old` reads."""
-    stated = _version(read_document(path))
-    return bool(stated) and stated not in (str(x) for x in (*MOTORCYCLE_FITTYPS, *MOTORCYCLE_FORMATS))
+    return _version(read_document(path)) in (*map(str, CAR_FITTYPS), *OLD_FORMATS)
 
 
-def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})) -> OldFile:
+def read_old(
+    path: str | Path, given: Mapping[str, float] = MappingProxyType({}), fittyp: int | None = None
+) -> OldFile:
     """An MF 5.2 or PAC2002 file.
 
     Parameters
     ----------
     path : the file
     given : values [SI] of keys that the file lacks
+    fittyp : 5, 6 or 21: the version, whatever the file says
 
     Raises
     ------
@@ -78,7 +81,7 @@ def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})
         If the file is of another version, or lacks what every force needs.
     """
     document = read_document(path)
-    kind = _kind(document)
+    kind = _kind(document, fittyp)
     problems: list[Problem] = []
     words = units_of(document, problems)
     values: dict[str, Any] = {}
@@ -147,19 +150,20 @@ def _version(document: Document) -> str:
     return form if form in OLD_FORMATS | MOTORCYCLE_FORMATS else ""
 
 
-def _kind(document: Document) -> str:
-    version = _version(document)
+def _kind(document: Document, fittyp: int | None) -> str:
+    if fittyp is not None and fittyp not in CAR_FITTYPS:
+        raise TirError(f"FITTYP {fittyp} cannot be converted: give {', '.join(map(str, CAR_FITTYPS))}")
+    version = _version(document) if fittyp is None else str(fittyp)
     if not version:
         raise TirError(
             "states no FITTYP of MF 5.2 (5, 6, 21) and no PROPERTY_FILE_FORMAT of PAC2002: a file of MF 6.1 or 6.2 needs no "
-            "conversion, other formulas cannot be converted",
+            "conversion, other formulas cannot be converted; if it is of MF 5.2 all the same, use --fittyp 6",
             path=document.path,
         )
+    if version in OLD_FORMATS:
+        return version
     number = number_of(version)
-    if version in MOTORCYCLE_FORMATS or number in MOTORCYCLE_FITTYPS:
-        raise TirError(
-            "is of MF-MCTyre, the old formula for motorcycles, whose camber force is another one; it cannot be converted: fit "
-            "the tyre's data again",
-            path=document.path,
-        )
-    return OLD_FITTYPS[int(number)] if number is not None else version
+    if number not in CAR_FITTYPS:
+        stated = f"PROPERTY_FILE_FORMAT '{version}'" if number is None else f"FITTYP {version}"
+        raise TirError(of_motorcycles(stated), path=document.path)
+    return OLD_FITTYPS[int(number)]

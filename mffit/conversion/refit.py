@@ -79,18 +79,17 @@ def _held_to_one(
     """The problem with a residual wherever a curvature factor exceeds 1."""
     weight, margin = float(constants.WEIGHT_OF_CURVATURE_LIMIT), float(constants.CURVATURE_MARGIN)
 
-    def broken(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
+    def limits(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
         p = SimpleNamespace(**{**values, **numbers})
         over, slope = excess(p, fit.limited, fit.reach, by)
-        active = over + margin > 0.0
-        return np.where(active, weight * (over + margin), 0.0), slope * (weight * active)[:, None]
+        return weight * (over + margin), weight * slope
 
     def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return problem.residual(x)[0], broken(dict(zip(fit.names, x.tolist(), strict=True)))[0]
+        return problem.residual(x)[0], limits(dict(zip(fit.names, x.tolist(), strict=True)))[0]
 
     def linear(x: np.ndarray) -> Linear:
         numbers = traced(dict(zip(fit.names, x.tolist(), strict=True)))
-        limits, slope = broken(numbers, list(numbers.values()))
-        return replace(problem.linear(x), limits=limits, limits_slope=slope)
+        over, slope = limits(numbers, list(numbers.values()))
+        return replace(problem.linear(x), limits=over, limits_slope=slope)
 
     return LeastSquaresProblem(residual, linear)

@@ -23,7 +23,7 @@ from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.validation import gap
+from mffit.diagnosis.validation import Gap, gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
@@ -48,8 +48,9 @@ def answer(
     notes: Sequence[Note],
     candidates: Sequence[Effect],
     alternatives: Mapping[str, float],
+    gap_before: Gap,
 ) -> Diagnosis:
-    """The record of an explanation.
+    """The record of an explanation; ``gap_before`` is that of all readings as they are.
 
     ``found`` is what left-out sweeps confirm, with the ``named`` effects and the confidence of the ``alternatives`` by id;
     ``given`` is the problem before it, ``rigs`` are the configurations of the campaigns, that of the tyre first.
@@ -70,7 +71,7 @@ def answer(
         noise=scatter,
         before=before,
         after=after,
-        gap_before=gap(given.measured - before, scatter),
+        gap_before=gap_before,
         gap_after=gap(given.measured - after, scatter),
         gap_named=gap(given.measured - explained, scatter),
         validation=repair.validation,

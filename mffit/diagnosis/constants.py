@@ -40,9 +40,6 @@ VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense o
 
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
-FEWEST_POINTS_FOR_NEIGHBOURS = Count(
-    6, "-", "Fewest points of a sweep whose third differences show its noise."
-)
 NOISE_SHARE_OF_SPAN = Real(
     0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
 )
@@ -51,9 +48,6 @@ NO_NOISE_SHARE = Real(
     "-",
     "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
 )
-ASSUMED_NOISE_SHARE = Real(
-    1e-3, "-", "Assumed ratio of noise to rms reading where readings have no noise. The best rigs reach it."
-)
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
@@ -61,9 +55,6 @@ NOISE_BEYOND_STATED = Real(
     4.0,
     "-",
     "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
-)
-ODD_SWEEP_RATIO = Real(
-    5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
 )
 SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
 VARIANCE_OF_LOG_ROBUST = Real(

@@ -16,7 +16,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import EXACT, Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import HELD_AT, possible, without
-from mffit.diagnosis.notes import NoRepair, Note, OneSweep
+from mffit.diagnosis.notes import NoRepair, Note, OneSweep, TakenOff
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import repair
@@ -29,7 +29,7 @@ from mffit.diagnosis.strangers import (
     refuse_strangers,
     without_noise,
 )
-from mffit.diagnosis.validation import Validation, validate
+from mffit.diagnosis.validation import Validation, raw_gap, validate
 from mffit.effects import CATALOG, Effect
 from mffit.fit.plan import channels_of
 from mffit.points import Points
@@ -51,6 +51,9 @@ def diagnose(
     coefficients: Inexactness | None = None,
     seen: bool = False,
     repair_all: bool = False,
+    as_read: Points | None = None,
+    taken_off: Sequence[str] = (),
+    culprits: bool = True,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
@@ -66,6 +69,9 @@ def diagnose(
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
     repair_all : correct model and readings for uncertain effects too, see :mod:`mffit.diagnosis.repair`
+    as_read : the points (n,) with the errors that were taken off them; default the points
+    taken_off : sentences about these errors
+    culprits : whether to look for a sweep that was written down wrongly; a model of another tyre finds none
     progress : called with a sentence before each step
 
     Returns
@@ -82,8 +88,12 @@ def diagnose(
     start = _simulation(points, tyre, config, rigs, rig)
     channels = channels_of(points)
     refuse_strangers(points, tyre, start, channels)
+    given_points, given_start, every = points, start, points if as_read is None else as_read
     start = on_surfaces(points, start, channels, rigs, seen=seen)
-    points, wrong = _without_misread(points, start, rigs, channels)
+    kept, wrong = np.ones(len(points), dtype=bool), None
+    if culprits:
+        kept, wrong = _without_misread(points, start, rigs, channels)
+    points = points.select(kept)
     points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
@@ -96,6 +106,22 @@ def diagnose(
     found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
     estimated = found.coefficients
     found, stranger = named_of_this_tyre(found)
+    if wrong is not None and stranger is not None:
+        return diagnose(
+            given_points,
+            tyre,
+            config,
+            rig=rig,
+            others=others,
+            effects=effects,
+            coefficients=coefficients,
+            seen=seen,
+            repair_all=repair_all,
+            as_read=as_read,
+            taken_off=taken_off,
+            culprits=False,
+            progress=progress,
+        )
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.independent)
     seen = seen and len(points.campaigns) < 2  # joined campaigns were not fitted together
@@ -108,6 +134,7 @@ def diagnose(
     together = looked_at_together(points, {**estimated, **done.explanation.coefficients}, start)
     remarks = (
         together,
+        *(TakenOff(sentence) for sentence in taken_off),
         wrong,
         exact,
         *noise_beyond_stated(found),
@@ -118,7 +145,8 @@ def diagnose(
         done.refused,
     )
     notes = [note for note in remarks if note is not None]
-    return answer(found, named, done, given, tyre, rigs, notes, candidates, rivals)
+    before = raw_gap(every, given_start, kept, found.scatter)
+    return answer(found, named, done, given, tyre, rigs, notes, candidates, rivals, before)
 
 
 def _simulation(
@@ -140,14 +168,13 @@ def _simulation(
 
 def _without_misread(
     points: Points, start: Simulation, rigs: Mapping[str, Config], channels: Sequence[str]
-) -> tuple[Points, Misread | None]:
-    """The points without the sweep that was written down wrongly, and that sweep."""
+) -> tuple[np.ndarray, Misread | None]:
+    """Mask (n,) of the points without the sweep that was written down wrongly, and that sweep."""
     for k, config in enumerate(rigs.values()):
         wrong = misread(points.select(points.campaign == k), start, axis_signs(config), channels)
         if wrong is not None:
-            kept = np.array([name != wrong.sweep for name in points.sweep_names])
-            return points.select(kept[points.sweep]), wrong
-    return points, None
+            return np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep], wrong
+    return np.ones(len(points), dtype=bool), None
 
 
 def _candidates(

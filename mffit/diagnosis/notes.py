@@ -34,6 +34,13 @@ class AnotherTyre:
 
 
 @dataclass(frozen=True, slots=True)
+class TakenOff:
+    """An error of the rig that was taken off the readings before effects were looked for."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
 class WithoutNoise:
     """The readings of some channels hardly scatter, as those of a simulation."""
 
@@ -120,6 +127,7 @@ Note = (
     | CampaignsTogether
     | Misread
     | AnotherTyre
+    | TakenOff
     | WithoutNoise
     | OffsetsOrMemory
     | NoiseBeyondStated

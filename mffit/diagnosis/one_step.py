@@ -113,8 +113,14 @@ def _steps(left: Remainder, effects: Sequence[Effect]) -> Iterator[OneStep]:
         for columns in groups:
             some = columns if effect.switches else columns[:, kept]
             step = _step(left, effect, [frees[k] for k in kept], left.whitened(some))
-            if step is not None:
+            if step is not None and all(_is_possible(step, free) for free in frees):
                 yield step
+
+
+def _is_possible(step: OneStep, free: Free) -> bool:
+    """Whether the readings ask for a number that a rig or a tyre can have."""
+    value, _ = step.numbers.get(free.name, (free.lower, 0.0))
+    return free.lower <= value <= free.upper
 
 
 def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.ndarray) -> OneStep | None:

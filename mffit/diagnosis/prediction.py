@@ -14,7 +14,7 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
-from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
+from mffit.left_out import Predicted, left_out_errors, needed_fall, predicted
 
 
 class LeftOutPrediction:
@@ -89,8 +89,9 @@ def _best_addition(
     for effect, groups in prediction.problem.columns(current.state, candidates).items():
         for columns in groups:
             after = prediction.of(current, columns)
-            if improves(before, after, least=most, needed=needed, loss=enough):
-                most, best = before.total - after.total, effect
+            gain = before.total - after.total
+            if gain > most and before.falls(after) > needed and not before.raised(after, loss=enough):
+                most, best = gain, effect
     return best
 
 

@@ -14,6 +14,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
 from mffit.left_out import covariance_without, left_out_errors
 from mffit.points import Points
+from mffit.points.noise import over_noise, stating
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOutSweeps
@@ -163,10 +164,11 @@ def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
     for name, read in problem.readings().items():
         stated, measured = points.u(name), points.channel(name)
         used = np.isfinite(problem.sigma[name]) & np.isfinite(measured)
-        known = used & np.isfinite(stated) & (stated > 0.0)
-        difference = np.where(used, read - np.nan_to_num(measured), np.nan)
-        noise[name] = rms(difference[known] / stated[known])
-        u = np.where(known, stated, rms(difference)) * max(1.0, np.nan_to_num(noise[name], nan=1.0))
+        noise[name] = over_noise(read, measured, stated, used).ratio
+        silent = used & ~stating(stated)
+        u = np.where(
+            silent, rms((read - measured)[silent]), stated * max(1.0, np.nan_to_num(noise[name], nan=1.0))
+        )
         sigma[name] = np.where(used, u, np.inf)
     return replace(problem, sigma=sigma), noise
 

@@ -16,7 +16,7 @@ from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
-from mffit.diagnosis.validation import Gap, Validation
+from mffit.diagnosis.validation import Gap, Validation, gap
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.made import Made
@@ -67,7 +67,7 @@ class Diagnosis(Brief):
     noise: Noise
     before: np.ndarray  #: readings of the given model (c n,), in the channels of ``noise``
     after: np.ndarray  #: readings of the corrected model (c n,), with the effects that are repaired
-    gap_before: Gap
+    gap_before: Gap  #: of the given model at all points, with nothing taken off the readings
     gap_after: Gap  #: of the corrected model
     gap_named: Gap  #: with all effects that are named, repaired or not
     validation: Validation
@@ -108,6 +108,12 @@ class Diagnosis(Brief):
     def reasons(self) -> tuple[str, ...]:
         """Why it is not to be trusted, as sentences; empty for a sound one."""
         return self.trust.reasons
+
+    @property
+    def gap_examined(self) -> Gap:
+        """Of the given model at the points that were examined, without what was taken off them."""
+        measured = np.concatenate([self.points.channel(name) for name in self.noise.channels])
+        return gap(measured - self.before, self.noise)
 
     def signs_of(self, effect: Effect) -> Mapping[str, float]:
         """Signs of the axes of the rig that an effect is about."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
+from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
@@ -92,7 +93,7 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
     for name, readings in noise.by_channel(size).items():
         change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
         if change < constants.NO_NOISE_SHARE * rms(readings):
-            assumed[name] = constants.ASSUMED_NOISE_SHARE * rms(readings)
+            assumed[name] = ASSUMED_NOISE_SHARE * rms(readings)
     return noise.assumed(assumed) if assumed else noise
 
 

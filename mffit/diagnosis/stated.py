@@ -11,9 +11,10 @@ from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.points.noise import neighbour_noise
 from mffit.quantities import CHANNELS, SIDEWAYS, u_column
 from mffit.rig import Simulation
-from mffit.scatter import rms, robust
+from mffit.scatter import rms
 
 TINY = 1e-9
 
@@ -97,17 +98,13 @@ def _of_channel(
     if np.all(known[measured]):
         floor = constants.LEAST_STATED_NOISE_SHARE * np.median(stated[known][stated[known] > 0])
         return np.where(measured, np.maximum(stated, max(floor, least)), np.inf), Origin.STATED
-    u = np.where(known, stated, neighbour_noise(points, values - simulated))
+    u = np.where(known, stated, _neighbour_noise(points, values - simulated))
     return np.where(measured, np.maximum(u, least), np.inf), Origin.SCATTER
 
 
-def neighbour_noise(points: Points, values: np.ndarray) -> float:
-    """Robust noise of a channel from third differences along each sweep, in which a smooth curve nearly vanishes."""
-    sweeps = [values[(points.sweep == k) & np.isfinite(values)] for k in np.unique(points.sweep)]
-    # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
-    differences = [
-        np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS_FOR_NEIGHBOURS
-    ]
-    if differences:
-        return max(robust(np.concatenate(differences)), TINY)
-    return max(constants.NOISE_SHARE_OF_SPAN * float(np.ptp(values[np.isfinite(values)])), TINY)
+def _neighbour_noise(points: Points, values: np.ndarray) -> float:
+    """Noise of a channel as its neighbours show it; a share of the span where sweeps are too short to show it."""
+    noise = neighbour_noise(points, values)
+    if np.isnan(noise):
+        noise = constants.NOISE_SHARE_OF_SPAN * float(np.ptp(values[np.isfinite(values)]))
+    return max(noise, TINY)

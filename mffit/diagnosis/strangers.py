@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 
 from mffit.config import Config
+from mffit.constants import ODD_SWEEP_RATIO
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.noise import Noise, Origin
@@ -94,7 +95,7 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
             off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
             off = {name: size for name, size in off.items() if np.isfinite(size)}
             worst = max(off, key=off.__getitem__)
-            odd = off[worst] > constants.ODD_SWEEP_RATIO * float(np.median(list(off.values())))
+            odd = off[worst] > ODD_SWEEP_RATIO * float(np.median(list(off.values())))
             typical, stated = noise.typical(channel), noise.typically_stated(channel)
             out.append(NoiseBeyondStated(channel, typical, stated, worst if odd else ""))
     return out
@@ -122,7 +123,8 @@ def offsets_or_memory(
 def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:
     """The explanation, without effects if even the best ones leave a misfit far beyond the noise."""
     misfit, channel = _misfit(found)
-    if found.chosen.effects and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
+    judged = found.chosen.effects or found.scatter.origin is Origin.STATED
+    if judged and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
         return found.withdrawn(), HardlyThisTyre(misfit, channel)
     return found, None
 

@@ -12,6 +12,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS
 from mffit.scatter import rms
@@ -67,6 +68,23 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
     z = residual[noise.used] / noise.u[noise.used]
     rmse = {name: rms(rows) for name, rows in noise.by_channel(residual).items()}
     return Gap(rmse, chi2_per_dof=float(z @ z) / max(len(z), 1))
+
+
+def raw_gap(points: Points, given: Simulation, judged: np.ndarray, noise: Noise) -> Gap:
+    """Gap of a simulation at all points (n,) as they were read.
+
+    ``noise`` is that of the ``judged`` ones (mask (n,)); the others have the typical one of their channel.
+    """
+    residual, z, n = {}, [], len(points)
+    for name, read in given.readings(points, noise.channels).items():
+        residual[name] = points.channel(name) - read
+        u = np.full(n, noise.typical(name))
+        u[judged] = noise.of_channel(noise.u, name)
+        z.append((residual[name] / u)[np.isfinite(residual[name]) & np.isfinite(u)])
+    every = np.concatenate(z)
+    return Gap(
+        {name: rms(rows) for name, rows in residual.items()}, float(every @ every) / max(len(every), 1)
+    )
 
 
 def validate(

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import assert_never
 
+from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.chains import MemorySpan
@@ -24,6 +25,7 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OffsetsOrMemory,
     OneSweep,
+    TakenOff,
     WithoutNoise,
 )
 from mffit.diagnosis.one_step import BestEffect
@@ -57,19 +59,30 @@ THROUGH = {MemorySpan.SWEEP: "a sweep", MemorySpan.FILE: "a file", MemorySpan.PR
 
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The answer in one sentence, after one about a model of another tyre or a sweep that was written down wrongly."""
+    """The answer in one sentence, after those about a model of another tyre, and about what is not in the readings any more."""
     other = next((remark for remark in diagnosis.notes if isinstance(remark, AnotherTyre)), None)
     warned = "" if other is None else f"Warning: {_another_tyre(other)} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
-    return warned + left_out + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
+    taken_off = "".join(f"{said[:1].upper()}{said[1:]}. " for said in _taken_off(diagnosis))
+    return (
+        warned
+        + taken_off
+        + left_out
+        + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
+    )
+
+
+def _taken_off(diagnosis: Diagnosis) -> list[str]:
+    """Sentences, without full stop, about errors that were taken off the readings before effects were looked for."""
+    return [remark.sentence for remark in diagnosis.notes if isinstance(remark, TakenOff)]
 
 
 def _nothing_named(diagnosis: Diagnosis) -> str:
-    before, bump = diagnosis.gap_before, diagnosis.bump
+    shown, bump = diagnosis.gap_examined, diagnosis.bump
     misfit = "the rms misfit is " + listed(
         [
-            f"{_short(before.rms(name))} {unit} in {CHANNELS[name].word} (noise {_short(noise)} {unit})"
+            f"{_short(shown.rms(name))} {unit} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {_short(noise)} {unit})"
             for name, unit, noise in _measured(diagnosis.noise)
         ]
     )
@@ -91,6 +104,13 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
         f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {_short(bump.amplitude)} "
         f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
     )
+
+
+def _as_read(diagnosis: Diagnosis, channel: str) -> str:
+    """The misfit of all readings as they were read, for a sentence; empty if nothing was taken off them or left out."""
+    if not (_taken_off(diagnosis) or any(isinstance(remark, Misread) for remark in diagnosis.notes)):
+        return ""
+    return f"{_short(diagnosis.gap_before.rms(channel))} {CHANNELS[channel].unit} as read, "
 
 
 def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
@@ -119,8 +139,8 @@ def _named(diagnosis: Diagnosis) -> str:
         verdict = f"The best explanation, though uncertain, is {names}"
     misfit = listed(
         [
-            f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
-            f"{CHANNELS[name].word} (noise {_short(noise)} {unit})"
+            f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_examined.rms(name))} {unit} in "
+            f"{CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {_short(noise)} {unit})"
             for name, unit, noise in _measured(diagnosis.noise)
         ]
     )
@@ -183,9 +203,11 @@ def note(remark: Note) -> str:
             return remark.sentence
         case AnotherTyre():
             return _another_tyre(remark)
+        case TakenOff(sentence):
+            return f"{sentence[:1].upper()}{sentence[1:]}. The gap before has it; all else is without it."
         case WithoutNoise(assumed):
             sizes = " and ".join(f"{_short(u)} {CHANNELS[name].unit} in {name}" for name, u in assumed)
-            share = f"{100.0 * constants.ASSUMED_NOISE_SHARE:g} %"
+            share = f"{100.0 * ASSUMED_NOISE_SHARE:g} %"
             return (
                 f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as "
                 f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 DEFINITIONS: dict[int, tuple[str, ...]] = {2: (), 3: ("FMI3_OVERRIDE_FUNCTION_PREFIX",)}
 """Preprocessor definitions for a shared library, by version of FMI."""
+LATE = "in co-simulation the outputs after a step are one communication step behind the inputs"
 READABLE = 0o644
 EARLIEST = (1980, 1, 1, 0, 0, 0)
 """Date of every file in the archive: the same tyre gives the same bytes."""
@@ -99,7 +100,7 @@ def _texts(
         "title": f"{path.stem}, {words(turn_slip)}",
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
-        "description": f"Tyre {path.name}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W",
+        "description": f"Tyre {path.name}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W; {LATE}",
         "transient": transient,
         "inputs": given,
         "outputs": found,

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 import tir
 from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
-from tir.codegen.program import INPUTS
+from tir.codegen.program import INPUTS, called
 from tir.equations.forces import Forces
 from tir.tuning import tunables
 
 ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
 """Inputs in the order that is usual in other programs."""
-NAMES = {"pressure": "p", "out.Fz": "Fz_out"}
-"""Variables with another name than in C: pressure is ``p`` as in a call of the tyre, and the load is input and output."""
+NAMES = {"Fz": "Fz_out"}
+"""Outputs with another name than in C: the load is input and output."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def inputs(tyre: tir.Tyre, *, transient: bool = False) -> tuple[Variable, ...]:
         start = repr(float(starts.get(field, 0.0)))
         out.append(
             Variable(
-                name=NAMES.get(field, field),
+                name=called(field),
                 field=field,
                 reference=reference,
                 description=description,
@@ -100,7 +100,7 @@ def outputs(*, transient: bool = False) -> tuple[Variable, ...]:
         description, unit = _described(texts[field])
         out.append(
             Variable(
-                name=NAMES.get(f"out.{field}", field),
+                name=NAMES.get(field, field),
                 field=f"{record}.{field}",
                 reference=reference,
                 description=description,

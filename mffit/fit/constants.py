@@ -416,6 +416,11 @@ CLEAR_SHIFT = Real(
     "-",
     "Shift over its uncertainty that is proposed: the relaxation length is then known to a quarter or better.",
 )
+LEAST_MOVE_OF_A_STEP = Real(
+    0.02,
+    "-",
+    "Move between two samples, over the largest one of a run of steps, that is part of a step rather than noise of the setting.",
+)
 MEAN_OF_STEPS = Real(
     0.15,
     "-",

@@ -66,9 +66,9 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
 def _rows(p: Any, envelope: Envelope) -> list[Any]:
     """Each limit at the conditions of the envelope (n,), dimensionless: above 0 where it is broken.
 
-    Limits: mu_y > 0, cornering stiffness < 0, E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides,
-    trail at zero slip not negative; where longitudinal slip was run, those of :func:`_longitudinal` and
-    :func:`_under_slip` too.
+    Limits: mu_y > 0, cornering stiffness < 0, load of its peak > 0 (at 0 the stiffness jumps to the other sign, which stops a
+    search), E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides, trail at zero slip not negative; where
+    longitudinal slip was run, those of :func:`_longitudinal` and :func:`_under_slip` too.
     """
     Fz, gamma, pressure = grid(envelope)
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
@@ -76,6 +76,7 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     rows = [
         constants.LEAST_FRICTION - stiffness.lateral_friction(p, q, gamma),
         (stiffness.cornering_stiffness(p, q, gamma) / Fz + constants.LEAST_CORNERING_STIFFNESS) / 5.0,
+        -stiffness.peak_load(p, q, gamma),
     ]
     for side in (-1.0, 1.0):
         rows.append(lateral.curvature(p, q, gamma, side) - 1.0)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mffit.config.by_hand import KEYS_OF_TYRE
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import CONVERTED, Prior
@@ -69,7 +70,9 @@ def known_before_fit(
         hand=hand,
     )
     known = known.having({name: known.values[name] for name in DECIDED}, "given")
-    known = known.having(given_values(config.tyre), "given")
+    given = given_values(config.tyre)
+    assumed = {name: x for name, x in given.items() if not _is_stated(config.tyre, name)}
+    known = known.having(given, "given").having(assumed, "default")
     if base is None:  # already here, because the vertical terms among them decide the rolling radius
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
@@ -123,8 +126,13 @@ def known_after_fit(
     return known
 
 
+def _is_stated(tyre: Any, name: str) -> bool:
+    """Whether ``[tyre]`` states a value itself, rather than by the default of its key."""
+    return name not in KEYS_OF_TYRE or KEYS_OF_TYRE[name] in tyre.model_fields_set
+
+
 def given_values(tyre: Any) -> dict[str, Any]:
-    """Values that ``[tyre]`` of tyre.toml states, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
+    """Values of ``[tyre]``, stated or by default, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
     given = {
         "FNOMIN": tyre.nominal_load,
         "NOMPRES": tyre.nominal_pressure * 1e3,

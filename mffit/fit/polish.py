@@ -25,9 +25,10 @@ Intervals = Mapping[str, tuple[float, float]]
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit with its errors, those of the quadratic form around it.
 
-    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated.
+    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
+    readings that state no uncertainty get that of their misfit.
     """
-    problem, scale = _approached(stated, plan).reweighted()
+    problem, scale = _approached(stated, plan).with_noise_of_misfit().reweighted()
     problem, solution = _solved(problem, plan.numbers(problem))
     return _fitted(problem, solution, plan.numbers(problem), plan, scale)
 
@@ -86,6 +87,7 @@ def _fitted(
         at_limit=solution.at_limit - solution.at_bound,
         regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
         scale=scale,
+        left=solution.left,
         cost=solution.cost,
         hand=given.hand,
     )

@@ -10,16 +10,19 @@ from typing import Any
 
 import numpy as np
 
+from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros
 from mffit.fit.wheel.rolling import effective_radius
-from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, condensed
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
+from mffit.points.noise import estimated_noise, stating
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation, reference_speed, successive
+from mffit.scatter import rms
 from tir.derivatives import gradient, plain, traced
 
 
@@ -34,13 +37,14 @@ class FitProblem:
     envelope: Envelope | None = None  #: over which the physical limits hold
     radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
     speed: float = 1.0  #: at which they were measured [m/s]
-    nominal: Mapping[str, float] = field(default_factory=dict)
-    """By channel, nominal uncertainty over ``sigma`` where this is that of the misfit: an outlier is far in units of both."""
+    nominal: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """By channel, nominal uncertainty (n,) over ``sigma`` where that is of the misfit: an outlier is far in units of both."""
 
     def select(self, index: np.ndarray) -> FitProblem:
         """The problem of some points (m,)."""
         sigma = {name: u[index] for name, u in self.sigma.items()}
-        return replace(self, points=self.points.select(index), sigma=sigma)
+        nominal = {name: share[index] for name, share in self.nominal.items()}
+        return replace(self, points=self.points.select(index), sigma=sigma, nominal=nominal)
 
     def without_limits(self) -> FitProblem:
         """The same without physical limits over the range to be written."""
@@ -72,20 +76,31 @@ class FitProblem:
         A channel that the model misses by more than the noise must not dominate the other one.
         """
         found = {
-            name: weights.enlarged(z, self.points.sweep, self.nominal.get(name, 1.0))
+            name: weights.enlarged(z, self.points.sweep, self.nominal.get(name, np.ones_like(z)))
             for name, z in self.misfit().items()
         }
         sigma = {name: self.sigma[name] * factor for name, (factor, _) in found.items()}
         return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
 
     def with_noise_of_misfit(self) -> FitProblem:
-        """The problem with uncertainties no larger than the scatter of its misfit, for points that state none."""
-        smaller = {name: min(weights.robust_scale(z), 1.0) for name, z in self.misfit().items()}
-        return replace(
-            self,
-            sigma={name: smaller[name] * u for name, u in self.sigma.items()},
-            nominal={name: 1.0 / share for name, share in smaller.items()},
-        )
+        """The problem whose readings that state no uncertainty have one no larger than the scatter of their misfit.
+
+        A fit takes up some of the noise: neighbouring readings show all of it.
+        """
+        readings, sigma, nominal = self.readings(), dict(self.sigma), dict(self.nominal)
+        neighbours = estimated_noise(self.points, readings)
+        for name, z in self.misfit(readings).items():
+            used = self._used(name)
+            silent = used & ~stating(self.points.u(name))
+            least = max(
+                ASSUMED_NOISE_SHARE * rms(self.points.channel(name)[used]), np.nan_to_num(neighbours[name])
+            )
+            scatter = np.maximum(weights.robust_scale(z[silent]) * sigma[name][silent], least)
+            share = np.ones(len(z))
+            share[silent] = np.minimum(scatter / sigma[name][silent], 1.0)
+            sigma[name] = share * sigma[name]
+            nominal[name] = nominal.get(name, 1.0) / share
+        return replace(self, sigma=sigma, nominal=nominal)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -114,24 +129,14 @@ class FitProblem:
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             here = at(x)
             data = np.concatenate([*here.misfit().values(), here.radii_rows([])[0]])
-            return data, here._broken_limits([])[0]
+            return data, here._limits([])[0]
 
         def linear(x: np.ndarray) -> Linear:
             here = at(x)
             data, slope = condensed(
                 itertools.chain((rows[1:] for rows in here.blocks(names)), [here.radii_rows(names)])
             )
-            limit, limit_slope = here._limits(names)
-            broken, kept = limit > 0.0, None
-            if "Fx" in here.sigma:  # with limits under slip, many are near
-                kept = Kept(limit[~broken], limit_slope[~broken])
-            return Linear(
-                data=data,
-                slope=slope,
-                limits=np.where(broken, limit, 0.0),
-                limits_slope=limit_slope * broken[:, None],
-                kept=kept,
-            )
+            return Linear(data, slope, *here._limits(names))
 
         return LeastSquaresProblem(residual, linear)
 
@@ -197,14 +202,8 @@ class FitProblem:
         slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
         return np.broadcast_to(plain(out), len(load)), slope
 
-    def _broken_limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Violations of the physical limits as residuals, 0 where they are kept, and their derivatives."""
-        value, slope = self._limits(names)
-        broken = value > 0.0
-        return np.where(broken, value, 0.0), slope * broken[:, None]
-
     def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals of the physical limits, below 0 where they are kept, and their derivatives."""
+        """Residuals of the physical limits, above 0 where they are broken, and their derivatives."""
         if self.envelope is None:
             return np.zeros(0), np.zeros((0, len(names)))
         values = self.simulation.values

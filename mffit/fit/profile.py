@@ -12,7 +12,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.problem import FitProblem
 from mffit.fit.start import SHAPES
-from mffit.least_squares import FreeNumber, Solution, inverse, minimum
+from mffit.least_squares import FreeNumber, Solution, broken, inverse, minimum
 
 ALLOWED_RISE = COVERAGE_FACTOR_95**2
 """Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
@@ -104,7 +104,9 @@ def _most_bent(
                 continue
             data, limits = part.residual(trial)
             expected = here.data + here.slope @ (trial - best)
-            excess = data @ data + limits @ limits - here.limits @ here.limits - expected @ expected
+            excess = (
+                data @ data - expected @ expected + np.sum(broken(limits) ** 2 - broken(here.limits) ** 2)
+            )
             ratio = 1.0 + excess * stride / probe**2
             if ratio > worst:
                 own = np.abs(direction) / np.sqrt(np.diag(solution.covariance))

@@ -21,13 +21,14 @@ from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
 from mffit.fit.sweep_rates import OfRates, of_rates, rate_to_add
 from mffit.fit.upright import upright
-from mffit.least_squares import FreeNumber, of_model, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
 from mffit.points import Points, levels
+from mffit.points.constants import LONGEST_STEP
 from mffit.points.lag import Lag, rolled_distance
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.rig.lag import lagged_setting
+from mffit.rig.lag import lag_of_move, lagged_setting
 from mffit.rig.simulation import LAG
 from mffit.rig_errors.record import RADIANS
 from mffit.rounding import ascii_only, to_uncertainty
@@ -98,6 +99,8 @@ DIRECTIONS = (
         ),
     ),
 )
+SPREAD_OF_UNIFORM = 1.0 / math.sqrt(12.0)
+"""Standard deviation of a number that is anywhere between 0 and 1."""
 UNCLEAR = "the steps of {what} do not show the relaxation length beyond their noise: hold each of them longer, or step further"
 
 
@@ -211,22 +214,36 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     means = _Means.over(samples, constants.MEAN_OF_STEPS * radius)
     read = means.of(samples.channel(direction.force))
     beside = means.of(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
-    sigma, move, keeps = radius, math.inf, 0.0
+    ends = _ends_of_steps(direction, samples, radius)
+    free = [
+        FreeNumber("sigma", radius, 1e-3 * radius),
+        *(FreeNumber(f"share{row}", 0.5, 0.0, 1.0, 0.5, SPREAD_OF_UNIFORM) for row in ends),
+    ]
+    first = means.of(_response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0])
+    known, *_ = np.linalg.lstsq(np.column_stack([beside, first]), read, rcond=None)
+    free += [FreeNumber(f"beside{k}", value) for k, value in enumerate(known.tolist())]
+
+    def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Readings (m,) and their derivatives (m, k) by the numbers."""
+        count = 1 + len(ends)
+        shares = dict(zip(ends, x[1:count].tolist(), strict=True))
+        response, slope = map(means.of, _response(direction, samples, simulation, x[0], shares))
+        design = np.column_stack([beside, response])
+        return design @ x[count:], np.column_stack([x[-1] * slope, design])
+
+    sigma, u, move, keeps = radius, math.inf, math.inf, 0.0
+    noise = _scatter(read - model(np.array([n.start for n in free]))[0], len(free), keeps)
     for _ in range(constants.REFIT_STEPS):
-        model, slope = map(means.of, _response(direction, samples, simulation, sigma))
-        design = np.column_stack([beside, model])
-        known, *_ = np.linalg.lstsq(_whitened(design, keeps), _whitened(read, keeps), rcond=None)
-        left = read - design @ known
-        residual = _whitened(left, keeps)
-        design = _whitened(np.column_stack([design, known[-1] * slope]), keeps)
-        move = float(np.linalg.lstsq(design, residual, rcond=None)[0][-1])
-        sigma = float(np.clip(sigma + move, 0.5 * sigma, 2.0 * sigma))
+        end = solve(_whitened_problem(model, read, keeps, noise), free)
+        x = np.array(list(end.values.values()))
+        free = [replace(n, start=value) for n, value in zip(free, x.tolist(), strict=True)]
+        sigma, move = float(x[0]), float(x[0]) - sigma
+        u = math.sqrt(float(end.covariance[0, 0]))
         if abs(move) < constants.REFIT_TOLERANCE * sigma:
             break
+        left = read - model(x)[0]
         keeps = _kept(left)
-    freedom = max(len(residual) - design.shape[1], 1)
-    variance = float(residual @ residual) / freedom * _correlation(residual)
-    u = math.sqrt(variance * float(np.linalg.pinv(design.T @ design)[-1, -1]))
+        noise = _scatter(left, len(free), keeps)
     u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
@@ -264,14 +281,57 @@ def _turned(samples: Points, Re: float) -> np.ndarray:
     return rolled_distance(samples.time, speed)
 
 
+def _ends_of_steps(direction: Direction, samples: Points, radius: float) -> list[int]:
+    """The samples before the first and the last move of every step: when in between the setting moved is not known."""
+    moved = np.diff(getattr(samples, direction.setting))
+    rows = np.flatnonzero(np.abs(moved) > constants.LEAST_MOVE_OF_A_STEP * np.max(np.abs(moved), initial=0.0))
+    rolled = rolled_distance(samples.time, samples.V)
+    apart = np.flatnonzero(np.diff(rolled[rows]) > LONGEST_STEP * radius) + 1
+    steps = [
+        own for own in np.split(rows, apart) if abs(np.sum(moved[own])) >= STEPPED[direction.setting].smallest
+    ]
+    return sorted({int(row) for own in steps for row in (own[0], own[-1])})
+
+
 def _response(
-    direction: Direction, samples: Points, simulation: Simulation, sigma: float
+    direction: Direction, samples: Points, simulation: Simulation, sigma: float, shares: Mapping[int, float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Force (n,) [N] that follows the setting over a length [m], and its derivative by the length [N/m]."""
+    """Force (n,) [N] that follows the setting over a length [m], and its derivatives (n, 1 + k) by the length and the shares.
+
+    ``shares`` has, by the sample before, the k moves that go all at once, and where in between; the others go evenly.
+    """
     follows, by_sigma = lagged_setting(samples, sigma, direction.setting)
+    by = [by_sigma]
+    rolled, moved = rolled_distance(samples.time, samples.V), np.diff(getattr(samples, direction.setting))
+    for row, share in shares.items():
+        lag, lag_by_sigma, lag_by_share = lag_of_move(row, float(moved[row]), rolled, sigma, share)
+        follows, by[0] = follows - lag, by[0] - lag_by_sigma
+        by.append(-lag_by_share)
     at = samples.replace(**{direction.setting: follows})
     force, by_zero = simulation.sensitivities(at, [direction.zero], (direction.force,))
-    return force[direction.force], by_zero[direction.force][:, 0] / direction.unit * by_sigma
+    slope = by_zero[direction.force][:, 0] / direction.unit
+    return force[direction.force], slope[:, None] * np.column_stack(by)
+
+
+def _whitened_problem(
+    model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, keeps: float, noise: float
+) -> LeastSquaresProblem:
+    """The problem of a model of readings (m,) whose noise keeps a share of itself from sample to sample."""
+    none = np.zeros(0)
+
+    def linear(x: np.ndarray) -> Linear:
+        found, slope = model(x)
+        data, slopes = _whitened(found - read, keeps) / noise, _whitened(slope, keeps) / noise
+        return Linear(data, slopes, none, np.zeros((0, len(x))))
+
+    return LeastSquaresProblem(lambda x: (_whitened(model(x)[0] - read, keeps) / noise, none), linear)
+
+
+def _scatter(residual: np.ndarray, numbers: int, keeps: float) -> float:
+    """Standard deviation of whitened residuals that were fitted with so many numbers, larger where they still correlate."""
+    white = _whitened(residual, keeps)
+    freedom = max(len(white) - numbers, 1)
+    return math.sqrt(float(white @ white) / freedom * _correlation(white)) or 1.0
 
 
 def _kept(residual: np.ndarray) -> float:

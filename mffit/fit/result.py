@@ -69,6 +69,11 @@ class FitResult(Brief):
     radii: Vertical = field(default_factory=Vertical)  #: loaded radius and wheel speed of the rolling wheel
 
     @property
+    def left(self) -> float:
+        """Fall of the sum of squares that a step from the end of the search still promises, of the fit where it is larger."""
+        return max((fit.left for fit in (self.search, self.full) if fit is not None), default=0.0)
+
+    @property
     def headline(self) -> str:
         """The misfit of each measured channel."""
         gaps = {name: found for name, found in self.channels.items() if found.n}

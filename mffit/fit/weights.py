@@ -34,18 +34,22 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     return np.sqrt(np.maximum(size, 1.0))
 
 
-def enlarged(residual: np.ndarray, sweep: np.ndarray, least: float = 1.0) -> tuple[np.ndarray, float]:
+def enlarged(
+    residual: np.ndarray, sweep: np.ndarray, least: np.ndarray | float = 1.0
+) -> tuple[np.ndarray, float]:
     """Factor (n,) on the uncertainty of each point, infinite for outliers; and the robust scale, at least 1.
 
     Residuals are in units of the uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's sweep.
-    ``least`` is the smallest scale by which a reading counts as an outlier.
+    ``least`` (n,) is the smallest scale by which a reading counts as an outlier.
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
-    return np.where(outlying(residual, max(scale, least), sweep, least), np.inf, factor), scale
+    return np.where(outlying(residual, np.maximum(scale, least), sweep, least), np.inf, factor), scale
 
 
-def outlying(residual: np.ndarray, scale: float, sweep: np.ndarray, least: float = 1.0) -> np.ndarray:
+def outlying(
+    residual: np.ndarray, scale: np.ndarray | float, sweep: np.ndarray, least: np.ndarray | float = 1.0
+) -> np.ndarray:
     """Mask (n,) of single readings that contradict both the model and their neighbours in the sweep.
 
     Residuals are as in :func:`enlarged`, in the order of measuring; ``scale`` is the standard deviation of their core.
@@ -55,10 +59,11 @@ def outlying(residual: np.ndarray, scale: float, sweep: np.ndarray, least: float
     if not len(used):
         return out
     used = used[np.argsort(sweep[used], kind="stable")]
+    scale, least = (np.broadcast_to(x, len(residual))[used] for x in (scale, least))
     apart = residual[used] - _expected_from_neighbours(residual[used], sweep[used])
     known = np.isfinite(apart)
     # At least the stated uncertainty: among points without noise every tiny difference would count as an outlier.
-    local = max(robust_scale(apart[known]), least)
+    local = np.maximum(robust_scale(apart[known]), least)
     far = float(-ndtri(constants.OUTLIER_FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out

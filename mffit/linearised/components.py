@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +10,6 @@ from scipy.optimize import minimize
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
 from mffit.linearised.smooth import Smooth
-
-OWN = ("offset", "scale", "shape")
-"""What every run has of its own: a constant, a share of the force, and a smooth function along what it sweeps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,13 +118,3 @@ def _bounds(smooth: Smooth, unit: float) -> list[tuple[float, float]]:
     lengths = [(one.spacing, 20.0 * one.width) for one in smooth.inputs]
     of_runs = [(tiny, unit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, unit), (0.05, 1.0)]
     return [tuple(np.log(pair).tolist()) for pair in [size, *lengths, *of_runs, (1e-3, 1e3)]]
-
-
-def as_dict(found: Components, smooth: Smooth) -> Mapping[str, float | Mapping[str, float]]:
-    """The components by name, lengths by input."""
-    lengths = {one.name: length for one, length in zip(smooth.inputs, found.lengths, strict=True)}
-    return {
-        "missed": found.missed,
-        "lengths": lengths,
-        **{name: getattr(found, name) for name in (*OWN, "shape_length", "noise")},
-    }

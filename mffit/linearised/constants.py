@@ -8,7 +8,9 @@ FUNCTIONS = Count(
     300, "-", "Most functions of what the formula misses of a channel: 450 predict no better on real tyres."
 )
 LEAST_SHARE = Real(
-    0.01, "-", "Variance of a function, over that of a constant at the shortest lengths, below which it is left out."
+    0.01,
+    "-",
+    "Variance of a function, over that of a constant at the shortest lengths, below which it is left out.",
 )
 POINTS_EXAMINED = Count(
     4000, "-", "Most readings of a channel that are looked at: many more of one sweep tell nothing new."
@@ -32,7 +34,7 @@ USUAL_RATIO = Real(
 WIDER_THAN_THE_FIT = Real(
     10.0,
     "-",
-    "Variance of a coefficient beside what the formula misses, over that of the fit, which takes all of its readings as free of that.",
+    "Variance of a coefficient beside what the formula misses, over that of the fit, which knows nothing of this.",
 )
 COMPONENT_STEPS = Count(60, "-", "Most steps of the search for the components.")
 COMPONENT_TOLERANCE = Real(0.05, "-", "Gain of log evidence at which the search for the components ends.")

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import Components, most_probable, own_columns, variances
 from mffit.linearised.inputs import along, inputs_of, settings_of
 from mffit.linearised.mixed import Mixed, Posterior, Predicted, Variances
 from mffit.linearised.smooth import Smooth
-from mffit.least_squares import inverse, root
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -31,10 +31,12 @@ class LinearisedChannel:
     smooth: Smooth
     components: Components
     model: Mixed
-    """Of residuals, measured less model, over ``unit``; its common numbers are the functions of ``smooth``, then the changes of the
+    """Of residuals, measured less model, over ``unit``; its common numbers are the weights of ``smooth``, then changes of the
     numbers of the fit."""
     variances: Variances  #: of these
-    missed: np.ndarray  #: (m,) weights of the functions with the numbers of the fit as they are [unit of the channel]
+    missed: (
+        np.ndarray
+    )  #: (m,) weights of the functions with the numbers of the fit as they are [unit of the channel]
     turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
@@ -135,7 +137,7 @@ class _Sight(NamedTuple):
 def _channel(
     name: str, sight: _Sight, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
 ) -> LinearisedChannel:
-    """The components are found with the numbers of the fit as they are: free, they would leave nothing that the formula misses."""
+    """The components are found with the numbers of the fit as they are: free ones would take up what the formula misses."""
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
@@ -155,8 +157,24 @@ def _channel(
     names, spread = zip(*sight.numbers, strict=True) if sight.numbers else ((), ())
     found = np.asarray(sight.simulation.sensitivities(part, names, [name])[1][name])
     weighted = found / sigma[rows][:, None]
-    turn = root(inverse(np.diag(np.array(spread) ** -2.0) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+    turn = root(
+        inverse(
+            np.diag(np.array(spread) ** -2.0) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT
+        )
+    )
     joint = Mixed(alone.residual, np.hstack([missed, found @ turn / unit[:, None]]), alone.own, groups)
     of_functions, _, _ = variances(components.logarithms, smooth)
     prior = of_functions._replace(common=np.append(of_functions.common, np.zeros(turn.shape[1])))
-    return LinearisedChannel(name, rows, stride, unit, smooth, components, joint, prior, alone.posterior(of_functions).mean, turn, np.unique(part.sweep))
+    return LinearisedChannel(
+        name,
+        rows,
+        stride,
+        unit,
+        smooth,
+        components,
+        joint,
+        prior,
+        alone.posterior(of_functions).mean,
+        turn,
+        np.unique(part.sweep),
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,7 +47,9 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         steps = levels.count(values, kind) - 1
         if steps < 1:
             continue
-        swept = any(_width(values[rows]) > 1.5 * np.ptp(values) / steps for rows in _runs(points)) or steps > 8
+        swept = (
+            any(_width(values[rows]) > 1.5 * np.ptp(values) / steps for rows in _runs(points)) or steps > 8
+        )
         steps = int(constants.DIVISIONS_OF_A_SWEEP) if swept else steps
         found.append(_input(name, values, steps))
     for name in ALSO:
@@ -126,6 +128,3 @@ def along(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
         if name in by_name:
             out[rows] = (getattr(points, name)[rows] - by_name[name].lower) / by_name[name].width
     return out
-
-
-Columns = Callable[[Mapping[str, np.ndarray]], np.ndarray]

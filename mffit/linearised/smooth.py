@@ -16,7 +16,6 @@ import numpy as np
 from mffit.linearised import constants
 from mffit.linearised.inputs import Input
 
-
 LEAST = float(-np.log(constants.LEAST_SHARE))
 
 
@@ -50,7 +49,7 @@ class Smooth:
         return out
 
     def log_variance(self, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Logarithm of the share (m,) of every function in the variance, and its derivatives (m, d) by the logarithms of lengths."""
+        """Logarithm of the share (m,) of every function in the variance, and its derivatives (m, d) by those of the lengths."""
         size = np.zeros(len(self.orders))
         slope = np.zeros((len(self.orders), len(self.inputs)))
         for i, one in enumerate(self.inputs):

@@ -6,7 +6,7 @@ from mffit.measured.budget_rows import Contribution
 from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import at_the_axis, measure
 from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import KEYS, LoadResult, Measured, SetupResult, SetupScatter
+from mffit.measured.result import KEYS, LoadResult, Measured, SetupResult, SetupScatter, SideslipZeros
 
 __all__ = [
     "KEYS",
@@ -18,6 +18,7 @@ __all__ = [
     "RadiusReading",
     "SetupResult",
     "SetupScatter",
+    "SideslipZeros",
     "align",
     "at_the_axis",
     "direct_method",

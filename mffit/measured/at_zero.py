@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
@@ -15,6 +15,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce, by_path
+from mffit.measured.slip_stiffness import SlipStiffness
 from mffit.measured.sources import named
 from mffit.points import Points
 from mffit.rig_errors import AtZero
@@ -137,43 +138,69 @@ def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, confi
     return out
 
 
+def angle_at_zero(found: PathZeros, stiffness: SlipStiffness) -> UFloat | None:
+    """alpha_M [rad] of one path in one set-up: the angle of half the difference of both directions; None without both."""
+    if not math.isfinite(found.readings.backward):
+        return None
+    forward, backward = _noisy(found.readings)
+    slip = (forward - backward) / 2.0
+    # The difference is odd in the angle, so the slope at true zero counts, not that at the reading of zero.
+    return slip / stiffness.at(slip / stiffness.C_alpha)
+
+
 def turn_slip_of_path(
     found: PathZeros,
-    stiffness: tuple[UFloat | None, UFloat | None],
+    stiffness: SlipStiffness,
+    C_gamma: UFloat | None,
     rig: method.UncertainRig,
     config: Config,
     scatter: UFloat | None = None,
+    alpha_M: UFloat | None = None,
 ) -> PathForce:
-    """The corrected turn-slip force of one path in one set-up, and alpha_M if it is known.
+    """The corrected turn-slip force of one path in one set-up.
 
     Parameters
     ----------
     found : the readings
-    stiffness : C_alpha and C_gamma [N/rad]
+    stiffness : over sideslip
+    C_gamma : camber stiffness [N/rad]
     rig : the uncertain rig errors; the angles are already corrected for the play
     config : declares the usual path
     scatter : force of this set-up that repeated set-ups show beyond what is declared [N]
+    alpha_M : of the set-up at this load [rad]; None if no load of it was run both ways
+
+    Notes
+    -----
+    Of both directions the mean counts, in which alpha_M drops out; a forward reading alone is corrected for its force.
     """
     zero, phi_t, errors = found.readings, found.phi_t, rig.at(found.setup)
-    C_alpha, C_gamma = stiffness
-    at = AtZero(0.0 if C_alpha is None else C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play)
+    at = AtZero(stiffness.C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play)
+    readings = _noisy(zero)
+    both = len(readings) > 1
+    force = sum(readings) / len(readings)
+    if alpha_M is not None and not both:
+        force = force - stiffness.force(alpha_M, math.copysign(1.0, phi_t * path_curvature(config.rig)))
+    force = method.turn_slip_force(force, errors, at, both_directions=both or alpha_M is not None)
     # The wheel is moved from path to path by known distances, so one error of R is common to all.
     usual = config.rig.radius
     assert usual is not None
-    path: dict[str, Any] = {
-        "sign": float(np.sign(phi_t)), "R": rig.R + (1.0 / abs(phi_t) - usual), "at": _plain(at),
-        "setup": found.setup, "scatter": scatter,
-    }  # fmt: skip
+    return PathForce(
+        sign=float(np.sign(phi_t)),
+        R=rig.R + (1.0 / abs(phi_t) - usual),
+        at=_plain(at),
+        readings=readings,
+        force=force if scatter is None else force - scatter,
+        setup=found.setup,
+        scatter=scatter,
+    )
+
+
+def _noisy(zero: ZeroReadings) -> tuple[UFloat, ...]:
+    """The forces forwards, and backwards if that was run, with the noise of their readings [N]."""
     forward = named(zero.forward, zero.u_forward, "noise of the forward zeros", "N", kind="A")
     if not math.isfinite(zero.backward):
-        force = method.turn_slip_force(forward, errors, at, both_directions=False)
-        force = force if scatter is None else force - scatter
-        return PathForce(force=force, readings=(forward,), alpha_M=None, **path)
-    backward = named(zero.backward, zero.u_backward, "noise of the backward zeros", "N", kind="A")
-    force = method.turn_slip_force((forward + backward) / 2.0, errors, at, both_directions=True)
-    force = force if scatter is None else force - scatter
-    alpha_M = None if C_alpha is None else (forward - backward) / 2.0 / C_alpha
-    return PathForce(force=force, readings=(forward, backward), alpha_M=alpha_M, **path)
+        return (forward,)
+    return forward, named(zero.backward, zero.u_backward, "noise of the backward zeros", "N", kind="A")
 
 
 def _plain(at: AtZero) -> AtZero:

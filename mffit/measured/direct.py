@@ -12,7 +12,8 @@ from mffit.config import Config
 from mffit.measured import camber_reduction as method
 from mffit.measured import notes
 from mffit.measured.alignment import AxisAtLoad
-from mffit.measured.at_zero import zeros_by_path
+from mffit.measured.at_zero import angle_at_zero, zeros_by_path
+from mffit.measured.backlash import rest_of_play
 from mffit.measured.both_directions import skew_warning, with_measured_skew
 from mffit.measured.budget import budget
 from mffit.measured.budget_rows import Contribution
@@ -24,10 +25,12 @@ from mffit.measured.loads import load_dependence
 from mffit.measured.moments import epsilon_from_moments
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.remarks import remarks
-from mffit.measured.result import CONICITY, LoadResult, Measured
+from mffit.measured.result import CONICITY, LoadResult, Measured, SideslipZeros
 from mffit.measured.setups import excess_forces, of_setups, results_of_setups, setup_scatter
+from mffit.measured.sideslip_zero import SetupAngle, ZeroAngle, angles_of_setups
+from mffit.measured.slip_stiffness import slip_stiffness
 from mffit.measured.turning import Turning, turning
-from mffit.measured.zero_split import alignment_verdict, at_true_zero, split_of_zero
+from mffit.measured.zero_split import alignment_verdict, at_true_zero, camber_at_true_zero, split_of_zero
 from mffit.parts import Parts
 from mffit.points import Points
 from tir import Quantity, Tyre
@@ -71,8 +74,13 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     if evidence.rig is not None:
         scatter = setup_scatter(evidence.points, stiffnesses, evidence.rig, config)
         evidence = replace(evidence, scatter=scatter, excess=excess_forces(scatter, evidence.rig))
+    axes, zeros = _sideslip_zeros(evidence, [(group, slopes) for group, slopes, _ in found_slopes])
+    evidence = replace(evidence, axes=axes)
     for group, slopes, troubles in found_slopes:
-        found, more = _at_load(evidence, group, slopes)
+        # Camber sweeps in both directions are free of it: their mean is the stiffness at true zero.
+        found, more = _at_load(
+            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes)
+        )
         rows += [] if found is None else [found]
         warnings += troubles + more
     measured, troubles = _assembled(evidence, rows, skew)
@@ -82,7 +90,55 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         notes=(*measured.notes, *repeated.notes),
         warnings=(*parts.unpaired, *warnings, *troubles, *repeated.warnings),
         setup_scatter=evidence.scatter,
+        sideslip_zeros=zeros,
     )
+
+
+def _of_other_loads(rows: Sequence[LoadResult]) -> list[str]:
+    """A sentence on the loads whose sideslip zero is that of the others."""
+    zeros = [row for row in rows if row.alpha_M is not None]
+    without = [row.load for row in zeros if not math.isfinite(row.F_backward)]
+    known = [row.load for row in zeros if math.isfinite(row.F_backward)]
+    return [notes.axis_of_other_loads(without, known)] if without and known else []
+
+
+def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
+    """The slopes with the camber stiffness at true zero of sideslip, where the axis is known to be off."""
+    axis = next(iter(evidence.axes.values()), None)
+    if axis is None or slopes.C_alpha is None or slopes.bend is None:
+        return slopes
+    C_alpha = float(slopes.C_alpha.nominal_value)
+    split = split_of_zero(axis.at(group.load), C_alpha, evidence.config.rig.u("alpha_0_deg"))
+    assert split is not None
+    factor = camber_at_true_zero(C_alpha, slopes.bend, split)
+    C_gamma, slope, secant = (
+        None if C is None else C * factor for C in (slopes.C_gamma, slopes.slope, slopes.secant)
+    )
+    return replace(slopes, C_gamma=C_gamma, slope=slope, secant=secant)
+
+
+def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[str, float]:
+    """alpha_M [rad] of the set-ups whose sideslip zero makes more force than the alignment is declared to leave."""
+    found = {name: float(axis.at(nominal.load).nominal_value) for name, axis in evidence.axes.items()}
+    left = evidence.config.rig.u("alpha_0_deg")
+    return {name: angle for name, angle in found.items() if abs(nominal.slip_force(angle)) > left}
+
+
+def _sideslip_zeros(
+    evidence: DirectEvidence, found: Sequence[tuple[LoadGroup, LoadSlopes]]
+) -> tuple[dict[str, SetupAngle], tuple[SideslipZeros, ...]]:
+    """alpha_M of every set-up from all its loads, and how well these agree; nothing on a straight path."""
+    readings = []
+    for group, slopes in found if evidence.rig is not None else ():
+        if slopes.C_alpha is None:
+            continue
+        stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
+        for path in zeros_by_path(evidence.points, group, slopes.C_alpha, evidence.config):
+            angle = angle_at_zero(path, stiffness)
+            if angle is not None:
+                angle = angle + rest_of_play(evidence.config)
+                readings.append(ZeroAngle(path.setup, group.load, path.phi_t, angle))
+    return angles_of_setups(readings, evidence.config.tyre.nominal_load)
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
@@ -144,7 +200,7 @@ def _on_disc(
         epsilon_slope=None if slope is None else float(slope.plain.nominal_value),
         epsilon_secant=None if secant is None else float(secant.plain.nominal_value),
         epsilon_moment=epsilon_from_moments(evidence, group, found, r_e),
-        setups=results_of_setups(found.found, found.paths, C_gamma, r_e, evidence.config),
+        setups=results_of_setups(found.found, found.paths, evidence.axes, C_gamma, r_e, evidence.config),
         budget=budget(epsilon.plain),
         u_monte_carlo=draws.u,
         interval=draws.interval,
@@ -170,7 +226,7 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
         for C in (slopes.C_gamma, slopes.slope, slopes.secant)
     )
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
-    C_alpha = None if slopes.C_alpha is None else float(slopes.C_alpha.nominal_value)
+    C_alpha = float(slip_stiffness(slopes.C_alpha, slopes.bend, group.load).C_alpha.nominal_value)
     split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
     row = LoadResult(
         load=group.load,
@@ -234,8 +290,12 @@ def _assembled(
         pecp2=law.pecp2,
         u_pecp2=law.u_pecp2,
         misaligned=axis.beyond,
+        misaligned_setups=_misaligned_setups(evidence, nominal.row),
         axis_off=axis.misaligned,
-        notes=remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
+        notes=(
+            *remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
+            *_of_other_loads(per_load),
+        ),
         load_note=law.note,
     )
     return measured, [*([axis.sentence] if axis.misaligned else []), *skew_warning(evidence, skew)]

@@ -14,6 +14,7 @@ from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.radii import measured_effective_radius, measured_path_radius
 from mffit.measured.result import SetupScatter
 from mffit.measured.shared import SharedErrors, shared_errors
+from mffit.measured.sideslip_zero import SetupAngle
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.rig_errors import DECLARED
@@ -31,6 +32,7 @@ class DirectEvidence:
     rig: method.UncertainRig | None  #: None on a straight path
     scatter: SetupScatter | None  #: of repeated set-ups
     excess: Mapping[str, UFloat]  #: force by which each set-up scatters beyond what is declared [N]
+    axes: Mapping[str, SetupAngle]  #: alpha_M of every set-up that was run both ways
     radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
     base: Tyre | None
     shared: SharedErrors  #: of the tyre, common to all loads
@@ -53,6 +55,7 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
         rig=None if R is None else method.uncertain_rig(u, R, points.used_setups),
         scatter=None,
         excess={},
+        axes={},
         radii=measured_effective_radius(config, R),
         base=base,
         shared=shared_errors(config),

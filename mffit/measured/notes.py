@@ -150,6 +150,18 @@ def misaligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, s
     )
 
 
+def axis_of_other_loads(loads: Sequence[float], known: Sequence[float]) -> str:
+    """Loads [N] without backward zeros, and those whose zeros give the sideslip zero of their set-up."""
+    return (
+        f"No backward zeros at {_loads(loads)}: its zeros are corrected with alpha_M of the zeros at {_loads(known)}, as the "
+        "axis is off by one angle at all loads of a set-up."
+    )
+
+
+def _loads(loads: Sequence[float]) -> str:
+    return f"{', '.join(f'{load:.0f}' for load in loads)} N"
+
+
 def axis_off(load: float, difference: float, limit: float, correction_deg: float) -> str:
     return (
         f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N (the limit is {limit:.0f} N): the sideslip "

@@ -24,7 +24,6 @@ class PathForce(NamedTuple):
     at: AtZero  #: stiffnesses of the tyre and side of the play there
     readings: tuple[UFloat, ...]  #: raw force forwards [N], and backwards if that was run
     force: UFloat  #: corrected (23) [N]
-    alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
     setup: str = ""  #: name of the set-up of the rig in which it was measured
     scatter: UFloat | None = (
         None  #: force of the set-up that repeated set-ups show beyond what is declared [N]

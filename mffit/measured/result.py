@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from mffit.brief import Brief
+from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.budget_rows import Contribution, Expanded, expanded
@@ -19,6 +20,23 @@ CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
 """Names of sources in the budget."""
 
 
+class SideslipReading(NamedTuple):
+    """alpha_M as the zeros both ways at one load and path give it."""
+
+    load: float  #: [N]
+    phi_t: float  #: turn slip of the path [1/m]
+    alpha_M: Quantity  #: [rad]
+
+
+class SideslipZeros(NamedTuple):
+    """How well the zeros both ways of one set-up agree on its sideslip zero."""
+
+    setup: str
+    chance: float  #: probability that zeros of one set-up differ by so much
+    one: SideslipReading  #: the two that are farthest apart
+    other: SideslipReading
+
+
 class SetupResult(NamedTuple):
     """The zeros of one set-up of the rig on one path and at one load, by themselves."""
 
@@ -27,14 +45,19 @@ class SetupResult(NamedTuple):
     F_phit: Quantity  #: turn-slip force, corrected (23) [N]
     C_phit: Quantity  #: [Nm]
     epsilon_gamma: Quantity
-    alpha_M: Quantity | None  #: sideslip misalignment [rad]; None without backward runs
+    alpha_M: Quantity | None  #: of the set-up, at this load [rad]; None without backward runs
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves
     axis_off: bool = False  #: its split supports that the axis, and not the tyre, causes it
 
     @property
     def path(self) -> str:
         """The path in words."""
-        return f"{abs(1.0 / self.phi_t):.4g} m to the {'left' if self.phi_t < 0.0 else 'right'}"
+        return path_in_words(self.phi_t)
+
+
+def path_in_words(phi_t: float) -> str:
+    """Radius and side of the path with a turn slip [1/m]."""
+    return f"{abs(1.0 / phi_t):.4g} m to the {'left' if phi_t < 0.0 else 'right'}"
 
 
 class SetupScatter(NamedTuple):
@@ -73,7 +96,7 @@ class LoadResult(Brief):
     epsilon_slope: float | None = None
     epsilon_secant: float | None = None
     epsilon_moment: float | None = None  #: from moments; informational, so without uncertainty
-    alpha_M: Quantity | None = None  #: sum of misalignment and ply-steer, from backward runs [rad]
+    alpha_M: Quantity | None = None  #: sum of misalignment and ply-steer, of the set-up [rad]
     misalignment: Quantity | None = None  #: its part of the axis, by the priors of both [rad]
     ply_steer: Quantity | None = None  #: its part of the tyre [rad]
     conicity: Quantity | None = None  #: from zeros on both mounts [N]
@@ -87,6 +110,11 @@ class LoadResult(Brief):
     setups: tuple[
         SetupResult, ...
     ] = ()  #: the zeros of every path and set-up by themselves, if there are several
+
+    def slip_force(self, angle: float) -> float:
+        """Side force [N] of a small sideslip angle [rad], by the usual stiffness if none was measured."""
+        C_alpha = -USUAL_CORNERING_STIFFNESS * self.load if self.C_alpha is None else self.C_alpha.value
+        return C_alpha * angle
 
     def shift_by(self, force: float) -> float:
         """Change of eps_gamma by a force [N] that is taken for turn slip."""
@@ -133,11 +161,20 @@ class Measured(Brief):
     warnings: tuple[str, ...]  #: to act on
     load_note: str = ""  #: the value of PECP2, or why it is 0
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
+    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
+    misaligned_setups: Mapping[str, float] = field(default_factory=dict)
+    """alpha_M [rad] of the set-ups that are beyond what the alignment leaves, each known from any of its loads."""
     axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     made: Made | None = None  #: set by ``mffit spin``
+    reasons: tuple[str, ...] = ()  #: against trusting it, set by ``mffit spin``; a build judges the whole
+
+    @property
+    def trusted(self) -> bool:
+        """Whether ``mffit spin`` found nothing against the result."""
+        return not self.reasons
 
     @property
     def headline(self) -> str:

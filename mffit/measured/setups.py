@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from mffit.measured.at_zero import PathZeros, zeros_by_path
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce
 from mffit.measured.result import Measured, SetupResult, SetupScatter
+from mffit.measured.sideslip_zero import SetupAngle
 from mffit.measured.sources import named
 from mffit.measured.zero_split import split_of_zero
 from mffit.points import Points
@@ -30,13 +31,19 @@ SCATTER = "scatter of repeated set-ups"
 
 
 def results_of_setups(
-    found: Sequence[PathZeros], paths: Sequence[PathForce], C_gamma: UFloat, r_e: UFloat, config: Config
+    found: Sequence[PathZeros],
+    paths: Sequence[PathForce],
+    axes: Mapping[str, SetupAngle],
+    C_gamma: UFloat,
+    r_e: UFloat,
+    config: Config,
 ) -> tuple[SetupResult, ...]:
     """Turn slip and eps_gamma of every path and set-up alone; empty if there is only one.
 
     Parameters
     ----------
     found, paths : (k,) readings at zero and turn-slip force
+    axes : alpha_M of the set-ups that were run both ways
     C_gamma : camber stiffness, less what the rig adds to it [N/rad]
     r_e : effective radius [m]
     config : declares what the alignment leaves
@@ -46,10 +53,10 @@ def results_of_setups(
     out = []
     for zero, path in zip(found, paths, strict=True):
         alone = method.camber_reduction(path.force, C_gamma, r_e, path.R, path.sign)
-        slip = (zero.readings.forward - zero.readings.backward) / 2.0
         left = config.rig.u("alpha_0_deg")
-        beyond = bool(abs(slip) > left)  # NaN without backward runs
-        split = split_of_zero(path.alpha_M, path.at.C_alpha, left)
+        alpha_M = axes[path.setup].at(zero.group.load) if path.setup in axes else None
+        beyond = alpha_M is not None and bool(abs(path.at.C_alpha * alpha_M.nominal_value) > left)
+        split = split_of_zero(alpha_M, path.at.C_alpha, left)
         out.append(
             SetupResult(
                 path.setup,
@@ -57,7 +64,7 @@ def results_of_setups(
                 method.known_quantity(path.force, "N"),
                 method.known_quantity(alone.C_phit, "Nm"),
                 method.known_quantity(alone.epsilon_gamma, "-"),
-                method.quantity(path.alpha_M, "rad"),
+                method.quantity(alpha_M, "rad"),
                 beyond,
                 beyond and split is not None and split.axis_is_clear,
             )

@@ -24,6 +24,7 @@ from mffit.measured.evidence import DirectEvidence
 from mffit.measured.groups import LoadGroup, flipped
 from mffit.measured.load_slopes import LoadSlopes
 from mffit.measured.paths import PathForce, TurnSlipStiffness, least_uncertain_mean, turn_slip_stiffness
+from mffit.measured.slip_stiffness import SlipStiffness, slip_stiffness
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class Turning:
     stiffness: TurnSlipStiffness
     force: UFloat  #: on the usual path [N]
     conicity: UFloat | None  #: from both mounts [N]
-    play: UFloat  #: sideslip that the correction of the play leaves [rad]
+    alpha_M: UFloat | None  #: sum of misalignment and ply-steer of the first set-up whose one is known [rad]
 
     @property
     def zeros(self) -> ZeroReadings:
@@ -52,12 +53,6 @@ class Turning:
         """Sign of the usual path's turn slip."""
         return self.paths[0].sign
 
-    @property
-    def alpha_M(self) -> UFloat | None:
-        """Sum of misalignment and ply-steer [rad] on the first path that was run both ways."""
-        found = next((path.alpha_M for path in self.paths if path.alpha_M is not None), None)
-        return None if found is None else found + self.play
-
 
 def turning(
     evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes
@@ -71,29 +66,42 @@ def turning(
     troubles: list[str] = []
     for path in found:
         troubles += unlike_zeros(points, path.group, slopes.C_alpha, config)
-    both = (slopes.C_alpha, slopes.C_gamma)
+    stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
+    angles = {name: axis.at(group.load) for name, axis in evidence.axes.items()}
     raw = {
-        path.place: turn_slip_of_path(path, both, rig, config, evidence.excess.get(path.setup))
+        path.place: turn_slip_of_path(
+            path,
+            stiffness,
+            slopes.C_gamma,
+            rig,
+            config,
+            evidence.excess.get(path.setup),
+            angles.get(path.setup),
+        )
         for path in found
     }
-    measured, expected = _conicity(evidence, group, slopes, raw)
+    measured, expected = _conicity(evidence, group, slopes, stiffness, raw)
     # Conicity has the same sign on every path.
-    play = rest_of_play(config)
-    floating = 0.0 if slopes.C_alpha is None else abs(slopes.C_alpha.nominal_value) * play
+    floating = abs(stiffness.C_alpha.nominal_value) * rest_of_play(config)
     paths = tuple(path._replace(force=path.force - expected + floating) for path in raw.values())
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
         alone = [known_quantity(C, "Nm") for C in combined.of_paths]
         troubles.append(notes.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
     force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
-    made = Turning(tuple(found), paths, combined, force, measured, play)
+    alpha_M = next((angles[path.setup] for path in found if path.setup in angles), None)
+    made = Turning(tuple(found), paths, combined, force, measured, alpha_M)
     if combined.C_phit.nominal_value <= 0.0:
         refuse_inward(force.nominal_value, group.load, made.alpha_M, config)
     return made, troubles
 
 
 def _conicity(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, normal: Mapping[PathInSetup, PathForce]
+    evidence: DirectEvidence,
+    group: LoadGroup,
+    slopes: LoadSlopes,
+    stiffness: SlipStiffness,
+    normal: Mapping[PathInSetup, PathForce],
 ) -> tuple[UFloat | None, UFloat]:
     """The conicity force [N] from both mounts, None with one mount only; and the one to correct with.
 
@@ -109,7 +117,7 @@ def _conicity(
         if usual is None:
             continue
         assert evidence.rig is not None
-        other = turn_slip_of_path(path, (slopes.C_alpha, slopes.C_gamma), evidence.rig, evidence.config)
+        other = turn_slip_of_path(path, stiffness, slopes.C_gamma, evidence.rig, evidence.config)
         count = min(len(usual.readings), len(other.readings))
         halves.append((_mean(usual, count) - _mean(other, count)) / 2.0)
     if not halves:

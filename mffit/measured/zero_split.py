@@ -26,8 +26,8 @@ class ZeroSplit(NamedTuple):
         return _is_clear(self.misalignment.nominal_value, self.misalignment.std_dev)
 
 
-def split_of_zero(alpha_M: UFloat | None, C_alpha: float | None, u_force: float) -> ZeroSplit | None:
-    """The parts by their priors; None without both directions.
+def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> ZeroSplit | None:
+    """The parts by their priors; None without both directions in the set-up.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: float | None, u_force: float)
     The sum is divided in the ratio of the prior variances. If it is far beyond both priors, the declared alignment is
     contradicted, as ply-steer is a property of tyres and no tyre has so much: the axis then gets the variance that is missing.
     """
-    if alpha_M is None or C_alpha is None:
+    if alpha_M is None:
         return None
     axis, tyre = u_force / abs(C_alpha), usual_ply_steer()
     size = abs(alpha_M.nominal_value)
@@ -77,6 +77,16 @@ def at_true_zero(
     return C_alpha - bend * off
 
 
+def camber_at_true_zero(C_alpha: float, bend: UFloat, split: ZeroSplit) -> UFloat:
+    """Camber stiffness at true zero of sideslip over that at the reading of zero.
+
+    Camber that acts as sideslip loses its force with the bend of the sideslip curve, camber with a force of its own does not.
+    Every share between them is as likely: a rectangular distribution from 0 to 1 (JCGM 100, 4.3.7).
+    """
+    share = named(0.5, 1.0 / math.sqrt(12.0), "camber stiffness off true zero", "-")
+    return 1.0 - share * (bend / C_alpha) * split.misalignment
+
+
 class AlignmentVerdict(NamedTuple):
     """Whether the slip force at zero exceeds what the rig's own alignment leaves."""
 
@@ -94,7 +104,7 @@ def alignment_verdict(config: Config, row: LoadResult) -> AlignmentVerdict:
     if row.alpha_M is None:
         angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
         return AlignmentVerdict(False, False, notes.not_separable(force, angle, left))
-    slip = (row.F_forward - row.F_backward) / 2.0
+    slip = row.slip_force(row.alpha_M.value)
     beyond = abs(slip) > left
     axis, tyre = row.misalignment, row.ply_steer
     assert axis is not None

@@ -5,7 +5,7 @@ from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
 from mffit.pipeline.exporting import write_tydex
 from mffit.pipeline.fleets import fleet
-from mffit.pipeline.intake import init_from, write_sniffed
+from mffit.pipeline.intake import init_from, project_of, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
@@ -23,6 +23,7 @@ __all__ = [
     "init_from",
     "plan",
     "predict",
+    "project_of",
     "show",
     "spin",
     "verify",

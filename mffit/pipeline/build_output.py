@@ -10,6 +10,7 @@ import pandas as pd
 import tomli_w
 
 from mffit import config as configuration
+from mffit import prediction
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.fit import name_at_temperature
@@ -18,7 +19,6 @@ from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.members import write_members
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
-from mffit import prediction
 from mffit.quantities import column
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json

@@ -24,7 +24,7 @@ from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.campaigns import campaigns_of, projects_of
 from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
-from mffit.pipeline.judging import judged
+from mffit.pipeline.judging import judged, said
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
@@ -34,9 +34,6 @@ from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult
 from tir import Tyre
-
-NOT_TRUSTED = "the result is not to be trusted: {}"
-"""The warning about a reason."""
 
 
 def build(
@@ -114,8 +111,7 @@ def build(
         members=members,
         plain=fitting.plain_use(config),
         warnings=(
-            *(NOT_TRUSTED.format(reason) for reason in trust.reasons),
-            *trust.doubts,
+            *said(trust),
             *warned,
             *base_warnings(config, base),
             *reading.warnings,

@@ -106,11 +106,14 @@ def points_of_all(
         return reading, {}
     own = config.path.name if config.path is not None else "this project"
     parts, warnings, left_out, others = [_named(reading.points, own, "")], [], [], {}
+    as_read, taken_off = [_named(reading.as_read or reading.points, own, "")], list(reading.taken_off)
     for index, (row, other) in enumerate(zip(config.campaign, projects, strict=True)):
         found = read_points(other, continuous=continuous)
         _refuse_other_radii(config, reading.points, found.points, index)
         folder = Path(row.toml).parent.as_posix()
         parts.append(_named(found.points, row.toml, folder))
+        as_read.append(_named(found.as_read or found.points, row.toml, folder))
+        taken_off += [f"{row.toml}: {sentence}" for sentence in found.taken_off]
         left_out += [replace(one, file=f"{folder}/{one.file}") for one in found.left_out]
         warnings += [f"{row.toml}: {sentence}" for sentence in found.warnings]
         others[row.toml] = other
@@ -119,6 +122,8 @@ def points_of_all(
             points=concatenate(parts),
             warnings=(*reading.warnings, *warnings),
             left_out=(*reading.left_out, *left_out),
+            taken_off=tuple(taken_off),
+            as_read=concatenate(as_read) if taken_off else None,
         ),
         others,
     )

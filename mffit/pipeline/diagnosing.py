@@ -98,6 +98,9 @@ def diagnose(
             coefficients=known,
             seen=seen,
             repair_all=repair_all,
+            as_read=reading.as_read,
+            taken_off=reading.taken_off,
+            culprits=other is None,
             progress=progress,
         )
     hashes = input_hashes(config)
@@ -111,8 +114,8 @@ def diagnose(
         made=made(hashes),
         lab=config.lab,
         left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
-        trust=judged_diagnosis(diagnosis),
     )
+    diagnosis = replace(diagnosis, trust=judged_diagnosis(diagnosis))
     diagnosis = replace(
         diagnosis,
         headline=wording.headline(diagnosis),

@@ -10,7 +10,7 @@ from mffit import config as configuration
 from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
-from mffit.recordings import DiscPath, Sniffed, disc_signs, project_text, sniff
+from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.project_file import load_beyond, slug
 from mffit.recordings.sniffed import STAND_IN, configuration_of
 from mffit.recordings.stretch_table import stretch_table
@@ -57,28 +57,30 @@ def init_from(
     """
     _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
-    sniffed = sniff(files, unloaded_radius=unloaded_radius)
-    _check_recordings(sniffed, nominal_pressure)
-    if disc is None and not belt and (signs := disc_signs(sniffed)):
+    stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
+    sniffed, text = project_of(sniff(files, unloaded_radius=unloaded_radius), folder, stated)
+    return sniffed, _written(folder, sniffed, text)
+
+
+def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:
+    """The text of the ``tyre.toml`` for recordings, and what they hold with the doubts that the statements raise.
+
+    Raises
+    ------
+    InputError
+        The pressure is unknown, no axes fit, or the recordings look like those of a disc and nothing is stated about the path.
+    """
+    _check_recordings(sniffed, stated)
+    if stated.disc is None and not stated.belt and (signs := disc_signs(sniffed)):
         raise InputError(
             f"the recordings look like those of a disc ({'; '.join(signs)}): give --disc --path-radius M --path-centre "
             "left|right, or --belt if the path was straight",
             file=sniffed.recordings[0].path,
         )
-    if doubt := load_beyond(sniffed, nominal_load):
+    if doubt := load_beyond(sniffed, stated.nominal_load):
         reading = sniffed.reading
         sniffed = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, doubt)))
-    text = project_text(
-        sniffed,
-        folder,
-        unloaded_radius=unloaded_radius,
-        nominal_load=nominal_load,
-        nominal_pressure=nominal_pressure,
-        name=name,
-        disc=disc,
-        belt=belt,
-    )
-    return sniffed, _written(folder, sniffed, text)
+    return sniffed, project_text(sniffed, folder, stated)
 
 
 def _check_tyre(name: str | None, radius: float | None, load: float | None, pressure: float | None) -> None:
@@ -100,10 +102,10 @@ def _check_tyre(name: str | None, radius: float | None, load: float | None, pres
         raise InputError(error.sentence, key=f"--{key}") from None
 
 
-def _check_recordings(sniffed: Sniffed, nominal_pressure: float | None) -> None:
+def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
     """Refuse recordings from which no project can be made."""
     first = sniffed.recordings[0].path
-    if nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
+    if stated.nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
         raise InputError(
             "no pressure is measured, so the nominal pressure is unknown: give --nominal-pressure KPA",
             file=first,
@@ -112,7 +114,7 @@ def _check_recordings(sniffed: Sniffed, nominal_pressure: float | None) -> None:
         raise InputError(sniffed.reading.warnings[-1], file=first)
     if sniffed.of_two_tyres:
         raise InputError(sniffed.reading.warnings[-1])
-    if not sniffed.axes:
+    if not sniffed.axes and stated.axes is None:
         raise InputError(
             f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, which no tyre does; write the tyre.toml with "
             "`mffit init DIR` and map the column that has the wrong sign with scale = -1",
@@ -123,7 +125,7 @@ def _check_recordings(sniffed: Sniffed, nominal_pressure: float | None) -> None:
 def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:
     """Write ``tyre.toml`` without radius and load, ``stretches.csv`` and a picture of each recording."""
     folder = Path(folder)
-    return _written(folder, sniffed, project_text(sniffed, folder, unloaded_radius=None, nominal_load=None))
+    return _written(folder, sniffed, project_text(sniffed, folder))
 
 
 def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:

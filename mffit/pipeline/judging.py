@@ -1,4 +1,4 @@
-"""Whether the result of a build or of a diagnosis is to be trusted: what the rules of trust need, and their judgement."""
+"""Whether a build, a direct measurement or a diagnosis is to be trusted: what the rules need, and their judgement."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import tir
 from mffit.config import Config, axis_signs
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.noise import Origin
+from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre
 from mffit.diagnosis.remains import Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
@@ -19,7 +20,16 @@ from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
+from mffit.suspicion import (
+    CamberReduction,
+    Doubt,
+    FinishedFit,
+    JudgedMeasurement,
+    LeftOutSweeps,
+    Outlier,
+    Trust,
+    judge,
+)
 from tir import Tyre
 
 
@@ -47,11 +57,26 @@ def judged(
         cause_is_certain=bool(fitted.doubts or left.sweep)
         or (left.effect is not None and left.effect.significant),
         held=left.held,
+        left=fitted.left,
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
+        sideslip_zeros=measured.sideslip_zeros,
     )
     plain = replace(finished, model=fitted.model)
     return replace(judge(finished), over_noise=plain.over_noise), left
+
+
+def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
+    """The judgement of direct measurements by the rules that need no fit."""
+    reduction = _camber_reduction(config, measured)
+    return judge(
+        JudgedMeasurement(points=points, camber_reduction=reduction, sideslip_zeros=measured.sideslip_zeros)
+    )
+
+
+def said(trust: Trust) -> tuple[str, ...]:
+    """Reasons and doubts as warnings."""
+    return (*(f"the result is not to be trusted: {reason}" for reason in trust.reasons), *trust.doubts)
 
 
 def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
@@ -69,16 +94,32 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
             fitted = diagnosis.gap_after.rms(name)
             uneven = max(own) / max(float(np.median(own)), 1e-12)
             left_out[name] = LeftOutSweeps(len(own), fitted, predicted, predicted, uneven)
-    return judge(
-        FinishedFit(
-            points=points,
-            model=after,
-            used=_used(points, after, diagnosis.outliers),
-            r2={name: found.r2 for name, found in with_points(after, points).items()},
-            left_out=left_out,
-            structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
-        )
+    finished = FinishedFit(
+        points=points,
+        model=after,
+        used=_used(points, after, diagnosis.outliers),
+        r2={name: found.r2 for name, found in with_points(after, points).items()},
+        left_out=left_out,
+        structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
     )
+    return judge(replace(finished, stranger=_stranger(diagnosis, finished)))
+
+
+def _stranger(diagnosis: Diagnosis, finished: FinishedFit) -> str:
+    """Why the diagnosed model is not of this tyre; empty if it may be."""
+    for remark in diagnosis.notes:
+        if isinstance(remark, AnotherTyre | HardlyThisTyre):
+            return wording.note(remark).rstrip(".")
+    sweeps = np.unique(diagnosis.points.sweep).tolist()
+    for name in finished.used:
+        missed = sum(finished.wrong(name, diagnosis.points.sweep == k) for k in sweeps)
+        if 2 * missed > len(sweeps) > 1:
+            return (
+                f"the model misses {name} in {missed} of {len(sweeps)} sweeps by more than their noise explains, so that no "
+                "single sweep is at fault: it is a model of another tyre, or lacks what no effect of the library describes; give "
+                "the model of this tyre, or fit it first (mffit build)"
+            )
+    return ""
 
 
 def _cause(doubts: Sequence[Doubt], left: Remains) -> str:

@@ -13,6 +13,7 @@ from mffit.fit.constants import FULL_WEIGHT
 from mffit.fit.weights import stated_or_nominal
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
+from mffit.points.noise import stating
 from mffit.quantities import CHANNELS
 from mffit.suspicion import Misread, Outlier
 from mffit.suspicion.misread import misread_sweep
@@ -65,12 +66,14 @@ def _discounted(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
     if fitted.search is None:
         return
     for channel, sigma in fitted.search.problem.sigma.items():
-        stated = stated_or_nominal(getattr(points, f"u_{channel}"), getattr(points, channel))
+        stated = stated_or_nominal(points.u(channel), points.channel(channel))
         used = np.isfinite(stated) & np.isfinite(sigma)
         if not np.any(used):
             continue
-        factor = np.where(used, sigma, 1.0) / np.where(used, stated, 1.0)
-        weight = np.where(used, (np.min(factor[used]) / factor) ** 2, 1.0)
+        factor, weight = np.where(used, sigma, 1.0) / np.where(used, stated, 1.0), np.ones(len(points))
+        states = stating(points.u(channel))
+        for own in (used & states, used & ~states):  # the uncertainty of those that state none was estimated
+            weight[own] = (np.min(factor[own], initial=np.inf) / factor[own]) ** 2
         for file in np.unique(points.file[weight < FULL_WEIGHT]).tolist():
             rows = np.flatnonzero((weight < FULL_WEIGHT) & (points.file == file))
             yield LeftOut(

@@ -21,18 +21,26 @@ from mffit.measured import Alignment, Measured
 from mffit.output import output_folder
 from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.judging import judged_measurement, said
 from mffit.points import Points
 from mffit.results import as_json
 from tir import Tyre
 
 
 def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
-    """The alignment check and the direct method only; writes ``spin.json`` if ``out`` is given."""
+    """The alignment check and the direct method only, judged by the rules that need no fit.
+
+    Writes ``spin.json`` if ``out`` is given.
+    """
     config = configuration.load(config)
     reading = read_points(config)
     _, measured = measure(config, reading.points, read_base(config))
+    trust = judged_measurement(config, reading.points, measured)
     measured = replace(
-        measured, warnings=(*reading.warnings, *measured.warnings), made=made(input_hashes(config))
+        measured,
+        warnings=(*said(trust), *reading.warnings, *measured.warnings),
+        reasons=trust.reasons,
+        made=made(input_hashes(config)),
     )
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:

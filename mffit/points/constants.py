@@ -147,6 +147,11 @@ FEWEST_SWEEPS_OF_LAG = Count(3, "-", "Fewest sweeps whose scatter gives the unce
 BINS_OF_HYSTERESIS = Count(25, "-", "Bins of the angle in which both ways of a sweep are compared.")
 PROVEN_LAG = Real(2.0, "-", "Standard uncertainties that a lag must exceed to be corrected.")
 
+# Noise of readings that state none
+FEWEST_POINTS_FOR_NEIGHBOURS = Count(
+    6, "-", "Fewest points of a sweep whose third differences show its noise."
+)
+
 # Definition of slip
 FORCE_NEAR_FREE_ROLLING = Real(
     0.3, "-", "Fx over the load up to which slip and force are nearly proportional, apart from a cubic term."
@@ -171,11 +176,6 @@ LARGEST_SHIFT_OF_SLIP = Real(
     0.12,
     "-",
     "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
-)
-CLEARLY_LESS_SCATTER = Real(
-    0.8,
-    "-",
-    "Scatter with the loaded radius over that without it below which the radius of the moment enters the shift.",
 )
 OUTLIER_OF_ZERO = Real(
     4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."

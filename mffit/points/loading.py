@@ -17,12 +17,13 @@ from mffit.errors import InputError
 from mffit.points import constants, levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
+from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
 from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
-from mffit.points.slip_zero import against_free_rolling
+from mffit.points.slip_zero import Driven, SlipZero, against_free_rolling
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
@@ -47,7 +48,11 @@ class Reading(NamedTuple):
     notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
     lags: tuple[
         Lag, ...
-    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path
+    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path at a known speed
+    taken_off: tuple[
+        str, ...
+    ] = ()  #: sentences about errors of the rig that nobody declared and that were taken off
+    as_read: Points | None = None  #: the points with these errors; None without any
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -62,7 +67,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     Parameters
     ----------
     config : the checked ``tyre.toml``
-    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read
+    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read; and a zero of the
+        longitudinal slip that is an error of the rig
     may_be_empty : return no points instead of raising an error if no recording gives one
 
     Returns
@@ -84,21 +90,27 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    sweeps, of_slip = against_free_rolling(found.sweeps, config)
+    timed = [evenly_timed(sweep) for sweep in found.sweeps]
+    clocked = with_common_clock([sweep for sweep, _ in timed])
+    sweeps, of_slip = against_free_rolling(clocked, config, with_errors=continuous)
     series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [
         *found.warnings,
+        *(sentence for _, sentences in timed for sentence in sentences),
         *of_slip.warnings,
         *(sentence for part in reduced for sentence in part.warnings),
     ]
     straight = config.rig.type == "flat-track"
+    is_known = "nominal_speed" in config.tyre.model_fields_set or all(
+        "V_mps" in sweep.table for sweep in sweeps if sweep.is_series
+    )
     if straight and not continuous and np.any(points.continuous):
         lag = common([one for part in reduced for one in part.lags])
         points = settled_sweeps(points, lag)
-        warnings += _of_motion(reduced, lag)
+        warnings += _of_motion(reduced, lag, None if is_known else config.tyre.nominal_speed)
     steady = points if continuous and straight else points.select(~points.continuous)
     stretches = tuple(note for part in reduced for note in part.stretches)
     left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
@@ -113,9 +125,32 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    lags = [one for part in reduced for one in part.lags if straight and np.isfinite(one.lag)]
+    lags = [one for part in reduced for one in part.lags if straight and is_known and np.isfinite(one.lag)]
     excluded = _excluded(found.excluded, phi_t)
-    return Reading(kept, tuple(warnings), stretches, left_out, excluded, stepped, of_slip.notes, tuple(lags))
+    return Reading(
+        kept,
+        tuple(warnings),
+        stretches,
+        left_out,
+        excluded,
+        stepped,
+        of_slip.notes,
+        tuple(lags),
+        tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
+        _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
+    )
+
+
+def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points | None:
+    """The points with the slip as the rig read it; None if nothing was taken off."""
+    if not taken_off:
+        return None
+    kappa = points.kappa.copy()
+    of = Driven(points.kappa, points.Fx, points.Fz, points.alpha, points.gamma, points.p, points.RL, points.V)
+    for file, zero in taken_off.items():
+        own = points.file == points.files.index(file) if file in points.files else np.zeros(len(points), bool)
+        kappa[own] = ((1.0 + kappa) * (1.0 + zero.at(of)) - 1.0)[own]
+    return points.replace(kappa=kappa)
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:
@@ -161,8 +196,8 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     return points.replace(alpha=alpha - taken, continuous=False, table=table)
 
 
-def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
-    """A sentence about the lag and hysteresis of the moving sweeps."""
+def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: float | None) -> list[str]:
+    """A sentence about the lag and hysteresis of the moving sweeps; a time if the speed is only ``assumed`` [m/s]."""
     if not any(part.lags for part in reduced):
         return []
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
@@ -175,9 +210,15 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str
     proven = abs(value) > constants.PROVEN_LAG * u
     said = "taken off the angle" if proven else "not proven and not taken off"
     hysteresis = rms(np.array([one.hysteresis for one in known]))
+    size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"
+    if assumed is not None:
+        size = (
+            f"{1e3 * value / assumed:.3g} +- {1e3 * u / assumed:.2g} ms (k = 1; a way only with a speed: name its column V_mps "
+            "under [columns], or give nominal_speed)"
+        )
     return [
-        f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
-        f"the sideslip angle: {said}; the remaining difference between the ways up and down is +-{hysteresis:.0f} N"
+        f"the side force of {len(known)} continuous sweeps lags {size} behind the sideslip angle: {said}; the remaining "
+        f"difference between the ways up and down is +-{hysteresis:.0f} N"
     ]
 
 
@@ -203,7 +244,7 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
-    points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
+    points = concatenate([reduce(_completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 

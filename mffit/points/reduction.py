@@ -136,5 +136,7 @@ def _check_time(sweep: Sweep) -> None:
         sentence = (
             "time does not rise from row to row; sort the rows, or give every run its own label in column run"
         )
+        if not np.any(np.diff(sweep.time)):
+            sentence = "time is the same in all rows; map the column that holds the time of the samples"
         line = int(sweep.line[falls[0] + 1])
         raise InputError(sentence, file=sweep.file, line=line, column="time_s")

@@ -7,7 +7,7 @@ force is zero, ``kappa = (1 + s) / (1 + s0) - 1``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -16,6 +16,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import constants
+from mffit.points.wheel_speed import FROM_SPEEDS, is_derived, with_slip
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
 from tir.errors import listed
@@ -25,10 +26,11 @@ FREE, LOADED = "free-rolling", "loaded-radius"
 
 
 class SlipRemarks(NamedTuple):
-    """Sentences about the definition of slip."""
+    """What is to be said of the definition of slip, and the shifts that nobody declared."""
 
     notes: tuple[str, ...]  #: what was taken, where nothing contradicts it
     warnings: tuple[str, ...]  #: a contradiction, or a shift that nobody declared
+    taken_off: Mapping[str, tuple[SlipZero, str]]  #: by file, such a shift, and the sentence about it
 
 
 class Driven(NamedTuple):
@@ -41,6 +43,7 @@ class Driven(NamedTuple):
     gamma: np.ndarray  #: [rad]
     p: np.ndarray  #: [Pa]
     RL: np.ndarray  #: loaded radius [m]; NaN where it was not measured
+    V: np.ndarray  #: speed [m/s]; NaN where it was not measured
 
 
 class ZeroAtLoad(NamedTuple):
@@ -110,7 +113,10 @@ class SlipZero:
 
 
 def slip_zero(of: Driven) -> SlipZero | None:
-    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie on either side of zero force."""
+    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie near zero force.
+
+    Enough lie on either side of it, or at it: those of an undriven wheel, beside slip that was run in steps.
+    """
     if (
         not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
         >= constants.SMALLEST_SWEEP_OF_SLIP
@@ -119,12 +125,13 @@ def slip_zero(of: Driven) -> SlipZero | None:
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load
-    near = np.all(np.isfinite([*of[:-1], force]), axis=0) & (
+    near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (
         load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
     )
     near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
     some = 0.3 * constants.FORCE_NEAR_FREE_ROLLING
-    if min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO:
+    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO
+    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS_AT_ZERO:
         return None
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
@@ -136,11 +143,14 @@ def slip_zero(of: Driven) -> SlipZero | None:
     per_radius = None
     if np.all(np.isfinite(of.RL)):
         other, left = _robust_lines(design, (1.0 + used.slip) / used.RL)
-        if left * middle[-1] < constants.CLEARLY_LESS_SCATTER * scatter:
+        if left * middle[Driven._fields.index("RL")] < scatter:
             per_radius = other[:k]
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     every = np.isfinite(of.slip) & np.isfinite(force)
+    if in_steps:  # few readings show the slope at zero: the whole curve shows sign and unit
+        driven = every & (np.abs(force) > some)
+        inverse = float(np.median((of.slip - _conditions(of, middle) @ found)[driven] / force[driven]))
     if inverse * float(np.mean(of.slip[every] * force[every])) < 0.0:
         return None  # few points near zero: their line contradicts the whole curve
     return SlipZero(
@@ -152,18 +162,24 @@ def slip_zero(of: Driven) -> SlipZero | None:
     )
 
 
-def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple[Sweep, ...], SlipRemarks]:
+def against_free_rolling(
+    sweeps: Sequence[Sweep], config: Config, *, with_errors: bool = False
+) -> tuple[tuple[Sweep, ...], SlipRemarks]:
     """The sweeps with slip against free rolling, and what is to be said of the definition of slip and the shift.
 
-    Files whose slip has the same heading share the definition and the zero.
+    Files whose slip has the same heading share the definition and the zero. ``with_errors``: a zero that is the same at every
+    load, and that nobody declared, stays in the slip, as an error of the rig.
     """
-    stated = {}
+    stated: dict[str, tuple[str, str | None]] = {}
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
+    sweeps, derived = with_slip(sweeps, config.tyre.unloaded_radius)
+    stated |= {sweep.file: (FROM_SPEEDS, None) for sweep in sweeps if is_derived(sweep)}
     out = list(sweeps)
     notes: list[str] = []
-    warnings: list[str] = []
+    warnings: list[str] = [*derived]
+    taken_off: dict[str, tuple[SlipZero, str]] = {}
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
         readings = _joined_readings(sweeps[k] for k in rows)
@@ -177,15 +193,20 @@ def against_free_rolling(sweeps: Sequence[Sweep], config: Config) -> tuple[tuple
         wrong = _contradiction(heading, zero)
         if wrong:
             raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
+        if with_errors and against is None and not zero.falls:
+            continue
+        said = sentence(heading, against, zero)
         if not (against == FREE and zero.is_free_rolling):  # declared so, and it is
             expected = against is None if zero.is_free_rolling else against == LOADED
-            (notes if expected else warnings).append(sentence(heading, against, zero))
+            (notes if expected else warnings).append(said)
         if against == LOADED or (against is None and not zero.is_free_rolling):
+            if against is None:
+                taken_off |= {sweeps[k].file: (zero, said) for k in rows}
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
                 kappa = (1.0 + out[k].kappa) / (1.0 + shift) - 1.0
                 out[k] = replace(out[k], kappa=kappa, table=out[k].table.assign(kappa_free_rolling=kappa))
-    return tuple(out), SlipRemarks(tuple(notes), tuple(warnings))
+    return tuple(out), SlipRemarks(tuple(notes), tuple(warnings), taken_off)
 
 
 def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
@@ -240,7 +261,9 @@ def _contradiction(heading: str, zero: SlipZero) -> str:
 
 def readings_of(sweep: Sweep) -> Driven:
     """The readings of a sweep."""
-    return Driven(sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p, sweep.RL)
+    return Driven(
+        sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p, sweep.RL, np.abs(sweep.V)
+    )
 
 
 def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
@@ -249,7 +272,10 @@ def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
 
 
 def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
-    """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip."""
+    """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip.
+
+    The free radius grows with the square of the speed, the last column.
+    """
     of_setting = dict(zip(Driven._fields, middle, strict=True))
     load = np.abs(of.Fz) / of_setting["Fz"] - 1.0
     camber = np.abs(of.gamma)
@@ -263,6 +289,7 @@ def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
         camber**2,
         camber * load,
         np.abs(of.alpha),
+        np.nan_to_num((of.V / of_setting["V"]) ** 2 - 1.0) if of_setting["V"] > 0.0 else np.zeros(len(load)),
     )
     return np.column_stack(columns)
 
@@ -298,6 +325,7 @@ def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> 
             gamma=np.full(len(loads), np.min(np.abs(of.gamma))),
             p=np.full(len(loads), np.median(of.p)),
             RL=np.full(len(loads), np.nan),
+            V=np.full(len(loads), middle[Driven._fields.index("V")]),
         ),
         middle,
     )

@@ -51,7 +51,9 @@ def write_table(found: pd.DataFrame, out: Path) -> None:
         raise InputError(f"cannot be written ({error.strerror}); give another name", file=out) from None
 
 
-def checked(table: pd.DataFrame, *, file: Path | None = None, lines: np.ndarray | None = None) -> pd.DataFrame:
+def checked(
+    table: pd.DataFrame, *, file: Path | None = None, lines: np.ndarray | None = None
+) -> pd.DataFrame:
     """The table with numbers in the columns that are used; those that must be stated are finite.
 
     Raises

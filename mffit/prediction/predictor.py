@@ -29,7 +29,9 @@ class MissedChannel:
 
     smooth: Smooth  #: m functions
     components: Components
-    missed: np.ndarray  #: (m,) weights of the functions [unit of the channel], the coefficients as they are in the file
+    missed: (
+        np.ndarray
+    )  #: (m,) weights of the functions [unit of the channel], the coefficients as they are in the file
     root: np.ndarray
     """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of the coefficients."""
     noise: float  #: of a usual reading [unit of the channel]
@@ -43,8 +45,8 @@ class MissedChannel:
         The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
         off counts in its variance.
 
-        ``slopes`` (n, k) are derivatives by the coefficients, ``path`` (n,) the correlation of what the formula misses with that on
-        the measured path.
+        ``slopes`` (n, k) are derivatives by the coefficients, ``path`` (n,) the correlation of what the formula misses with
+        that on the measured path.
         """
         likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
         columns = np.hstack([likeness[:, None] * self.smooth.columns(settings), slopes])
@@ -136,7 +138,6 @@ class Predictor:
             means.append(mean)
             variances.append(variance)
         return np.mean(means, axis=0), np.mean(variances, axis=0), np.var(means, axis=0)
-
 
     def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
         """Correlation (n,) of what the formula misses with that on the measured path, as over a length of its curvature."""

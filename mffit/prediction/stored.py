@@ -23,7 +23,7 @@ ABOUT = "What mffit predict needs; arrays are base64 of little-endian numbers, r
 
 
 def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
-    """Write what is known; ``file`` is the name of the plain property file in the same folder, ``fitted`` that of the fitted model."""
+    """Write what is known; ``file`` is the plain property file in the same folder, ``fitted`` that of the fitted model."""
     content = {
         "about": ABOUT,
         "file": file,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -15,11 +14,6 @@ from mffit.recordings import constants
 from mffit.recordings.sniffed import Sniffed
 from mffit.sweeps import formats
 
-BACKWARD = re.compile(
-    r"backward|reverse|r(?:ü|ue)ckw(?:ä|ae)rts|(?<![a-z])(?:bwd|rev)(?![a-z])", re.IGNORECASE
-)
-"""Words in the name of a file that was recorded rolling backwards."""
-
 
 class DiscPath(NamedTuple):
     """The path of a disc."""
@@ -28,15 +22,10 @@ class DiscPath(NamedTuple):
     centre: str  #: side of the disc's centre, "left" or "right", seen rolling forwards
 
 
-def rolls_backward(path: Path) -> bool:
-    """Whether the name of a recording says that the wheel rolled backwards."""
-    return BACKWARD.search(formats.stem(path.name)) is not None
-
-
 def disc_signs(sniffed: Sniffed) -> list[str]:
     """What speaks for a disc, each in words; empty for recordings of a belt."""
     found = []
-    backward = [r.path.name for r in sniffed.recordings if rolls_backward(r.path)]
+    backward = [r.path.name for r in sniffed.recordings if r.backward]
     if backward:
         found.append(f"{backward[0]} is named as rolling backwards")
     if any(_both_ways(sniffed.points, r.path) for r in sniffed.recordings):

@@ -18,6 +18,7 @@ from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_re
 from mffit.recordings.unstated import Choice, FoundChannel, choices, customary, hot
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
+from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
@@ -27,6 +28,15 @@ CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d
 
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 """What is written in several ways in headings."""
+
+
+MISSED = {"Mz_Nm": "moments", "V_mps": "speeds", "p_kPa": "pressures"}
+"""Channels that are asked for by the unit of an unused column, and the word for what such units measure."""
+ABOUT_LETTERS = {
+    "C": "turned with the wheel carrier, about the wheel centre",
+    "H": "horizontal, about the wheel centre",
+}
+"""Letters of TYDEX whose axes are not those of the contact."""
 
 
 class Guess(NamedTuple):
@@ -62,6 +72,15 @@ class Guess(NamedTuple):
         return Column.model_validate(given)
 
 
+class ColumnChoice(NamedTuple):
+    """What a user says of a column."""
+
+    heading: str
+    channel: str  #: "" if it is not used
+    unit: str  #: "" if the file states it
+    minus: bool  #: the file has the other sign
+
+
 class Guesses(NamedTuple):
     """The channels of a file, by the contract's names, with remarks for the user."""
 
@@ -80,8 +99,9 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     columns = _number_columns(raw)
     slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)
+    columns, of_axes = _in_one_frame(columns)
     chosen, left_out = choices(columns, unloaded_radius)
-    remarks = [*left_out.values()]
+    remarks = [*of_axes, *left_out.values()]
     columns = {name: column for name, column in columns.items() if name not in left_out}
     if remark := customary(columns, chosen):
         remarks.append(remark)
@@ -98,12 +118,38 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
             found[SLIP] = _guess(
                 raw, defined.column, Choice(defined.unit, defined.why) if defined.unit else None
             )._replace(scale=defined.scale, against=defined.against, why=defined.why)
-    if "Mz_Nm" not in found:
-        remarks += _without_moment(raw, {guess.heading for guess in found.values()})
+    remarks += _without(raw, found)
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
+
+
+def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]) -> Guesses:
+    """The channels of a file with the columns that a user chose differently."""
+    if not choices:
+        return guessed
+    touched = {choice.heading for choice in choices}
+    chosen = {}
+    for choice in choices:
+        if choice.channel:
+            values = numbers(raw.column(choice.heading))
+            seen = values[np.isfinite(values)]
+            chosen[choice.channel] = Guess(
+                BY_NAME[choice.channel],
+                choice.heading,
+                stated=raw.unit(choice.heading),
+                unit=choice.unit,
+                lower=float(seen.min()) if len(seen) else np.nan,
+                upper=float(seen.max()) if len(seen) else np.nan,
+                why="as chosen",
+                scale=-1.0 if choice.minus else 1.0,
+            )
+    kept = {name: guess for name, guess in guessed.found.items() if guess.heading not in touched}
+    found = kept | chosen
+    words = touched | chosen.keys()
+    remarks = tuple(one for one in guessed.remarks if not words & set(re.split(r"[\s,:;()\"]+", one)))
+    return Guesses({c.name: found[c.name] for c in SWEEP_CHANNELS if c.name in found}, remarks)
 
 
 def _headings(raw: RawTable) -> dict[str, str]:
@@ -120,6 +166,24 @@ def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
     """Columns of numbers that are channels; the first known name with suitable readings counts."""
     named = {c.name: candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
     return {name: columns[0] for name, columns in named.items() if columns}
+
+
+def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
+    """The columns without moments in other axes than the first moment, and a remark on axes that TYDEX's letters state."""
+    letters = {name: letter_of(columns[name].heading) for name in (*FORCES, *MOMENTS) if name in columns}
+    of_moments = [letters[name] for name in reversed(MOMENTS) if name in letters]
+    odd = [name for name in MOMENTS if name in letters and letters[name] != of_moments[0]]
+    remarks = [
+        f"{columns[name].heading} is left out: it is in other axes than the other moments" for name in odd
+    ]
+    kept = {name: column for name, column in columns.items() if name not in odd}
+    for letter, what in ABOUT_LETTERS.items():
+        named = [kept[name].heading for name in letters if name in kept and letters[name] == letter]
+        if named:
+            remarks.append(
+                f"{', '.join(named)}: {what}, as TYDEX names it; converted to the contact frame and point"
+            )
+    return kept, remarks
 
 
 def candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:
@@ -185,20 +249,23 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
     return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
 
 
-def _without_moment(raw: RawTable, taken: Collection[str]) -> list[str]:
-    """Which columns may be the aligning moment that is missing."""
-    moment = BY_NAME["Mz_Nm"]
-    near = [
-        heading
-        for heading, unit in zip(raw.headings, raw.units, strict=True)
-        if unit and heading not in taken and _is_of_kind(unit, moment)
-    ]
-    if not near:
-        return []
-    return [
-        f"no heading is known to be {moment.name} ({moment.description}); unused columns in a unit of moments: "
-        f'{", ".join(near)}; if one of them is {moment.name}, name it under [columns], for example {moment.name} = "{near[0]}"'
-    ]
+def _without(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
+    """Which columns may be a channel that is missing, by their units."""
+    taken = {guess.heading for guess in found.values()}
+    remarks = []
+    for name, kind in MISSED.items():
+        channel = BY_NAME[name]
+        near = [
+            heading
+            for heading, unit in zip(raw.headings, raw.units, strict=True)
+            if unit and heading not in taken and _is_of_kind(unit, channel)
+        ]
+        if name not in found and near:
+            remarks.append(
+                f"no heading is known to be {name} ({channel.description}); unused columns in a unit of {kind}: "
+                f'{", ".join(near)}; if one of them is {name}, name it under [columns], for example {name} = "{near[0]}"'
+            )
+    return remarks
 
 
 def _without_time(raw: RawTable) -> str:

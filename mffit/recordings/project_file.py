@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import tomli_w
@@ -15,16 +16,20 @@ from mffit.config.globs import WILD
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings import constants
-from mffit.recordings.disc import DiscPath, disc_signs, rolls_backward
+from mffit.recordings.directions import rolls_backward
+from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
 from mffit.suspicion.all_files import load_below
+from mffit.sweeps import formats
 from mffit.sweeps.formats import stem
 
 TYRE_IN_TITLE = re.compile(
     r"\b(?:tyre|tire|reifen)\s*[:=]\s*(\S.*?)\s*(?=$|[;|]|\s[^\s:=]+\s*[:=](?:\s|$))", re.IGNORECASE
 )
 """What a title names as the tyre, up to its next entry."""
+MOST_OF_SIZE = 60
+"""Characters of a size or title that are written."""
 ZEROS_OF_A_DISC = [
     "# backlash_deg = 0.0       # full play of the sideslip axis; this and how well the zeros are known decide how certain",
     '# u_loadcell_offset_N = 10 # the camber reduction factor is; see "Run a programme on a disc" in the documentation',
@@ -47,30 +52,55 @@ SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 """The heading of a section in a text file, ``[DATA]``."""
 
 
-def project_text(
-    sniffed: Sniffed,
-    folder: Path,
-    *,
-    unloaded_radius: float | None,
-    nominal_load: float | None,
-    nominal_pressure: float | None = None,
-    name: str | None = None,
-    disc: DiscPath | None = None,
-    belt: bool = False,
-) -> str:
-    """The text of a ``tyre.toml``.
+class Stated(NamedTuple):
+    """What a user says of tyre and rig; None where the recordings decide, or where nothing is known."""
 
-    Parameters
-    ----------
-    sniffed : the recordings
-    folder : where the file will be; recordings are named relative to it
-    unloaded_radius : [m]; None leaves it to the user
-    nominal_load : [N]; None leaves it to the user
-    nominal_pressure : [kPa]; None takes the most frequent pressure
-    name : of the output files; None takes the name of the recording, or of the folder for several
-    disc : path of the disc; None for a belt, or if it is not known
-    belt : whether the path is known to be straight, whatever the recordings look like
-    """
+    unloaded_radius: float | None = None  #: [m]
+    nominal_load: float | None = None  #: [N]
+    nominal_pressure: float | None = None  #: [kPa]; else the most frequent pressure
+    nominal_speed: float | None = None  #: [m/s]; else the most frequent speed
+    name: str | None = (
+        None  #: of the output files; else the name of the recording, or of the folder for several
+    )
+    size: str | None = None
+    width: float | None = None  #: [m]; else as the size says
+    rim_radius: float | None = None  #: [m]; else as the size says
+    side: str | None = None
+    axes: str | None = None  #: else those that agree with physics
+    disc: DiscPath | None = None  #: None for a belt, or if it is not known
+    belt: bool = False  #: whether the path is known to be straight, whatever the recordings look like
+
+
+NOTHING_STATED = Stated()
+
+
+class TyreFound(NamedTuple):
+    """What recordings say of their tyre, in the digits that are written; None where they say nothing."""
+
+    name: str
+    size: str | None
+    width: float | None  #: [m]
+    rim_radius: float | None  #: [m]
+    nominal_pressure: float | None  #: [kPa]
+    nominal_speed: float | None  #: [m/s]
+
+
+def tyre_found(sniffed: Sniffed, folder: Path) -> TyreFound:
+    """What recordings, and the name of the folder of their project, say of the tyre."""
+    size = next((tyre for r in sniffed.recordings if (tyre := named_tyre(r.about))), "")
+    width, rim_radius = _of_size(size)
+    return TyreFound(
+        _name(sniffed.recordings, folder),
+        size[:MOST_OF_SIZE] or None,
+        width,
+        rim_radius,
+        _pressure(sniffed),
+        _speed(sniffed),
+    )
+
+
+def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED) -> str:
+    """The text of a ``tyre.toml``; recordings are named relative to ``folder``, where it will be."""
     recordings = sniffed.recordings
     shared = _shared_columns(sniffed)
     of_all = [remark for remark in recordings[0].remarks if all(remark in r.remarks for r in recordings)]
@@ -78,22 +108,14 @@ def project_text(
         [
             "# From the recordings below, as `mffit sniff` reads them. The comments say where each value comes from."
         ],
-        [
-            "[tyre]",
-            f"name = {quoted(name or _name(recordings, folder))}",
-            *_size(recordings),
-            _given("unloaded_radius", unloaded_radius, "m"),
-            _load(sniffed, nominal_load),
-            _pressure(sniffed, nominal_pressure),
-            *_speed(sniffed),
-        ],
+        ["[tyre]", *_tyre(sniffed, folder, stated)],
         [
             "[rig]",
-            *_path(sniffed, disc, belt),
-            _axes(sniffed),
-            *(ZEROS_OF_A_DISC if disc is not None else ()),
+            *_path(sniffed, stated.disc, stated.belt),
+            _axes(sniffed, stated.axes),
+            *(ZEROS_OF_A_DISC if stated.disc is not None else ()),
         ],
-        *([ROLLING_RADIUS] if disc is not None else []),
+        *([ROLLING_RADIUS] if stated.disc is not None else []),
         ["[columns]  # of all files", *_comments(of_all), *_columns(shared)],
         *_bad_runs(sniffed, folder),
         *_sweeps(recordings, folder, shared, of_all),
@@ -101,33 +123,52 @@ def project_text(
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
 
 
+def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
+    """The lines of [tyre]; a stated value that the recordings also say is one of theirs."""
+    found = tyre_found(sniffed, folder)
+
+    def line(key: str, unit: str, why: str) -> Iterator[str]:
+        value, own = getattr(stated, key), getattr(found, key)
+        if value is None or value == own:
+            yield from [] if own is None else [f"{key} = {_value(own)}  # {unit}{why}"]
+        else:
+            yield f"{key} = {_value(value)}" + (f"  # {unit}" if unit else "")
+
+    title = next((title for r in sniffed.recordings if (title := title_of(r.about))), "")
+    yield f"name = {quoted(stated.name or found.name)}"
+    if title and not (stated.size or found.size):
+        yield f'# size = ""  # the title of the recording is: {_one_line(title)[:MOST_OF_SIZE]}'
+    yield from line("size", "", "as the recording names the tyre")
+    for key in ("width", "rim_radius"):
+        yield from line(key, "m", ", as the size says")
+    yield _given("unloaded_radius", stated.unloaded_radius, "m")
+    yield _load(sniffed, stated.nominal_load)
+    if stated.nominal_pressure is None and found.nominal_pressure is None:
+        yield _given("nominal_pressure", None, "kPa, NOMPRES")
+    yield from line("nominal_pressure", "kPa, NOMPRES", ": the most frequent pressure")
+    yield from line("nominal_speed", "m/s, LONGVL", ": the most frequent speed")
+    if stated.side not in (None, TyreTable.model_fields["side"].default):
+        yield f"side = {quoted(str(stated.side))}"
+
+
+def _value(value: str | float) -> str:
+    return quoted(value) if isinstance(value, str) else f"{value:g}"
+
+
 def _name(recordings: Sequence[SniffedRecording], folder: Path) -> str:
     return slug(folder if len(recordings) > 1 and folder.name else recordings[0].path)
 
 
-def _size(recordings: Collection[SniffedRecording]) -> list[str]:
-    """The tyre as a recording names it; else a recording's title as a comment."""
-    most = 60  # characters
-    tyre = next((tyre for r in recordings if (tyre := named_tyre(r.about))), "")
-    title = next((title for r in recordings if (title := title_of(r.about))), "")
-    if tyre:
-        return [f"size = {quoted(tyre[:most])}  # as the recording names the tyre", *_of_size(tyre)]
-    return [f'# size = ""  # the title of the recording is: {_one_line(title)[:most]}'] if title else []
-
-
-def _of_size(tyre: str) -> list[str]:
-    """Width and rim radius as the size of a tyre says them; none for an unknown notation."""
+def _of_size(tyre: str) -> tuple[float | None, float | None]:
+    """Width and rim radius [m] as the size of a tyre says them; None for an unknown notation."""
     metric, inches = METRIC_SIZE.search(tyre), INCH_SIZE.search(tyre)
     if metric:
         width, rim = 1e-3 * float(metric[1]), INCH * float(metric[2])
     elif inches:
         width, rim = INCH * float(inches[1]), INCH * float(inches[2])
     else:
-        return []
-    return [
-        f"width = {width:.4g}  # m, as the size says",
-        f"rim_radius = {0.5 * rim:.4g}  # m, as the size says",
-    ]
+        return None, None
+    return float(f"{width:.4g}"), float(f"{0.5 * rim:.4g}")
 
 
 def _load(sniffed: Sniffed, given: float | None) -> str:
@@ -147,23 +188,21 @@ def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:
     )
 
 
-def _pressure(sniffed: Sniffed, given: float | None) -> str:
-    if given is not None:
-        return f"nominal_pressure = {given:g}  # kPa, NOMPRES"
+def _pressure(sniffed: Sniffed) -> float | None:
+    """The most frequent pressure [kPa]; None if none is measured."""
     measured = points_from(sniffed.points, holding(sniffed.recordings, "p_kPa"))
     usual = float(np.median(measured.p[main_pressure(measured)])) if len(measured) else np.nan
-    if not np.isfinite(usual):
-        return _given("nominal_pressure", None, "kPa, NOMPRES")
-    return f"nominal_pressure = {usual / 1e3:.0f}  # kPa, NOMPRES: the most frequent pressure"
+    return float(round(usual / 1e3)) if np.isfinite(usual) else None
 
 
-def _speed(sniffed: Sniffed) -> list[str]:
+def _speed(sniffed: Sniffed) -> float | None:
+    """The most frequent speed [m/s]; None if none is measured."""
     if not any("V_mps" in recording.guesses for recording in sniffed.recordings):
-        return []
+        return None
     levels = sniffed.conditions["speed"]
     default = TyreTable.model_fields["nominal_speed"].default
     speed = max(levels, key=lambda level: level.stretches).value if levels else default
-    return [f"nominal_speed = {speed:.3g}  # m/s, LONGVL: the most frequent speed"]
+    return float(f"{speed:.3g}")
 
 
 def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
@@ -254,13 +293,13 @@ def _content(recording: SniffedRecording, shared: Mapping[str, Guess]) -> tuple[
     """What the [[sweep]] of a recording says beside its file."""
     own = {name: guess for name, guess in recording.guesses.items() if _differs(shared.get(name), guess)}
     return (
-        *(['direction = "backward"  # from the name of the file'] if _backward(recording) else []),
+        *([f'direction = "backward"  # {_why_backward(recording)}'] if recording.backward else []),
         *(["[sweep.columns]", *(_column(guess) for guess in own.values())] if own else []),
     )
 
 
-def _backward(recording: SniffedRecording) -> bool:
-    return "direction" not in recording.guesses and rolls_backward(recording.path)
+def _why_backward(recording: SniffedRecording) -> str:
+    return "from the name of the file" if rolls_backward(recording.path) else "as chosen"
 
 
 def _comments(remarks: Iterable[str]) -> list[str]:
@@ -280,12 +319,19 @@ def title_of(about: Mapping[str, str]) -> str:
     return SECTION_IN_TITLE.sub("", about.get("title", "")).strip()
 
 
-def _axes(sniffed: Sniffed) -> str:
+def _axes(sniffed: Sniffed, stated: str | None) -> str:
+    if stated is not None and stated not in sniffed.axes[:1]:
+        return f'axes = "{stated}"  # as chosen'
     if not sniffed.axes:
         wrong = " and ".join(sniffed.wrong[:2])
         return f'axes = "iso"  # no known axes fit: in ISO signs {wrong}; map a column with scale = -1'
     first, *others = sniffed.axes
-    reason = "from the signs of side force, aligning moment, camber thrust and load"
+    prescribing = [r.kind for r in sniffed.recordings if formats.format_of(r.path).axes == first]
+    reason = (
+        f"as {prescribing[0]} prescribes"
+        if prescribing
+        else "from the signs of side force, aligning moment, camber thrust and load"
+    )
     if others:
         also = " or ".join(f'"{axes}"' for axes in others)
         reason = f"{also} would fit these recordings, too: they hold too little camber"
@@ -320,7 +366,7 @@ def _column(guess: Guess) -> str:
         if guess.scale != 1.0:
             keys.append(f"scale = {guess.scale:g}")
         text = f"{name} = {{ {', '.join(keys)} }}"
-        note = f"the file states no unit: {guess.why}" if guess.unit else guess.why
+        note = f"the file states no unit: {guess.why}" if guess.unit and guess.assumed else guess.why
     else:
         text = f"{name} = {heading}"
         stated = f"in {guess.stated}, as the file says" if guess.stated and guess.channel.unit else ""

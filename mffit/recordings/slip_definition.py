@@ -126,5 +126,6 @@ def _zero(
             gamma=in_si("gamma_deg", "rad"),
             p=in_si("p_kPa", "Pa"),
             RL=np.full(len(slip), np.nan),
+            V=np.abs(in_si("V_mps", "m/s")),
         )
     )

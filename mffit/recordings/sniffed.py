@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -14,14 +14,17 @@ from mffit.config import Config
 from mffit.config.globs import is_pattern, matches
 from mffit.errors import InputError
 from mffit.points import levels
+from mffit.points.clock import spread
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import Guess, guesses
+from mffit.recordings.directions import rolls_backward
+from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
+from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
@@ -48,6 +51,17 @@ class SniffedRecording(NamedTuple):
     seconds: float  #: from first to last sample
     gaps: int  #: number of gaps in time
     remarks: tuple[str, ...]  #: on columns that are not certain
+    backward: bool = False  #: it was recorded rolling backwards, as its name or a user says
+
+
+class ChosenFile(NamedTuple):
+    """What a user says of one recording."""
+
+    columns: tuple[ColumnChoice, ...]  #: that are not as guessed
+    backward: bool
+
+
+NOTHING_CHOSEN: Mapping[Path, ChosenFile] = {}
 
 
 class Level(NamedTuple):
@@ -79,13 +93,19 @@ class Sniffed:
 
 
 @formats.reading_once()
-def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) -> Sniffed:
+def sniff(
+    paths: Sequence[str | Path],
+    *,
+    unloaded_radius: float | None = None,
+    chosen: Mapping[Path, ChosenFile] = NOTHING_CHOSEN,
+) -> Sniffed:
     """The content of recordings.
 
     Parameters
     ----------
     paths : files, also as patterns like ``runs/*.csv``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
+    chosen : what a user says of some of the files
 
     Raises
     ------
@@ -99,7 +119,7 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
     files, summaries = apart(files)
-    recordings = tuple(_recording(file, unloaded_radius) for file in files)
+    recordings = tuple(_recording(file, unloaded_radius, chosen.get(file)) for file in files)
     bad = bad_runs(summaries)
     if len(bad) == len(files):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
@@ -112,6 +132,9 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
     of_summaries += against_summary(summaries, reading)
     two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
+    of_summaries += [
+        moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)
+    ]
     two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
     reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
     return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), bool(two), bad)
@@ -138,9 +161,10 @@ def files_of(path: str | Path) -> list[Path]:
     return [file]
 
 
-def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
+def _recording(path: Path, unloaded_radius: float | None, chosen: ChosenFile | None) -> SniffedRecording:
     raw = formats.read(path)
-    found, remarks = guesses(raw, unloaded_radius=unloaded_radius)
+    guessed = guesses(raw, unloaded_radius=unloaded_radius)
+    found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
@@ -149,11 +173,10 @@ def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
             file=path,
             line=raw.heading_line,
         )
-    kind = next(kind.name for kind in formats.FORMATS if formats.reads(kind, path))
     clock = _clock(raw, found.get("time_s"))
     return SniffedRecording(
         path=path,
-        kind=kind,
+        kind=formats.format_of(path).name,
         headings=raw.headings,
         units=raw.units,
         samples=len(raw),
@@ -163,6 +186,7 @@ def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
         seconds=clock.seconds,
         gaps=clock.gaps,
         remarks=remarks,
+        backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
     )
 
 
@@ -178,6 +202,7 @@ def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
     if guess is None:
         return _Clock()
     time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
+    time = spread(time)
     step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
     if not step > 0.0:
         return _Clock()
@@ -199,6 +224,7 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
                 name: guess.column.model_dump(exclude_none=True) for name, guess in recording.guesses.items()
             },
         }
+        | ({"direction": "backward"} if recording.backward else {})
         for recording in recordings
     ]
     content = {
@@ -217,6 +243,8 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The axes under which the points behave like a tyre, the declared ones first, and the contradictions under these.
 
+    Axes that the format of a file prescribes are the only ones if they agree.
+
     Parameters
     ----------
     points : read under ``declared``
@@ -229,6 +257,8 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
             continue
         if not contradictions(signatures(under_axes(points, declared, axes))):
             agreeing.append(axes)
+    prescribed = {formats.format_of(Path(file)).axes for file in points.files}
+    agreeing = [axes for axes in agreeing if axes in prescribed] or agreeing
     return tuple(agreeing), tuple(contradictions(signatures(points)))
 
 

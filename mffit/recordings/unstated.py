@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.constants import HOTTEST_TREAD
+from mffit.points.clock import spread
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible
@@ -55,6 +56,7 @@ PRESSURE_UNITS = ("bar", "psi", "kPa", "MPa", "Pa")
 TIME_UNITS = ("s", "ms", "us")
 """Sorted by priority."""
 ROTATION_UNITS = ("rad/s", "rpm")
+SPEED_UNITS = ("m/s", "km/h", "mph")
 CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "degF", "m": "in"}
 """American units by the contract's."""
 FOOT_POUNDS = "ft-lb"
@@ -80,6 +82,8 @@ def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
             chosen[name] = _own_unit(name, found, chosen, radius)
     if american is not None and not _has_other_units(found, chosen):
         chosen |= _american(found, chosen, american)
+    if (speed := _speed_of_wheel(found, chosen, radius)) is not None:
+        chosen["V_mps"] = speed
     rotation = _rotation(found, chosen, radius)
     left_out = {"omega_radps": rotation} if isinstance(rotation, str) else {}
     if isinstance(rotation, Choice):
@@ -204,7 +208,7 @@ def _own_unit(
     if name == "time_s":
         return _time(column, _sideslip_deg(found, chosen))
     if name == "V_mps" and column.size >= constants.FASTEST_SPEED_IN_METRES:
-        unit = "km/h"
+        return Choice("km/h", f"{_look_like(column, 'km/h')}, less likely mph")
     return Choice(unit, _look_like(column, unit))
 
 
@@ -275,7 +279,7 @@ def _time(column: FoundChannel, alpha_deg: np.ndarray | None) -> Choice:
 def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | None:
     """Usual step of time and rate of steering [deg], per unit of time; None if the angle does not move."""
     seen = np.isfinite(time) & np.isfinite(alpha_deg)
-    time, alpha_deg = time[seen], alpha_deg[seen]
+    time, alpha_deg = spread(time[seen]), alpha_deg[seen]
     if len(time) < 5 or np.ptp(alpha_deg) < constants.STEERING_TRAVEL:
         return None
     long_enough = len(time) > 4 * constants.SAMPLES_PER_RATE
@@ -289,6 +293,47 @@ def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | No
     return step, float(np.percentile(rates, constants.STEERING_PERCENTILE))
 
 
+def _speed_of_wheel(
+    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
+) -> Choice | None:
+    """The unit of a speed that nothing states, in which the wheel turns at its rate.
+
+    None if no rate or size of the wheel is known, or no unit fits.
+    """
+    column, speed = found.get("omega_radps"), found.get("V_mps")
+    size = radius or _measured_radius(found, chosen)
+    if column is None or speed is None or speed.unit or size is None:
+        return None
+    fits = [
+        (abs(float(np.log(ratio / size))), unit)
+        for unit in SPEED_UNITS
+        for rotation in ([column.unit] if column.unit else ROTATION_UNITS)
+        if 0.0 < (ratio := _rolling_radius(speed, unit, column, rotation)) < np.inf
+    ]
+    away, unit = min(fits, default=(np.inf, ""))
+    if away > np.log(constants.ROLLING_RADIUS_RANGE[1]):
+        return None
+    return Choice(unit, f"in {unit} they agree with {column.heading} at a radius of {size:.3g} m")
+
+
+def _measured_radius(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> float | None:
+    """The loaded radius [m], if it was recorded in a known unit."""
+    unit = _unit_of("RL_m", found, chosen) if "RL_m" in found else ""
+    if not unit:
+        return None
+    middle = factor(unit, "m") * float(np.nanmedian(found["RL_m"].values))
+    return middle if _within(middle, constants.ANY_LOADED_RADII) else None
+
+
+def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str) -> float:
+    """Median of speed over rotation [m] in these units; infinite or 0 if the wheel or the road rests."""
+    V = np.abs(converted(speed.values, unit, "m/s"))
+    omega = np.abs(converted(rotation.values, unit_of_rotation, "rad/s"))
+    seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
+    with np.errstate(divide="ignore"):
+        return float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
+
+
 def _rotation(
     found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
 ) -> Choice | str | None:
@@ -298,23 +343,20 @@ def _rotation(
         return None
     if speed is None:
         return f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's"
-    V = np.abs(converted(speed.values, _unit_of("V_mps", found, chosen), "m/s"))
     lengths = BY_NAME["RL_m"]
-    limits = (lengths.lower, lengths.upper)
+    limits: tuple[float, ...] = (lengths.lower, lengths.upper)
     if radius is not None:
         limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
     fits: dict[str, float] = {}
     for unit in (column.unit,) if column.unit else ROTATION_UNITS:
-        omega = np.abs(converted(column.values, unit, "rad/s"))
-        seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
-        with np.errstate(divide="ignore"):
-            ratio = float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
+        ratio = _rolling_radius(speed, _unit_of("V_mps", found, chosen), column, unit)
         if _within(ratio, limits):
             fits[unit] = abs(np.log(ratio / np.sqrt(np.prod(limits))))
     if not fits:
+        tried = "" if speed.unit else f" in {', '.join(SPEED_UNITS[:-1])} or {SPEED_UNITS[-1]},"
         return (
-            f"{column.heading} ({column.range}) is left out: at the speed in {speed.heading}, no wheel of this size turns at "
-            "this rate"
+            f"{column.heading} ({column.range}) is left out: at the speed in {speed.heading},{tried} no wheel of this size turns "
+            "at this rate"
         )
     unit = min(fits, key=lambda unit: fits[unit])
     return None if column.unit else Choice(unit, f"in {unit} they agree with {speed.heading}")

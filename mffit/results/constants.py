@@ -5,7 +5,7 @@ from __future__ import annotations
 from tir.constant import Count, Real
 
 SAME_NUMBER = Real(
-    1e-6,
+    1e-5,
     "-",
     "Relative change below which a number comes out again: processors and libraries round the last digits differently.",
 )

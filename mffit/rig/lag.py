@@ -1,4 +1,4 @@
-"""First-order lag of the sideslip angle or of longitudinal slip along continuous sweeps."""
+"""First-order lag of the sideslip angle or of longitudinal slip along continuous sweeps, and of moves between two samples."""
 
 from __future__ import annotations
 
@@ -50,3 +50,32 @@ def _lag(moved: np.ndarray, steps: np.ndarray, sigma: float) -> tuple[np.ndarray
         lag[i + 1] = f * move + e * lag[i]
         by_sigma[i + 1] = f_slope * move + e_slope * lag[i] + e * by_sigma[i]
     return lag, by_sigma
+
+
+def lag_of_move(
+    row: int, moved: float, rolled: np.ndarray, sigma: float, share: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What a move between two samples adds to the lag (n,) if it went all at once, at a share of the way, and not evenly.
+
+    With its derivatives by the relaxation length [1/m] and by the share. A move at share u of a distance d leaves the lag
+    exp(-(1 - u) q) with q = d/sigma, and an even one (1 - exp(-q))/q, which is the mean over u.
+
+    Parameters
+    ----------
+    row : the sample before the move
+    moved : the move [rad or -]
+    rolled : (n,) distance of every sample [m]
+    sigma : relaxation length [m]
+    share : of the distance between the two samples, from 0 to 1
+    """
+    out = np.zeros((3, len(rolled)))
+    q = (rolled[row + 1] - rolled[row]) / sigma
+    if q > 0.0:
+        at_once, even = np.exp((share - 1.0) * q), -np.expm1(-q) / q
+        since = (rolled[row + 1 :] - rolled[row + 1]) / sigma
+        added, rise = at_once - even, (np.exp(-q) - even) + q * (1.0 - share) * at_once
+        decay = moved * np.exp(-since)
+        out[0, row + 1 :] = added * decay
+        out[1, row + 1 :] = (added * since + rise) * decay / sigma
+        out[2, row + 1 :] = q * at_once * decay
+    return out[0], out[1], out[2]

@@ -6,10 +6,18 @@ from mffit.suspicion.misread import Misread, misread
 from mffit.suspicion.others import Doubt, JudgedSweeps
 from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
 from mffit.suspicion.prediction import FittedModel, parts_of_sweeps
-from mffit.suspicion.rule import When
+from mffit.suspicion.rule import Subject, When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
+from mffit.suspicion.trust import (
+    SOUND,
+    FinishedFit,
+    HeldNumber,
+    JudgedMeasurement,
+    LeftOutSweeps,
+    Trust,
+    judge,
+)
 from mffit.suspicion.unpublished import CamberReduction
 
 __all__ = [
@@ -20,10 +28,12 @@ __all__ = [
     "FinishedFit",
     "FittedModel",
     "HeldNumber",
+    "JudgedMeasurement",
     "JudgedSweeps",
     "LeftOutSweeps",
     "Misread",
     "Outlier",
+    "Subject",
     "Trust",
     "When",
     "after_the_fit",

@@ -12,7 +12,7 @@ from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, ZERO_CAMBE
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
-from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
+from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, overturning_slope, pooled, signatures
 
 of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
@@ -100,6 +100,19 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
 
 
 @of_all_files(
+    id="overturning-moment-reversed",
+    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    outcome=Outcome.WARNED,
+    sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
+    "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
+)
+def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
+    """Slope of Mx over camber."""
+    if overturning_slope(points).sign > 0:
+        yield Finding({})
+
+
+@of_all_files(
     id="weak-turn-slip-force",
     limits=(constants.WEAK_TURN_SLIP_FORCE,),
     outcome=Outcome.WARNED,
@@ -174,6 +187,25 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
     """Forward points at alpha = gamma = 0 on a disc, where the turn-slip force is measured."""
     if config.rig.on_disc and not np.any(at_zero(points) & (points.direction > 0)):
         yield Finding({}, file=config.path, column="alpha_deg")
+
+
+@of_all_files(
+    id="nominal-load-of-other-loads",
+    limits=(constants.NOMINAL_BEYOND_LOADS,),
+    sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
+    "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
+)
+def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
+    """Nominal load over the highest level of load, and the lowest level over the nominal load."""
+    loads, nominal = points.Fz[np.isfinite(points.Fz)], config.tyre.nominal_load
+    if not len(loads):
+        return
+    of_levels = levels.level_values(loads, levels.LOAD)
+    lowest, highest = float(of_levels.min()), float(of_levels.max())
+    if max(nominal / highest, lowest / nominal) > constants.NOMINAL_BEYOND_LOADS:
+        key = "tyre.nominal_load"
+        facts = {"nominal": nominal, "lowest": lowest, "highest": highest}
+        yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
 
 
 @of_all_files(

@@ -57,6 +57,13 @@ LARGEST_ROLLING_RADIUS = Real(
     1.03, "-", "Rolling over unloaded radius; leaves room for growth with speed and pressure."
 )
 
+NOMINAL_BEYOND_LOADS = Real(
+    3.0,
+    "-",
+    "Nominal load over the highest level of load, or the lowest level over it, that no campaign has: loads reach from a fifth "
+    "of the nominal one to twice it, and a digit too few or too many is a factor of ten.",
+)
+
 # Single files
 STEEPEST_OVER_SIDESLIP = Real(
     120.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."
@@ -146,6 +153,13 @@ MOST_PUBLISHED_EPSILON = Real(
 )
 USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
+)
+LARGEST_FALL_LEFT = Real(
+    10.0,
+    "-",
+    "Fall of the sum of squares that a step still promises beyond which a search is stuck: the step moves numbers by three "
+    "standard uncertainties. Edges of the model, as play has, leave up to 2.2 at a minimum; a stuck search left 800.",
+    "tests/studies/solver_study.py",
 )
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
 MISFIT_OF_ANOTHER_UNIT = Real(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
@@ -28,6 +30,7 @@ class Shift:
 
     looks: str  #: with {} for the number
     shape: Shape
+    possible: tuple[float, float] = (-math.inf, math.inf)  #: least and largest number that a rig can have
     unit: float = 1.0  #: by which the number is multiplied in the sentence
     start: float = 0.0  #: added to it there
     sign: str = ""  #: channel whose sign in the rig's axes the number has
@@ -54,16 +57,21 @@ def _set_point(name: str, relative: bool = False) -> Shape:
     return shape
 
 
+POSITIVE = (-1.0, math.inf)
+"""Of a change relative to a number that is positive in any case."""
+SIDESLIP, CAMBER = (
+    (zero.lower / DEGREES, zero.upper / DEGREES) for zero in (BY_NAME["alpha_0_deg"], BY_NAME["gamma_0_deg"])
+)
 SHIFTS = (
     *(
         Shift(f"a zero offset of {{}} {known.unit} in {column(name)}", _constant(name), sign=name)
         for name, known in CHANNELS.items()
     ),
-    *(Shift(f"a gain of {{}} in {column(name)}", _gain(name), start=1.0) for name in CHANNELS),
-    Shift("a sideslip axis that is {} deg out", _set_point("alpha"), unit=DEGREES, sign="alpha"),
-    Shift("a camber axis that is {} deg out", _set_point("gamma"), unit=DEGREES, sign="gamma"),
-    Shift("a load that was {} % off", _set_point("Fz", relative=True), unit=100.0),
-    Shift("a pressure that was {} % off", _set_point("p", relative=True), unit=100.0),
+    *(Shift(f"a gain of {{}} in {column(name)}", _gain(name), POSITIVE, start=1.0) for name in CHANNELS),
+    Shift("a sideslip axis that is {} deg out", _set_point("alpha"), SIDESLIP, unit=DEGREES, sign="alpha"),
+    Shift("a camber axis that is {} deg out", _set_point("gamma"), CAMBER, unit=DEGREES, sign="gamma"),
+    Shift("a load that was {} % off", _set_point("Fz", relative=True), POSITIVE, unit=100.0),
+    Shift("a pressure that was {} % off", _set_point("p", relative=True), POSITIVE, unit=100.0),
 )
 
 
@@ -82,7 +90,7 @@ def explanation(
             best, said = gained, mistake.looks
     for shift in SHIFTS:
         gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
-        if gained > best:
+        if gained > best and shift.possible[0] < size < shift.possible[1]:
             best = gained
             value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
             said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))

@@ -16,6 +16,7 @@ class When(StrEnum):
 
     READING = "while a recording becomes points"
     BEFORE = "before the fit"
+    MEASURED = "after the direct method, with or without a fit"
     FIRST = "after the first fit"
     AFTER = "after the fit"
     DIAGNOSIS = "before a diagnosis"
@@ -31,6 +32,7 @@ class Subject(StrEnum):
     ALL_FILES = "all files"
     SWEEP = "one sweep against all others"
     MODEL = "the fitted model"
+    DIRECT = "the direct measurement"
     READINGS = "single readings"
     SIMULATION = "one sweep against a simulation"
 
@@ -41,7 +43,7 @@ class Outcome(StrEnum):
     REFUSED = "the command ends"
     CONTRADICTION = "the declaration is contradicted"
     WARNED = "a warning"
-    DISTRUSTED = "the file is not to be trusted"
+    DISTRUSTED = "the result is not to be trusted"
     LEFT_OUT = "left out, with a warning"
 
 

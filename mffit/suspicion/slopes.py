@@ -84,17 +84,15 @@ def signatures(points: Points) -> Signatures:
     )
 
 
-def overturning_slopes(points: Points) -> dict[str, SlopeWithError]:
-    """dMx/dalpha and dMx/dgamma per load [m/rad], rolling freely forwards; both are negative for every tyre."""
-    points = points.select(points.free_rolling & (points.mount > 0) & (points.direction > 0))
+def overturning_slope(points: Points) -> SlopeWithError:
+    """dMx/dgamma per load [m/rad], rolling forwards, also driven; negative for every tyre: its load moves with the lean.
+
+    The slope over sideslip has either sign: QSX3 of public tyres makes it rise.
+    """
+    points = points.select((points.mount > 0) & (points.direction > 0))
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
-    gentle = sideslip <= constants.SIDESLIP_OF_SLOPES.rad
-    upright = camber <= constants.UPRIGHT_FOR_SLOPES.rad
     straight = (sideslip <= constants.STRAIGHT_FOR_SLOPES.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
-    return {
-        "alpha": slope(points, points.Mx, "alpha", gentle & upright),
-        "gamma": slope(points, points.Mx, "gamma", straight),
-    }
+    return slope(points, points.Mx, "gamma", straight)
 
 
 def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> SlopeWithError:

@@ -1,4 +1,6 @@
-"""Whether a fitted model is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+"""Whether a result is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+
+Some rules look at the direct measurement only, and hold without a fit, too; all others judge a fitted model.
 
 Where a noise is stated, the misfit is compared with it. Real tyres do not follow the formula to within the scatter of a sensor:
 if no noise is stated, or many sweeps miss it alike and predict each other as well as they are fitted, then the prediction of
@@ -8,21 +10,24 @@ left-out sweeps and the share of the variance that is explained decide.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from scipy.special import chdtrc, ndtr
 
+from mffit.constants import ODD_SWEEP_RATIO
+from mffit.measured import SideslipZeros
+from mffit.measured.result import path_in_words
 from mffit.points import Points
+from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
 from mffit.quantities import CHANNELS, column
 from mffit.rig import Readings
-from mffit.scatter import rms
+from mffit.scatter import finite_median, rms
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Outcome, Subject, When, rule
-from mffit.suspicion.slopes import overturning_slopes
+from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
 from mffit.suspicion.unpublished import CamberReduction, causes
 
 
@@ -47,11 +52,19 @@ class HeldNumber:
     by_hand: bool = False  #: whether [coefficients] holds or bounds it
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FinishedFit:
-    """What the rules of trust look at."""
+@dataclass(frozen=True, kw_only=True)
+class JudgedMeasurement:
+    """What the rules of trust look at that need no fit."""
 
     points: Points
+    camber_reduction: CamberReduction | None = None
+    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
+
+
+@dataclass(frozen=True, kw_only=True)
+class FinishedFit(JudgedMeasurement):
+    """What the rules of trust look at after a fit."""
+
     model: Readings  #: what the fitted model reads
     used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
     r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
@@ -61,40 +74,52 @@ class FinishedFit:
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     cause_is_certain: bool = False  #: whether chance does not explain it
     held: tuple[HeldNumber, ...] = ()
+    left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
-    camber_reduction: CamberReduction | None = None
+    stranger: str = (
+        ""  #: why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model
+    )
 
-    def misfit(self, channel: str, rows: np.ndarray | None = None) -> tuple[float, int]:
-        """Misfit over the stated noise (rms) at the used readings that state one, some rows (mask (n,)) only; their number."""
-        u = self.points.u(channel)
-        known = self.used[channel] & np.isfinite(u) & (u > 0.0)
-        if rows is not None:
-            known = known & rows
-        z = (self.model[channel] - self.points.channel(channel))[known] / u[known]
-        return rms(z), int(known.sum())
+    def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
+        """Misfit over the stated noise at the used readings, some rows (mask (n,)) only."""
+        return self._over(self.points.u(channel), channel, rows)
+
+    def over_scatter(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
+        """The same of the readings that state no noise, over the one that their neighbours show."""
+        silent = ~stating(self.points.u(channel))
+        return self._over(np.where(silent, self.scatter[channel], np.nan), channel, rows)
+
+    def _over(self, u: np.ndarray, channel: str, rows: np.ndarray | None) -> OverNoise:
+        used = self.used[channel] if rows is None else self.used[channel] & rows
+        return over_noise(self.model[channel], self.points.channel(channel), u, used)
+
+    @cached_property
+    def scatter(self) -> dict[str, float]:
+        """By channel, the noise of the readings that state none, as their neighbours show it."""
+        return estimated_noise(self.points, {name: self.model[name] for name in self.used})
 
     @property
     def over_noise(self) -> dict[str, float]:
         """By channel, misfit over stated noise; NaN where none is stated."""
-        return {name: self.misfit(name)[0] for name in self.used}
-
-    def far(self, channel: str, limit: float, sigma: float, rows: np.ndarray | None = None) -> bool:
-        """Whether the misfit over the noise exceeds a limit, by more than chance explains."""
-        ratio, n = self.misfit(channel, rows)
-        return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
+        return {name: self.misfit(name).ratio for name in self.used}
 
     def doubtful(self, channel: str) -> bool:
         """Whether a channel misses the noise."""
-        return self.far(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+        return far(self.misfit(channel), constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
 
     def at_the_noise(self, channel: str) -> bool:
-        """Whether a channel states its noise, and misses the model by no more and not by far less."""
-        ratio, _ = self.misfit(channel)
-        return not self.doubtful(channel) and ratio > constants.LEAST_MISFIT_OF_NOISE
+        """Whether all that the model misses of a channel is noise, as stated or, where none is, as neighbours show it.
+
+        Readings that miss the model by far less than their stated noise are in another unit.
+        """
+        stated, seen = self.misfit(channel), self.over_scatter(channel)
+        if far(seen, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) or self.doubtful(channel):
+            return False
+        return stated.ratio > constants.LEAST_MISFIT_OF_NOISE if stated.n else bool(seen.n)
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
         """Whether a channel misses the noise so far that the fit is not trusted."""
-        return self.far(channel, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, rows)
+        return far(self.misfit(channel, rows), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
 
     def of_the_formula(self, channel: str) -> bool:
         """Whether the misfit is the formula's: structure that all sweeps share, and that is predicted as well as fitted."""
@@ -107,6 +132,12 @@ class FinishedFit:
             and seen.uneven <= constants.UNEVEN_SWEEPS
             and self.r2[channel] >= constants.SHARE_OF_A_GOOD_FORMULA
         )
+
+
+def far(found: OverNoise, limit: float, sigma: float) -> bool:
+    """Whether a misfit over the noise exceeds a limit, by more than chance explains."""
+    ratio, n = found
+    return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +160,22 @@ SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
 NONE_KNOWN = "no known effect explains it"
 of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
+of_measurement = partial(rule, subject=Subject.DIRECT, when=(When.MEASURED,))
+
+
+@of_model(
+    id="search-not-ended",
+    limits=(constants.LARGEST_FALL_LEFT,),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the search for the best fit is stuck: one more step promises to lower the sum of squares by {left:.3g}, where 1 is "
+    "a standard uncertainty, and does not; the numbers are not those of the best fit; hold one of the coefficients at a limit "
+    "under [coefficients]{held}, and build again",
+)
+def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Fall of the sum of squares that an undamped step from the end of the search promises; 0 at a minimum."""
+    if fit.left > constants.LARGEST_FALL_LEFT:
+        names = ", ".join(held.name for held in fit.held)
+        yield {"left": fit.left, "held": f" ({names})" if names else ""}
 
 
 @of_model(
@@ -142,7 +189,7 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, channel by channel, unless it is the formula's."""
     for name in fit.used:
         if fit.wrong(name) and not fit.of_the_formula(name):
-            facts = {"channel": name, "ratio": fit.misfit(name)[0], "carriers": _carriers(fit, name)}
+            facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
             yield {**facts, "cause": _cause(fit)}
 
 
@@ -166,6 +213,40 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             sweep = fit.points.sweep_names[worst]
             cause = "" if any(above_noise.find(fit)) else f"; {_cause(fit)}"
             yield {"channel": name, "sweep": sweep, "ratio": off[worst], "others": said, "cause": cause}
+
+
+@of_model(
+    id="sweep-beyond-the-others",
+    limits=(ODD_SWEEP_RATIO, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the model misses {channel} of {sweep} by {rms:.3g} {unit}: {odd:.0f} times as much as the usual sweep, and "
+    "{ratio:.1f} times the scatter of neighbouring readings (none states its uncertainty); check this sweep or repeat it",
+)
+def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of a sweep that states no uncertainty, over the median sweep's and over its scatter, unless it is the formula's."""
+    sweeps = np.unique(fit.points.sweep).tolist()
+    for name in fit.used:
+        if fit.of_the_formula(name):
+            continue
+        missed = np.where(fit.used[name], fit.model[name] - fit.points.channel(name), np.nan)
+        own = {k: rms(missed[fit.points.sweep == k]) for k in sweeps}
+        usual = finite_median(np.array(list(own.values())))
+        seen = {
+            k: fit.over_scatter(name, fit.points.sweep == k)
+            for k in sweeps
+            if own[k] > ODD_SWEEP_RATIO * usual
+        }
+        off = [k for k, z in seen.items() if far(z, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)]
+        if off:
+            worst = max(off, key=lambda k: own[k])
+            yield {
+                "channel": name,
+                "unit": CHANNELS[name].unit,
+                "sweep": fit.points.sweep_names[worst],
+                "rms": seen[worst].ratio * fit.scatter[name],
+                "odd": own[worst] / usual,
+                "ratio": seen[worst].ratio,
+            }
 
 
 @of_model(
@@ -195,7 +276,7 @@ def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "state, and their units and axes right?",
 )
 def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Share of a channel's variance that the model explains, unless the stated noise is all that is left."""
+    """Share of a channel's variance that the model explains, unless noise is all that is left."""
     for name in fit.used:
         if fit.r2[name] < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
             yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
@@ -214,7 +295,7 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     for name, seen in fit.left_out.items():
         spread = float(np.nanstd(getattr(fit.points, name)))
         poor = seen.typical**2 > (1.0 - constants.EXPLAINED_VARIANCE) * spread**2
-        if poor and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA and not fit.misfit(name)[1]:
+        if poor and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA and not fit.misfit(name).n:
             unit = CHANNELS[name].unit
             yield {"channel": name, "typical": seen.typical, "fitted": seen.fitted, "unit": unit}
 
@@ -258,16 +339,55 @@ def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     yield from ({"problem": problem} for problem in fit.broken)
 
 
-@of_model(
+APART = (
+    "the sideslip zeros of {setup} contradict each other: alpha_M = {one} and {other}, as one axis and the ply-steer of one tyre "
+    "cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis moved, or a "
+    "direction, path_centre or zero is wrong: check the zeros there"
+)
+
+
+@of_measurement(
+    id="contradictory-sideslip-zeros",
+    limits=(constants.CERTAIN_SIGMA,),
+    outcome=Outcome.DISTRUSTED,
+    sentence=APART,
+)
+def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
+    yield from (_apart(z) for z in measured.sideslip_zeros if z.chance < ndtr(-constants.CERTAIN_SIGMA))
+
+
+@of_measurement(
+    id="doubtful-sideslip-zeros",
+    limits=(constants.DOUBTFUL_SIGMA, constants.CERTAIN_SIGMA),
+    outcome=Outcome.WARNED,
+    sentence=APART,
+)
+def zeros_in_doubt(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """The same angles, where chance is unlikely but not excluded."""
+    certain, doubtful = ndtr(-constants.CERTAIN_SIGMA), ndtr(-constants.DOUBTFUL_SIGMA)
+    yield from (_apart(z) for z in measured.sideslip_zeros if certain <= z.chance < doubtful)
+
+
+def _apart(found: SideslipZeros) -> dict[str, Any]:
+    one, other = (
+        f"{math.degrees(x.alpha_M.value):.3f} +- {math.degrees(x.alpha_M.u):.3f} deg at {x.load:.0f} N "
+        f"(path centre {path_in_words(x.phi_t)})"
+        for x in (found.one, found.other)
+    )
+    return {"setup": f"set-up {found.setup}" if found.setup else "one set-up", "one": one, "other": other}
+
+
+@of_measurement(
     id="unpublished-camber-reduction",
     limits=(constants.LEAST_PUBLISHED_EPSILON, constants.MOST_PUBLISHED_EPSILON),
     outcome=Outcome.DISTRUSTED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
     "likeliest causes: {causes}",
 )
-def unpublished(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Measured camber reduction factor beside those of published tyres."""
-    found = fit.camber_reduction
+    found = measured.camber_reduction
     if found is not None and not (
         constants.LEAST_PUBLISHED_EPSILON <= found.value <= constants.MOST_PUBLISHED_EPSILON
     ):
@@ -290,19 +410,6 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
-    id="overturning-moment-reversed",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
-    outcome=Outcome.WARNED,
-    sentence="Mx_Nm has the wrong sign: it rises with both alpha_deg and gamma_deg in ISO axes, and falls with both on every "
-    "tyre; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
-)
-def moment_reversed(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Slopes of Mx over sideslip and over camber: the side force and the lean shift the load to their side."""
-    if {name: s.sign for name, s in overturning_slopes(fit.points).items()} == {"alpha": 1, "gamma": 1}:
-        yield {}
-
-
-@of_model(
     id="effect-in-the-residuals",
     limits=(constants.MISFIT_IN_DOUBT,),
     outcome=Outcome.WARNED,
@@ -310,7 +417,9 @@ def moment_reversed(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
-    said = any(any(r.find(fit)) for r in (above_noise, sweep_above_noise, doubtful_misfit))
+    said = any(
+        any(r.find(fit)) for r in (above_noise, sweep_above_noise, sweep_beyond_others, doubtful_misfit)
+    )
     if fit.cause_is_certain and _noise_is_stated(fit) and not said:
         yield {"cause": fit.cause}
 
@@ -326,33 +435,57 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
         yield {"structure": fit.structure}
 
 
+@of_model(
+    id="model-of-another-tyre",
+    outcome=Outcome.DISTRUSTED,
+    sentence="{why}",
+)
+def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of a given model that is none of this tyre; no other rule is applied then."""
+    if fit.stranger and any(any(r.find(fit)) for r in OF_READINGS):
+        yield {"why": fit.stranger}
+
+
 REMARKED = (
     "what limits {channel} is the formula, not the noise: it misses {fitted:.3g} {unit} rms in all sweeps alike, explains "
     "{percent:.2f} % of the variance, and predicts left-out sweeps to {predicted:.3g} {unit}"
 )
 
 
-def judge(fit: FinishedFit) -> Trust:
-    """The judgement of a fit by all rules of trust."""
-    return Trust(
-        reasons=tuple(r.said(facts) for r in REASONS for facts in r.find(fit)),
-        doubts=tuple(r.said(facts) for r in DOUBTS for facts in r.find(fit)),
-        remarks=tuple(_remarks(fit)),
-        over_noise=fit.over_noise,
-    )
+def judge(found: JudgedMeasurement) -> Trust:
+    """The judgement by all rules of trust, or without a fit by those that need none; another tyre's model ends the search."""
+
+    def said(rules: Sequence[Rule]) -> tuple[str, ...]:
+        apply = (r for r in rules if isinstance(found, FinishedFit) or r.subject is Subject.DIRECT)
+        return tuple(r.said(facts) for r in apply for facts in r.find(found))
+
+    if not isinstance(found, FinishedFit):
+        return Trust(said(REASONS), said(DOUBTS))
+    if strange := said((of_another_tyre,)):
+        return Trust(reasons=strange, over_noise=found.over_noise)
+    return Trust(said(REASONS), said(DOUBTS), tuple(_remarks(found)), found.over_noise)
 
 
+OF_READINGS = (above_noise, sweep_above_noise, sweep_beyond_others, unexplained, unpredicted)
+"""Rules that blame readings."""
 REASONS = (
-    above_noise,
-    sweep_above_noise,
-    unexplained,
-    unpredicted,
+    of_another_tyre,
+    not_ended,
+    *OF_READINGS,
     bound_against_data,
     limit_broken,
+    zeros_contradict,
     unpublished,
 )
-"""Rules whose findings make a file not to be trusted, the gravest first."""
-DOUBTS = (hand_against_data, doubtful_misfit, far_below_noise, moment_reversed, effect_left, structure_left)
+"""Rules whose findings make a result not to be trusted, the gravest first."""
+DOUBTS = (
+    hand_against_data,
+    doubtful_misfit,
+    far_below_noise,
+    zeros_in_doubt,
+    effect_left,
+    structure_left,
+)
 """Rules whose findings are warnings."""
 
 
@@ -370,12 +503,12 @@ def _remarks(fit: FinishedFit) -> Iterator[str]:
 
 
 def _reaches_the_noise(fit: FinishedFit, channel: str) -> bool:
-    return bool(fit.misfit(channel)[1]) and not fit.doubtful(channel)
+    return bool(fit.misfit(channel).n) and not fit.doubtful(channel)
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
     """Whether residuals are judged by a noise: a channel states one, and no misfit is the formula's."""
-    stated = [name for name in fit.used if fit.misfit(name)[1]]
+    stated = [name for name in fit.used if fit.misfit(name).n]
     return bool(stated) and not any(fit.of_the_formula(n) and fit.doubtful(n) for n in stated)
 
 
@@ -386,7 +519,7 @@ def _cause(fit: FinishedFit) -> str:
 
 def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, float]:
     """Misfit over the stated noise of every sweep that states one."""
-    rows = {k: fit.misfit(channel, fit.points.sweep == k)[0] for k in np.unique(fit.points.sweep).tolist()}
+    rows = {k: fit.misfit(channel, fit.points.sweep == k).ratio for k in np.unique(fit.points.sweep).tolist()}
     return {k: ratio for k, ratio in rows.items() if math.isfinite(ratio)}
 
 
@@ -396,7 +529,7 @@ def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
 
 def _carriers(fit: FinishedFit, channel: str) -> str:
     """The sweeps with most of a misfit, in words."""
-    total, own = fit.misfit(channel)[0], _by_sweep(fit, channel)
+    total, own = fit.misfit(channel).ratio, _by_sweep(fit, channel)
     large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.CARRIED_MISFIT * total]
     names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
     return f", most of it in {names}" if names else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +40,7 @@ class Columns:
     table: pd.DataFrame  #: contract columns in contract units, then all other columns of the file as text
     direction: np.ndarray | None  #: +1 or -1 (n,), None without such a column
     warnings: tuple[str, ...]
+    headings: Mapping[str, str] = field(default_factory=dict)  #: in the file, by contract column
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
@@ -116,7 +117,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
         found["direction"] = np.where(direction > 0, "forward", "backward")
     order = sorted(found, key=lambda name: raw.headings.index(headings[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
-    return Columns(raw, table, direction, tuple(warnings))
+    return Columns(raw, table, direction, tuple(warnings), {name: headings[name] for name in order})
 
 
 def _without_spreadsheet_errors(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:

@@ -17,6 +17,12 @@ LIKENESS_OF_MAPPED_COLUMN = Real(
 LARGE_TEXT_FILE = Count(
     500_000, "bytes", "Larger files are read by pandas, which is fifty times as fast but names no bad cell."
 )
+LARGEST_UNPACKED = Count(
+    600_000_000,
+    "bytes",
+    "Largest table that is read, unpacked: twice the largest recording that was tried, of five million rows and eight channels; "
+    "a packed file of 1 MB may hold 1 GB.",
+)
 SHARE_OF_REGULAR_LINES = Real(
     0.5, "-", "Share of lines with equal numbers of cells (two or more) that a separator needs."
 )

@@ -9,12 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+from mffit.errors import InputError, readable
+from mffit.sweeps import constants
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.spreadsheet import read_xlsx
 from mffit.sweeps.tydex import read_tydex
+from mffit.sweeps.unpacked import of_mat, of_parquet, of_text, of_zip, too_large
 
 
 class Format(NamedTuple):
@@ -23,14 +26,16 @@ class Format(NamedTuple):
     name: str  #: for messages
     endings: tuple[str, ...]  #: of file names, in lower case
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
+    unpacked: Callable[[Path], int] = of_text  #: bytes of its content; raises OSError
+    axes: str = ""  #: that the format prescribes; "" if it leaves them open
 
 
 FORMATS = (
     Format("CSV", (".csv", ".csv.gz", ".txt", ".txt.gz", ".tsv", ".tsv.gz", ".dat", ".dat.gz"), read_csv),
-    Format("MATLAB", (".mat",), read_mat),
-    Format("Excel", (".xlsx", ".xlsm"), read_xlsx),
-    Format("Parquet", (".parquet",), read_parquet),
-    Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
+    Format("MATLAB", (".mat",), read_mat, of_mat),
+    Format("Excel", (".xlsx", ".xlsm"), read_xlsx, of_zip),
+    Format("Parquet", (".parquet",), read_parquet, of_parquet),
+    Format("TYDEX", (".tdx", ".tdx.gz", ".tda", ".tdb"), read_tydex, axes="iso"),
 )
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
 LARGEST_TABLE_KEPT = 5_000_000
@@ -39,11 +44,25 @@ ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
 def read(path: Path) -> RawTable:
-    """Read a file in the format that the ending of its name says, CSV by default."""
+    """Read a file in the format that the ending of its name says, CSV by default.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds more than any recording.
+    """
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
-    found = next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+    kind = format_of(path)
+    with readable(path):
+        size = kind.unpacked(path)
+    if too_large(size):
+        raise InputError(
+            f"holds more than {constants.LARGEST_UNPACKED / 1e6:.0f} MB when unpacked; split it, or export fewer channels",
+            file=path,
+        )
+    found = kind.read(path)
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found
@@ -62,9 +81,9 @@ def reading_once() -> Iterator[None]:
         _KEPT.reset(token)
 
 
-def reads(kind: Format, path: Path) -> bool:
-    """Whether the ending of the name belongs to the format."""
-    return path.name.lower().endswith(kind.endings)
+def format_of(path: Path) -> Format:
+    """The format that the ending of the name says, CSV by default."""
+    return next((kind for kind in FORMATS if path.name.lower().endswith(kind.endings)), FORMATS[0])
 
 
 def stem(path: str) -> str:

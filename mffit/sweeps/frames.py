@@ -1,41 +1,113 @@
 """From the wheel-carrier frame C to the contact frame W, and from the wheel centre to the contact point.
 
-Both frames share the x axis. C leans with the wheel: a camber ``gamma > 0`` moves the top of the wheel to -y, so
+TYDEX names axes and reference point with the last letter of a channel: C is turned with the wheel carrier and H is horizontal,
+both at the wheel centre; W is horizontal at the contact point. On a flat road H and W are parallel, and x is the same in all.
+
+Frames C and W share the x axis. C leans with the wheel: a camber ``gamma > 0`` moves the top of the wheel to -y, so
 that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` in W
 is ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma`` in C; so are moments about the same point.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from mffit.config.models import MachineTable
 from mffit.sweeps import constants
 from mffit.sweeps.sweep import Sweep
 
+TYDEX_NAME = re.compile(r"[FM][XYZ]([CHW])", re.IGNORECASE)
+FORCES, MOMENTS = ("Fy_N", "Fz_N"), ("Mx_Nm", "My_Nm", "Mz_Nm")
+
+
+class FileFrame(NamedTuple):
+    """Axes and reference point in which a file reports."""
+
+    forces_lean: bool  #: the forces are in frame C
+    moments_lean: bool
+    at_centre: bool  #: the moments are about the wheel centre
+    load_is_vertical: bool | None = None  #: in frame C; None if the headings do not say it
+
+
+class MixedAxesError(ValueError):
+    """Forces, or moments, of one file are in different axes."""
+
+
+def letter_of(heading: str) -> str:
+    """The letter by which TYDEX names the axes of a channel, C, H or W; "" for another heading."""
+    found = TYDEX_NAME.fullmatch(heading)
+    return found[1].upper() if found else ""
+
+
+def frame_of(headings: Mapping[str, str], rig: MachineTable) -> FileFrame:
+    """The frame of a file: as TYDEX's letters say, else as ``[rig]`` declares.
+
+    Parameters
+    ----------
+    headings : of the file, by the contract's columns
+    rig : ``[rig]``
+
+    Raises
+    ------
+    MixedAxesError
+        The moments are not all in the same axes, or the load is in C and the side force is not.
+    """
+    letters = {name: letter_of(headings[name]) for name in (*FORCES, *MOMENTS) if name in headings}
+    of_moments = {letters[name] for name in MOMENTS if name in letters}
+    side, load = (letters.get(name, "") for name in FORCES)
+    if len(of_moments) > 1:
+        raise MixedAxesError(_mixed([headings[name] for name in MOMENTS if name in headings]))
+    if load == "C" and side != "C":
+        raise MixedAxesError(_mixed([headings[name] for name in FORCES]))
+    letter = "".join(of_moments)
+    declared = rig.force_frame == "C"
+    return FileFrame(
+        forces_lean=side == "C" if side else declared,
+        moments_lean=letter == "C" if letter else declared,
+        at_centre=letter in ("C", "H") if letter else rig.moments == "wheel-centre",
+        load_is_vertical=load != "C" if side and load else None,
+    )
+
+
+def _mixed(headings: Sequence[str]) -> str:
+    return f"{' and '.join(headings)} are in different axes by TYDEX's letters; take columns with the same letter"
+
 
 def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
-    """The sweep with forces and moments turned from C to W.
+    """The sweep with forces and moments turned from C to W; see :func:`forces_turned`, :func:`moments_turned`."""
+    return moments_turned(forces_turned(sweep, load_is_vertical=load_is_vertical))
+
+
+def forces_turned(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
+    """The sweep with forces turned from C to W.
 
     Parameters
     ----------
     sweep : rows in ISO signs, frame C
     load_is_vertical : the load column is the vertical load, not the component along the wheel plane
+    """
+    c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
+    if load_is_vertical:
+        return replace(sweep, Fy=(sweep.Fy - s * sweep.Fz) / c)
+    return replace(sweep, Fy=c * sweep.Fy - s * sweep.Fz, Fz=c * sweep.Fz + s * sweep.Fy)
+
+
+def moments_turned(sweep: Sweep) -> Sweep:
+    """The sweep with moments turned from C to W, in ISO signs.
 
     Notes
     -----
     If My was not measured, the contribution of rolling resistance to Mz is neglected.
     """
     c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
-    if load_is_vertical:
-        Fy, Fz = (sweep.Fy - s * sweep.Fz) / c, sweep.Fz
-    else:
-        Fy, Fz = c * sweep.Fy - s * sweep.Fz, c * sweep.Fz + s * sweep.Fy
     measured = np.isfinite(sweep.My)
     Mz = np.where(measured, c * sweep.Mz + s * np.where(measured, sweep.My, 0.0), sweep.Mz / c)
-    return replace(sweep, Fy=Fy, Fz=Fz, My=c * sweep.My - s * sweep.Mz, Mz=Mz)
+    return replace(sweep, My=c * sweep.My - s * sweep.Mz, Mz=Mz)
 
 
 def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:

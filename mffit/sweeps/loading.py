@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,7 +19,16 @@ from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
 from mffit.sweeps.excluded import ExclusionError, take_apart
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
-from mffit.sweeps.frames import load_is_vertical, to_contact_frame, to_contact_point
+from mffit.sweeps.frames import (
+    FileFrame,
+    MixedAxesError,
+    forces_turned,
+    frame_of,
+    letter_of,
+    load_is_vertical,
+    moments_turned,
+    to_contact_point,
+)
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import ExcludedRows, Sweep, Sweeps
 from tir.errors import some
@@ -44,6 +53,7 @@ def load(config: Config) -> Sweeps:
     excluded: list[ExcludedRows] = []
     warnings: list[str] = []
     of_columns: list[tuple[Path, str]] = []
+    frames: dict[str, FileFrame] = {}
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         raw, apart = _apart(config, entry, _raw(config, index, entry))
@@ -58,11 +68,17 @@ def load(config: Config) -> Sweeps:
             speed=config.tyre.nominal_speed,
         )
         for exclusion, rows in apart:
-            sweeps = _as_far_as_readable(config, index, entry, rows, given)
+            sweeps, frame = _as_far_as_readable(config, index, entry, rows, given)
+            if frame is not None:
+                frames[entry.file] = frame
             excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
         if raw is None:
             continue
         columns = _columns(config, index, entry, raw)
+        frames[entry.file] = _frame(config, columns)
+        of_columns.extend(
+            (raw.path, sentence) for sentence in _overridden(columns, config, frames[entry.file])
+        )
         of_columns.extend((raw.path, sentence) for sentence in columns.warnings)
         if entry.direction is not None and columns.direction is not None:
             warnings.extend(_contradicting(columns, entry, direction))
@@ -75,14 +91,18 @@ def load(config: Config) -> Sweeps:
             key="fit.exclude",
         )
     warnings = _once(of_columns) + warnings
-    vertical = config.rig.force_frame == "C" and load_is_vertical(found)
-    if config.rig.force_frame == "C":
-        warnings.extend(_about_frame(found, vertical=vertical))
+    open_loads = [s for s in found if frames[s.file].forces_lean and frames[s.file].load_is_vertical is None]
+    vertical = load_is_vertical(open_loads)
+    warnings.extend(_about_frames(found, frames, vertical=vertical))
 
     def in_iso_w(sweep: Sweep) -> Sweep:
-        if config.rig.force_frame == "C":
-            sweep = to_contact_frame(sweep, load_is_vertical=vertical)
-        if config.rig.moments == "wheel-centre":
+        frame = frames[sweep.file]
+        if frame.forces_lean:
+            stated = frame.load_is_vertical
+            sweep = forces_turned(sweep, load_is_vertical=vertical if stated is None else stated)
+        if frame.moments_lean:
+            sweep = moments_turned(sweep)
+        if frame.at_centre:
             sweep = to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius)
         return sweep
 
@@ -172,12 +192,41 @@ def _apart(
 
 def _as_far_as_readable(
     config: Config, index: int, entry: SweepTable, raw: RawTable, given: Circumstances
-) -> tuple[Sweep, ...]:
-    """The sweeps of excluded rows; none if a row is damaged, which may be why it is excluded."""
+) -> tuple[tuple[Sweep, ...], FileFrame | None]:
+    """The sweeps of excluded rows and their frame; none if a row is damaged, which may be why it is excluded."""
     try:
-        return tuple(sweeps_of(_columns(config, index, entry, raw), given))
+        columns = _columns(config, index, entry, raw)
+        return tuple(sweeps_of(columns, given)), _frame(config, columns)
     except InputError:
-        return ()
+        return (), None
+
+
+def _frame(config: Config, columns: Columns) -> FileFrame:
+    """The frame of a file."""
+    try:
+        return frame_of(columns.headings, config.rig)
+    except MixedAxesError as error:
+        raise InputError(str(error), file=columns.raw.path, line=columns.raw.heading_line) from None
+
+
+def _overridden(columns: Columns, config: Config, frame: FileFrame) -> list[str]:
+    """A sentence about keys of [rig] that the letters of TYDEX's headings contradict."""
+    found = {
+        "force_frame": "C" if frame.forces_lean else "W",
+        "moments": "wheel-centre" if frame.at_centre else "contact",
+    }
+    wrong = [
+        f'{key} = "{getattr(config.rig, key)}"'
+        for key, value in found.items()
+        if key in config.rig.model_fields_set and getattr(config.rig, key) != value
+    ]
+    if not wrong:
+        return []
+    named = [heading for heading in columns.headings.values() if letter_of(heading)]
+    return [
+        f"{columns.raw.path}: {' and '.join(wrong)} of [rig] does not hold here, because the last letter of {', '.join(named)} "
+        "states axes and reference point, as TYDEX defines them; rename these headings if they do not mean it"
+    ]
 
 
 def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Columns:
@@ -212,15 +261,27 @@ def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[
     ]
 
 
-def _about_frame(sweeps: list[Sweep], *, vertical: bool) -> list[str]:
-    """Sentences about the conversion from frame C; ``vertical``: the load column is the vertical load."""
+def _about_frames(sweeps: Sequence[Sweep], frames: Mapping[str, FileFrame], *, vertical: bool) -> list[str]:
+    """Sentences about what the conversion to frame W and the contact point lacks; ``vertical``: the load column is found to be
+    the vertical load although the forces lean.
+    """
     warnings = []
     if vertical:
         warnings.append(
             "Fz_N does not vary with camber, so it is treated as the vertical load, although force_frame is C"
         )
-    if any(np.any(np.isfinite(sweep.Mz) & ~np.isfinite(sweep.My)) for sweep in sweeps):
+    if any(frames[s.file].moments_lean and np.any(np.isfinite(s.Mz) & ~np.isfinite(s.My)) for s in sweeps):
         warnings.append(
             "My_Nm is missing, so rolling resistance is neglected when Mz is turned from frame C to W"
+        )
+    centred = [s for s in sweeps if frames[s.file].at_centre]
+    if any(np.any(np.isfinite(s.Mx) & ~np.isfinite(s.RL)) for s in centred):
+        warnings.append(
+            "RL_m is missing, so Mx is moved from the wheel centre to the contact point with the unloaded radius and wrong by "
+            "the tyre's deflection times the side force; measure the loaded radius, or do not use Mx_Nm"
+        )
+    if any(np.any(np.isfinite(s.My) & ~np.isfinite(s.Fx)) for s in centred):
+        warnings.append(
+            "Fx_N is missing, so My cannot be moved from the wheel centre to the contact point; add Fx_N, or do not use My_Nm"
         )
     return warnings

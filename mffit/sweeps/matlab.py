@@ -17,16 +17,14 @@ from typing import Any
 
 import numpy as np
 
-from mffit.errors import InputError, readable
+from mffit.errors import InputError
 from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import damaged, needed, undamaged
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, TEXTS, TROUBLE
 from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.unpacked import is_hdf5
 
 KIND = "MATLAB file"
-HDF5_MARK = b"\x89HDF"
-HDF5_AT = (0, 512)
-"""Bytes at which HDF5 may begin: MATLAB puts a text of 512 bytes before it."""
 
 
 def read_mat(path: Path) -> RawTable:
@@ -38,7 +36,7 @@ def read_mat(path: Path) -> RawTable:
         The file is not a MAT file, is damaged, or has no vectors of a common length; or it is of v7.3 and h5py is not
         installed.
     """
-    content = _hdf5(path) if _is_hdf5(path) else _classic(path)
+    content = _hdf5(path) if is_hdf5(path) else _classic(path)
     vectors = {name: values for name, values in content.items() if isinstance(values, np.ndarray)}
     if not vectors:
         raise InputError("has no column of numbers; save every channel as a vector", file=path)
@@ -69,12 +67,6 @@ def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         return [], {}
     names, units = channel["name"], channel["units"]
     return names, dict(zip(names, units, strict=False))
-
-
-def _is_hdf5(path: Path) -> bool:
-    with readable(path), path.open("rb") as file:
-        head = file.read(HDF5_AT[-1] + len(HDF5_MARK))
-    return any(head[at : at + len(HDF5_MARK)] == HDF5_MARK for at in HDF5_AT)
 
 
 def _classic(path: Path) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from mffit.errors import InputError
 from mffit.sweeps.extras import needed, undamaged
 from mffit.sweeps.grid import table_of
 from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_comma, with_decimal_point
+from mffit.sweeps.unpacked import BYTES_OF_A_NUMBER, too_large
 
 
 def read_xlsx(path: Path) -> RawTable:
@@ -25,7 +26,14 @@ def read_xlsx(path: Path) -> RawTable:
         closing(openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)) as book,
     ):
         for sheet in book.worksheets:
-            rows = [tuple(_cell(value) for value in row) for row in sheet.iter_rows(values_only=True)]
+            rows, cells = [], 0
+            for row in sheet.iter_rows(values_only=True):
+                rows.append(tuple(_cell(value) for value in row))
+                cells += len(row)  # also those that a workbook only claims to have
+                if too_large(BYTES_OF_A_NUMBER * cells):
+                    raise InputError(
+                        f"has a sheet of more than {cells} cells; remove the empty ones", file=path
+                    )
             if any(sum(cell != "" for cell in row) > 1 for row in rows):
                 return table_of(_with_points(rows), range(1, len(rows) + 1), path)
     raise InputError("has no sheet with a table; put headings above the columns", file=path)

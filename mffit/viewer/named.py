@@ -11,8 +11,9 @@ import tir
 from mffit.errors import InputError
 from mffit.tested import end_tested
 from mffit.viewer.controls import CONTROLS, Control, written_range
+from mffit.viewer.panels import OUTPUTS
 from tir import Tyre
-from tir.evaluate import refuse_zero_divisors
+from tir.codegen.program import Switches, refuse_zero_divisors
 from tir.mode import doubt
 
 Given = str | Path | Tyre
@@ -83,7 +84,7 @@ def _tyre(given: Given) -> Tyre:
 
 
 def _refuse_what_cannot_be_drawn(name: str, tyre: Tyre) -> None:
-    refuse_zero_divisors(tyre.p)
+    refuse_zero_divisors(tyre.p, Switches(tyre.turn_slip), OUTPUTS)
     for key, value in tyre.values.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(

@@ -14,12 +14,7 @@ from mffit.templates import environment
 from mffit.viewer.controls import in_si
 from mffit.viewer.page import Page
 from mffit.viewer.project_coefficients import coefficient_rows
-from mffit.viewer.project_points import (
-    axis_quantities,
-    columns,
-    delivered,
-    stated_noise,
-)
+from mffit.viewer.project_points import axis_quantities, columns, delivered
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
 from tir.equations.forces import Forces, State
@@ -41,7 +36,6 @@ def _data(result: BuildResult) -> dict[str, Any]:
     parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
     rows = coefficient_rows(result, parameters)
     values = {name: float(simulation.values[name]) for name in parameters}
-    stated = stated_noise(points)
     return {
         "name": result.config.tyre.name,
         "order": list(INPUTS),
@@ -53,7 +47,6 @@ def _data(result: BuildResult) -> dict[str, Any]:
                 "name": name,
                 "rmse": rmse,
                 "over_noise": result.trust.over_noise.get(name),
-                "stated": stated[name],
                 "of_fit": name in fitted.channels,
             }
             for name, rmse in _misfits(result).items()

@@ -10,6 +10,7 @@ import numpy as np
 
 from mffit.fit import FitResult
 from mffit.points import Points, concatenate, levels
+from mffit.points.noise import stating
 from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
 from mffit.rig import Simulation
 from mffit.viewer import constants
@@ -44,12 +45,13 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
     simulation = delivered(fitted)
     felt = concatenate([simulation.felt(part) for part in parts])
     read = concatenate(parts)
-    sigma = fitted.search.problem.sigma if fitted.search is not None else {}
     own, rig = _shown(felt), _shown(read)
     return {
         **own,
         "read": {name: column for name, column in rig.items() if column != own[name]},
-        "u": {name: listed(_noise(points, name, sigma)) for name in read.measured},
+        "u": {
+            name: listed(np.where(stating(points.u(name)), points.u(name), np.nan)) for name in read.measured
+        },
         "unused": {name: [o.row for o in fitted.outliers if o.channel == name] for name in CHANNELS},
         "fitted": len(points),
         "mount": read.mount.tolist(),
@@ -59,11 +61,6 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
         "files": list(read.files),
         "facets": facets(read),
     }
-
-
-def stated_noise(points: Points) -> dict[str, bool]:
-    """By channel, whether the points state their uncertainty."""
-    return {name: bool(np.any(points.u(name) > 0.0)) for name in CHANNELS}
 
 
 def facets(points: Points) -> list[dict[str, Any]]:
@@ -121,14 +118,6 @@ def _arrays(points: Points) -> dict[str, np.ndarray]:
     known = {"pressure": points.p, "Vx": points.Vx}
     inputs = {name: known[name] if name in known else getattr(points, name) for name in INPUTS}
     return inputs | {name: getattr(points, name) for name in MEASURED_ONLY}
-
-
-def _noise(points: Points, channel: str, sigma: Any) -> np.ndarray:
-    """Uncertainty (n,) in whose units the misfit is stated: the stated one, else the one that the fit weighs with."""
-    stated = points.u(channel)
-    if np.any(stated > 0.0):
-        return stated
-    return np.asarray(sigma.get(channel, stated))
 
 
 def _facet(

@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
-from mffit.config import Config
 from mffit.config.loading import checked
 from mffit.errors import InputError, shortened
 from mffit.output import new_files
+from mffit.pipeline.intake import project_of
 from mffit.points import Points, levels
 from mffit.points.loading import read
 from mffit.quantities import CONDITIONS
-from mffit.recordings.disc import disc_signs, files_of_folder, rolls_backward
-from mffit.recordings.guess import Guess, guesses
-from mffit.recordings.project_file import named_tyre, slug
-from mffit.recordings.sniffed import Sniffed, axes_of, sniff
+from mffit.recordings.directions import rolls_backward
+from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
+from mffit.recordings.guess import ColumnChoice, Guess, guesses
+from mffit.recordings.project_file import Stated, slug, tyre_found
+from mffit.recordings.sniffed import STAND_IN, ChosenFile, Sniffed, axes_of, sniff
 from mffit.recordings.summary import RunSummary, apart, bad_runs, contradictions, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
-from mffit.sweeps.channels import SWEEP_CHANNELS
+from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.viewer.controls import in_si
 
 PROJECT = "tyre.toml"
-ABOUT = "# From the recordings in this folder, as corrected in the window of `mffit open`.\n\n"
 NOT_READABLE_HERE = (PROJECT, "stretches.csv")
 SEPARATORS = frozenset('/\\:*?"<>|')
 """Characters that separate folders on some system, or that no file there may have."""
@@ -109,7 +109,6 @@ class RecordingsFolder:
                 if path not in files
             ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
-        first = found.recordings[0] if found else None
         return {
             "folder": self.folder.name,
             "channels": [
@@ -117,11 +116,7 @@ class RecordingsFolder:
             ],
             "groups": groups,
             "problems": [*problems, *([problem] if problem else []), *self._of_summaries(found)],
-            "tyre": {
-                "name": slug(files[0]) if files else slug(self.folder),
-                "size": named_tyre(first.about) if first else "",
-                "nominal_pressure": _usual_pressure(found),
-            },
+            "tyre": tyre_found(found, self.folder)._asdict() if found else {"name": slug(self.folder)},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
         }
@@ -141,7 +136,7 @@ class RecordingsFolder:
         InputError
             They cannot be read so.
         """
-        config = self._config(choice)
+        config = checked(tomllib.loads(self._text(choice)), path=None, folder=self.folder, lines={})
         with formats.reading_once():
             reading = read(config, may_be_empty=True)
         warnings = [*reading.notes, *reading.warnings]
@@ -166,43 +161,40 @@ class RecordingsFolder:
         InputError
             The recordings cannot be read as chosen, or the file exists.
         """
-        self._config(choice)
-        text = ABOUT + tomli_w.dumps(self._content(choice))
-        return new_files(self.folder, {PROJECT: text})[0]
+        return new_files(self.folder, {PROJECT: self._text(choice)})[0]
 
-    def _config(self, choice: Mapping[str, Any]) -> Config:
-        return checked(self._content(choice), path=None, folder=self.folder, lines={})
-
-    def _content(self, choice: Mapping[str, Any]) -> dict[str, Any]:
-        """The tables of a ``tyre.toml``; only files of this folder are named."""
+    @formats.reading_once()
+    def _text(self, choice: Mapping[str, Any]) -> str:
+        """The ``tyre.toml``, as ``mffit init --from`` makes it; only files of this folder are named."""
         try:
             groups: Sequence[Mapping[str, Any]] = choice["groups"]
-            columns = [_columns(group["columns"]) for group in groups]
-            known = {path.name for path in self.files}
-            sweeps = [
-                {"file": file["name"]}
-                | ({"direction": "backward"} if file.get("backward") else {})
-                | ({"columns": own} if own != columns[0] else {})
-                for group, own in zip(groups, columns, strict=True)
+            known = {path.name: path for path in self.files}
+            chosen = {
+                known[file["name"]]: _chosen(
+                    known[file["name"]], group["columns"], bool(file.get("backward"))
+                )
+                for group in groups
                 for file in group["files"]
                 if file["name"] in known and file.get("used", True)
-            ]
-            tables = {
-                name: {k: v for k, v in choice[name].items() if v not in (None, "")}
-                for name in ("tyre", "rig")
             }
+            stated = self._stated(choice["tyre"], choice["rig"], [path.name for path in chosen])
         except (KeyError, TypeError, AttributeError, IndexError):
             raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
-        if tables["rig"].get("type") == "flat-track":
-            tables["rig"] = {k: v for k, v in tables["rig"].items() if not k.startswith("path")}
-        used = {sweep["file"] for sweep in sweeps}
-        bad = [
-            {"file": run.recording.name, "lines": run.lines, "why": run.why}
-            for run in bad_runs(self.summaries)
-            if run.recording.name in used
-        ]
-        fit = {"fit": {"exclude": bad}} if bad else {}
-        return tables | {"columns": columns[0] if columns else {}} | fit | {"sweep": sweeps}
+        found = sniff(sorted(chosen), unloaded_radius=stated.unloaded_radius, chosen=chosen)
+        return project_of(found, self.folder, stated)[1]
+
+    def _stated(self, tyre: Mapping[str, Any], rig: Mapping[str, Any], files: Sequence[str]) -> Stated:
+        """What the page says of tyre and rig, checked as that of a ``tyre.toml``."""
+        given, of_rig = ({k: v for k, v in table.items() if v not in (None, "")} for table in (tyre, rig))
+        if of_rig.get("type") == "flat-track":
+            of_rig = {k: v for k, v in of_rig.items() if not k.startswith("path")}
+        open_yet = {"name": "t", "nominal_pressure": STAND_IN["nominal_pressure"]}
+        content = {"tyre": open_yet | given, "rig": of_rig, "sweep": [{"file": name} for name in files]}
+        checked(content, path=None, folder=self.folder, lines={})
+        disc = None
+        if of_rig.get("type") != "flat-track":
+            disc = DiscPath(float(of_rig["path_radius"]), str(of_rig.get("path_centre", "left")))
+        return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=disc is None)
 
     def _groups(self, files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
         """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""
@@ -252,7 +244,7 @@ def _column(raw: RawTable, heading: str, guess: Guess | None) -> dict[str, Any]:
         "channel": guess.channel.name if guess else "",
         "unit": guess.unit if guess else "",
         "why": guess.why if guess else "",
-        "minus": False,
+        "minus": guess is not None and guess.scale < 0.0,
     }
 
 
@@ -270,26 +262,29 @@ def _joined(one: list[float] | None, other: list[float] | None) -> list[float] |
     return [min(one[0], other[0]), max(one[1], other[1])]
 
 
-def _columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """``[columns]`` of the chosen rows."""
-    out: dict[str, Any] = {}
+def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> ChosenFile:
+    """What the page says of a recording that differs from what it offered."""
+    raw = formats.read(path)
+    guessed = {guess.heading: guess for guess in guesses(raw).found.values()}
+    chosen, taken = [], set()
     for row in rows:
-        name = row.get("channel")
-        if not name:
-            continue
-        if name in out:
-            raise InputError(f"{name} is given by two columns; choose one of them")
-        own = ({"unit": str(row["unit"])} if row.get("unit") else {}) | (
-            {"scale": -1.0} if row.get("minus") else {}
-        )
-        out[str(name)] = {"column": str(row["heading"]), **own} if own else str(row["heading"])
-    return out
+        one = _choice(row)
+        if one.heading not in raw.headings:
+            raise InputError(f'has no heading "{shortened(one.heading)}"; load the page again', file=path)
+        if one.channel and one.channel not in BY_NAME:
+            raise InputError(f'"{shortened(one.channel)}" is no channel; load the page again', file=path)
+        if one.channel in taken:
+            raise InputError(f"{one.channel} is given by two columns; choose one of them")
+        taken.update({one.channel} - {""})
+        if one != _choice(_column(raw, one.heading, guessed.get(one.heading))):
+            chosen.append(one)
+    return ChosenFile(tuple(chosen), backward)
 
 
-def _usual_pressure(found: Sniffed | None) -> float | None:
-    """The most frequent pressure [kPa]; None if none is measured."""
-    found_levels = found.conditions.get("pressure", ()) if found else ()
-    return round(max(found_levels, key=lambda one: one.stretches).value / 1e3) if found_levels else None
+def _choice(row: Mapping[str, Any]) -> ColumnChoice:
+    return ColumnChoice(
+        str(row["heading"]), str(row.get("channel") or ""), str(row.get("unit") or ""), bool(row.get("minus"))
+    )
 
 
 def _conditions(points: Points) -> list[dict[str, Any]]:

@@ -25,7 +25,7 @@ import numpy as np
 
 import tir
 from tir import calls, kernels
-from tir.codegen import kernel
+from tir.codegen.cpython import kernel
 from tir.codegen.program import INPUTS, Switches
 from tir.evaluate import evaluate
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize
 
-from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 
 RNG = np.random.default_rng(5)
 A = RNG.normal(size=(30, 3))
@@ -45,6 +45,13 @@ def test_a_prior_counts_as_one_more_reading():
         np.linalg.lstsq(rows, np.append(DATA, 400.0), rcond=None)[0], abs=1e-6
     )
     assert found.covariance == pytest.approx(np.linalg.inv(rows.T @ rows), rel=1e-9)
+
+
+def test_a_number_at_its_bound_stays_there_beside_numbers_without_bounds():
+    numbers = [FreeNumber("a", 0.4, -3.0, 0.4), FreeNumber("b", 0.0), FreeNumber("c", 0.0)]
+    found = solve(linear_problem(), numbers, tolerance=1e-12)
+    rest, *_ = np.linalg.lstsq(A[:, 1:], DATA - 0.4 * A[:, 0], rcond=None)
+    assert list(found.values.values()) == pytest.approx([0.4, *rest], abs=1e-8)
 
 
 def test_a_bound_holds_and_is_reported():
@@ -93,23 +100,74 @@ def test_steps_that_look_at_kept_limits_and_bounds_arrive_at_once():
     def limit(x):
         return np.array([weight * (normal @ x - 1.0)])
 
-    def linear(x, looks):
-        value, slope = limit(x), weight * normal[None, :]
-        broken = value > 0.0
-        kept = Kept(value[~broken], slope[~broken]) if looks else None
-        return Linear(x - 2.0, np.eye(3), np.where(broken, value, 0.0), slope * broken[:, None], kept)
-
-    def steps(looks):
-        problem = LeastSquaresProblem(
-            lambda x: (x - 2.0, np.maximum(limit(x), 0.0)), lambda x: linear(x, looks)
-        )
-        numbers = [
-            FreeNumber(name, -3.0 - k, upper=0.5 if name == "z" else np.inf) for k, name in enumerate("xyz")
-        ]
-        found = solve(problem, numbers, tolerance=1e-12)
-        return found, found.steps
-
-    found, needed = steps(True)
+    problem = LeastSquaresProblem(
+        lambda x: (x - 2.0, limit(x)),
+        lambda x: Linear(x - 2.0, np.eye(3), limit(x), weight * normal[None, :]),
+    )
+    starts = [
+        FreeNumber(name, -3.0 - k, upper=0.5 if name == "z" else np.inf) for k, name in enumerate("xyz")
+    ]
+    found = solve(problem, starts, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx([0.5, 0.5, 0.5], abs=1e-5)
-    assert needed <= 12
-    assert needed < steps(False)[1]
+    assert found.steps <= 12
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_many_bounds_and_limits_that_act_together_hold_at_the_lowest_place(seed):
+    """A convex problem with random bounds and steep limits, against scipy's bounded quasi-Newton method."""
+    random = np.random.default_rng(seed)
+    k, many = int(random.integers(2, 12)), int(random.integers(1, 30))
+    J, r = random.normal(size=(20, k)), 3.0 * random.normal(size=20)
+    S, v = 30.0 * random.normal(size=(many, k)), random.normal(size=many) - 1.0
+    lower, upper = (np.where(random.random(k) < 0.3, np.inf, random.exponential(size=k)) for _ in range(2))
+    lower = -lower
+
+    def half(x):
+        left, over = r + J @ x, np.maximum(v + S @ x, 0.0)
+        return 0.5 * (left @ left + over @ over), J.T @ left + S.T @ over
+
+    problem = LeastSquaresProblem(
+        lambda x: (r + J @ x, v + S @ x), lambda x: Linear(r + J @ x, J, v + S @ x, S)
+    )
+    numbers = [FreeNumber(f"x{i}", 0.0, lower[i], upper[i]) for i in range(k)]
+    found = solve(problem, numbers, tolerance=1e-12)
+    lowest = minimize(half, np.zeros(k), jac=True, bounds=list(zip(lower, upper, strict=True)), tol=1e-14)
+    assert found.cost <= 2.0 * lowest.fun * (1.0 + 1e-7)
+    assert found.left < 1e-9 * found.cost
+
+
+def cliff(x: np.ndarray) -> np.ndarray:
+    """Residuals with their minimum at (3, 1), in a narrow valley, and a wall at x = 1 that no derivative announces."""
+    wall = 1e6 if x[0] > 1.0 else 0.0
+    return np.array([x[0] - 3.0, 1e3 * (x[0] - x[1] - 2.0), wall])
+
+
+def test_a_search_that_is_stuck_says_so():
+    """At a wall every step is rejected until damping makes it tiny: its gain is small, and what is left is not."""
+
+    def linear(x):
+        return Linear(
+            cliff(x), np.array([[1.0, 0.0], [1e3, -1e3], [0.0, 0.0]]), np.zeros(0), np.zeros((0, 2))
+        )
+
+    problem = LeastSquaresProblem(lambda x: (cliff(x), np.zeros(0)), linear)
+    found = solve(problem, [FreeNumber("x", 0.0), FreeNumber("y", 0.0)])
+    assert found.values["x"] < 1.001
+    assert found.left == pytest.approx(found.cost, rel=0.01)
+
+
+@pytest.mark.parametrize(("steepness", "noise", "tolerance"), [(30.0, 100.0, 1e-5), (100.0, 1000.0, 1e-7)])
+def test_a_small_gain_of_a_damped_step_does_not_end_a_search(steepness, noise, tolerance):
+    """Rosenbrock's valley from its usual start: the minimum is (1, 1), and damped steps on the way there gain little."""
+
+    def residual(x):
+        return np.array([steepness * (x[1] - x[0] ** 2), 1.0 - x[0], noise])
+
+    def linear(x):
+        slope = np.array([[-2.0 * steepness * x[0], steepness], [-1.0, 0.0], [0.0, 0.0]])
+        return Linear(residual(x), slope, np.zeros(0), np.zeros((0, 2)))
+
+    problem = LeastSquaresProblem(lambda x: (residual(x), np.zeros(0)), linear)
+    found = solve(problem, [FreeNumber("x", -1.2), FreeNumber("y", 1.0)], tolerance=tolerance)
+    assert found.cost - noise**2 < 2.0 * tolerance * noise**2
+    assert found.left < tolerance * noise**2

@@ -8,14 +8,17 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 from small_plan import SMALL_PLAN
 from test_bad_input import run, snapshot
 
 import mffit
 from mffit import config
+from mffit.cli import commands
 from mffit.errors import InputError
 from mffit.output import RECORD, output_folder, refuse_early
 from mffit.pipeline.inputs import input_hashes, read_base
@@ -334,3 +337,40 @@ def test_new_files_leave_nothing_behind_where_the_disk_fills_up(tmp_path, monkey
     with pytest.raises(InputError, match="No space left"):
         new_files(tmp_path / "new", {"a.csv": "a", "b.csv": "bb"})
     assert not (tmp_path / "new").exists()
+
+
+def _with_out(group: click.Group, *path: str) -> Iterator[tuple[str, ...]]:
+    """Every command that has --out, with the groups before it."""
+    for name, command in group.commands.items():
+        if isinstance(command, click.Group):
+            yield from _with_out(command, *path, name)
+        elif any("--out" in option.opts for option in command.params):
+            yield (*path, name)
+
+
+OUT_COMMANDS = list(_with_out(commands))
+
+
+@pytest.mark.parametrize("command", OUT_COMMANDS, ids=" ".join)
+@pytest.mark.parametrize("out", ["taken", "taken/deeper/out"])
+def test_an_unusable_out_shows_before_any_work(command, out, tmp_path, capsys):
+    """The inputs do not exist, which any work would notice first."""
+    (tmp_path / "taken").write_text("a note")
+    target = tmp_path / out
+    if command in (("show",), ("convert",)) and out == "taken":  # they write a file
+        target = tmp_path
+    inputs = [tmp_path / "missing.tir"] * (2 if command == ("compare",) else 1)
+    code, said = run(capsys, *command, *inputs, "--out", target)
+    assert code == 2
+    assert re.search("is a file, but the output needs a folder|is a folder, but the output is a file", said)
+    assert "missing.tir" not in said
+    assert {path.name for path in tmp_path.iterdir()} == {"taken"}
+
+
+@pytest.mark.skipif(
+    os.name == "nt" or not Path("/proc/version").exists(), reason="needs /proc, in which nobody writes"
+)
+def test_a_place_where_nothing_can_be_written_shows_before_any_work(capsys):
+    code, said = run(capsys, "build", "missing.toml", "--out", "/proc/out")
+    assert code == 2
+    assert "/proc: cannot be written to" in said

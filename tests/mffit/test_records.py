@@ -235,7 +235,8 @@ def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
     ("old", "new", "key"),
     [
         ({"a": 1.0}, {"a": 1.0 + 1e-9, "b": 2.0}, None),
-        ({"a": 1.0}, {"a": 1.0 + 1e-5}, "a"),
+        ({"a": 1.0}, {"a": 1.0 + 3e-5}, "a"),
+        ({"dof": 1465.99479}, {"dof": 1465.99295}, None),
         ({"a": 1.0, "u_a": 0.1}, {"a": 1.0 + 1e-5, "u_a": 0.1}, None),
         ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.00001, "stderr": 0.1}}, None),
         ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.001, "stderr": 0.1}}, "a.value"),

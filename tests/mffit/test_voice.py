@@ -70,10 +70,13 @@ def test_progress_is_shown_on_a_terminal_beside_the_result(capsys, monkeypatch, 
         monkeypatch.delenv(name, raising=False)
     if on_terminal:
         monkeypatch.setenv("FORCE_COLOR", "1")
+    out, err, end = "", "", time.monotonic() + (600.0 if on_terminal else 0.2)
     with progress() as show:
         show("reading sweeps")
-        time.sleep(0.2)  # the spinner turns every 80 ms
-    out, err = capsys.readouterr()
+        while "reading sweeps" not in err and time.monotonic() < end:
+            time.sleep(0.1)  # the spinner turns every 80 ms, later where the processor is busy
+            found = capsys.readouterr()
+            out, err = out + found.out, err + found.err
     assert out == ""
     assert ("reading sweeps" in err) == on_terminal
 

@@ -45,6 +45,7 @@ def test_the_function_equals_the_equations(tyre, turn_slip):
     pytest.importorskip("casadi")
     function = tir.casadi_function(tyre, turn_slip=turn_slip)
     rows = conditions()
+    assert function.name_in() == ["Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "p"]
     found = np.array([[float(x) for x in function(*row)] for row in rows]).T
     wanted = evaluate(tyre.p, **dict(zip(INPUTS, np.array(rows).T, strict=True)), turn_slip=turn_slip)[0]
     for a, b in zip(found, wanted, strict=True):

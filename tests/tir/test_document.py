@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import tir
 from tir.document import parse_document
 from tir.parameters import BY_NAME, TABLE
-from tir.properties import interpret
+from tir.reading import interpret
 
 VECTORS = Path(__file__).parent / "vectors"
 TEXT = (VECTORS / "moto_front.tir").read_text(encoding="ascii")
@@ -80,6 +80,46 @@ def test_a_change_moves_the_characters_of_its_value_only(tmp_path, change, old, 
 def test_setting_a_value_to_itself_changes_nothing(tmp_path):
     tyre = read_bytes(tmp_path, WILD.encode())
     assert written(tyre.replace(PDY1=1.27), tmp_path) == WILD.encode()
+
+
+@pytest.mark.parametrize("target", [None, "mftyre", "mfeval"])
+@pytest.mark.parametrize(
+    "said",
+    [
+        "slopes at zero on the path of the measurement; " * 8,
+        "0123456789abcdef" * 20,
+        "a" * 100 + "  two blanks  " + "b" * 200,
+        "short enough for one line",
+    ],
+)
+def test_no_written_line_is_longer_than_readers_take(tmp_path, target, said):
+    """The manuals of the programs allow 120 characters; what is longer comes back whole from several lines."""
+    said = said.replace(";", ",").strip()
+    given = {"note": said, "a path of some length/" + "folder/" * 20: "x", "last": "one"}
+    measured = {"n" * 120: tir.Quantity(0.1, 0.02, "m")}
+    tyre = read_bytes(tmp_path, TEXT.encode()).replace(PKY1=-12.345678901234567)
+    tyre = tyre.annotate(provenance=given, measured=measured, status={"PKY1": "fitted " + "x" * 150})
+    text = tyre.text(target)
+    assert max(map(len, text.splitlines())) < 120
+    back = read_bytes(tmp_path, text.encode())
+    assert (dict(back.provenance), dict(back.measured)) == (given, measured)
+    assert back["PKY1"] == -12.345678901234567
+    assert back.text() == text
+    other = back.annotate(provenance={"note": "new"})
+    assert read_bytes(tmp_path, other.text().encode()).provenance == {**given, "note": "new"}
+    assert said not in other.text().replace("\r", "").replace("\n!>", ""), "nothing of the old text stays"
+
+
+def test_a_long_value_is_never_cut(tmp_path):
+    """Only the comment behind it is."""
+    side = "LEFT " + "of something " * 12
+    tyre = (
+        read_bytes(tmp_path, TEXT.encode())
+        .replace(TYRESIDE=side.strip())
+        .annotate(status={"TYRESIDE": "given"})
+    )
+    for target in (None, "mftyre"):
+        assert read_bytes(tmp_path, tyre.text(target).encode())["TYRESIDE"] == side.strip()
 
 
 def test_defaults_are_not_written_into_a_file_that_lacks_them(tmp_path):

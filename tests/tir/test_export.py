@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import inspect
 import re
 import shutil
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 
 import tir
 from tir.codegen.c99 import STATES
+from tir.codegen.javascript import javascript
 from tir.codegen.lag import LAG_INPUTS
 from tir.codegen.program import INPUTS, Switches
 from tir.equations.forces import Forces
@@ -117,6 +119,33 @@ def test_the_code_allocates_nothing_and_keeps_nothing():
 def test_a_name_that_is_invalid_in_c_is_refused(name, words):
     with pytest.raises(tir.TirError, match=words):
         tir.export_c(tir.Tyre.from_values({}), name=name)
+
+
+def test_inputs_have_one_name_in_every_language():
+    """That of a call of the tyre; CasADi and the FMU have tests of their own."""
+    inputs = {"Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "p"}
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    called = {*inspect.signature(tir.Tyre.__call__).parameters} - {"self", "turn_slip", "star", "limits"}
+    code = tir.export_c(tyre, name="t", tunable=True, lag=True)
+    heads = {
+        function: set(re.findall(r"double (\w+)", arguments))
+        for function, arguments in re.findall(
+            r"^t_\w+ (t_\w+)\((.*)\)", code.header + code.source, re.MULTILINE
+        )
+    }
+    for end in ("evaluate", "evaluate_state", "evaluate_tuned", "evaluate_state_tuned"):
+        assert heads[f"t_{end}"] == inputs
+    contact = {*inspect.signature(tir.transient.step).parameters} - {
+        "tyre",
+        "contact",
+        "dt",
+        "turn_slip",
+        "limits",
+    }
+    assert heads["t_contact"] == heads["t_step"] - {"dt"} == contact | {"u", "v"}
+    (arguments,) = re.findall(r"return \((.*)\) => {", javascript())
+    assert called == set(arguments.split(", ")) == inputs
+    assert "   p        inflation pressure [Pa]" in code.header
 
 
 @needs_compiler

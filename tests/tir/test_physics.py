@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tir
+from tir.outputs import outputs_of
 from tir.parameters import BY_NAME, TABLE
+from tir.transient import Contact
 
 VECTORS = Path(__file__).parent / "vectors"
 TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
@@ -113,6 +115,51 @@ def test_a_zero_in_the_file_gives_a_number_or_a_sentence(name):
             with np.errstate(all="ignore"):
                 forces = damaged(1800.0, 0.05, 0.1, 0.01, -0.5, 8.0, pressure)
             assert np.shape(forces.Fy) == ()
+
+
+@pytest.mark.parametrize("of", ["number", "array", "complex", "contact", "outputs", "many"])
+def test_a_tyre_without_vertical_stiffness_has_its_forces(of):
+    """The radius of A7 enters the forces through the spin of 4.E76 only, so that without turn slip they are the same."""
+    stiff = tir.read(VECTORS / "moto_front.tir")
+    alpha = {
+        "array": np.linspace(-0.1, 0.1, 5),
+        "many": np.linspace(-0.1, 0.1, 30_000),
+        "complex": 0.05 + 1e-20j,
+    }
+
+    def forces(tyre: tir.Tyre) -> object:
+        if of == "contact":
+            return tir.transient.step(tyre, Contact(), 0.01, 1800.0, 8.0, 0.1, 0.3)[1]
+        if of == "outputs":
+            return outputs_of(("Fy", "Mz", "K_ya"), tyre.p, {"Fz": 1800.0, "alpha": 0.05})
+        return tyre(1800.0, alpha.get(of, 0.05), 0.1, 0.01)
+
+    soft = stiff.replace(VERTICAL_STIFFNESS=0.0)
+    np.testing.assert_array_equal(forces(soft), forces(stiff))
+    tir.transient.forces(soft, Contact(0.0, 0.01), 1800.0, 8.0)
+    assert "VERTICAL_STIFFNESS" in {p.name for p in tir.check(soft) if p.level == "warning"}
+    assert not [p for p in tir.check(soft) if p.level == "error"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (lambda tyre: tyre.state(1800.0), "of Re, omega divide"),
+        (tir.export_c, "of Re, omega divide"),
+        (lambda tyre: tyre(1800.0, phi_t=-0.1), "of Fx, Fy, Mx, My, Mz with turn slip divide"),
+        (lambda tyre: outputs_of(("Fy", "Re"), tyre.p, {"Fz": 1800.0}), "of Re divide"),
+    ],
+)
+def test_what_needs_the_vertical_stiffness_is_named(asked, said):
+    with pytest.raises(
+        tir.TirError, match=f"^VERTICAL_STIFFNESS is 0, but the equations {said} by it: give its value"
+    ):
+        asked(tir.read(VECTORS / "moto_front.tir").replace(VERTICAL_STIFFNESS=0.0))
+
+
+def test_turn_slip_needs_the_vertical_stiffness_in_a_check():
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(VERTICAL_STIFFNESS=0.0, USE_MODE=225.0)
+    assert "VERTICAL_STIFFNESS" in {p.name for p in tir.check(tyre) if p.level == "error"}
 
 
 EXTREMES = st.sampled_from([0.0, -1.0, 1e308, -1e308, 1e200, 1e-320, float("inf"), float("nan")])

@@ -11,7 +11,7 @@ import tir
 from tir.checking import check
 from tir.document import parse_document
 from tir.parameters import SECTIONS, TABLE
-from tir.properties import interpret
+from tir.reading import interpret
 from tir.targets import ADAMS, ONLY_62, TARGETS, use_mode_words, vendor
 
 VECTORS = Path(__file__).parent / "vectors"

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS
+from tir.codegen.program import INPUTS, called, refuse_zero_divisors
 from tir.equations.forces import Forces
 from tir.errors import TirError
-from tir.evaluate import refuse_zero_divisors
-from tir.mode import exported
-from tir.tuning import chosen, trace_tuned
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
+from tir.record import TyreRecord
+from tir.tuning import chosen, exported, trace_tuned
 
 OPERATORS = {
     "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
@@ -29,7 +25,7 @@ GUARDED = {"sqrt": (0.0, 0.0), "arccos": (1.0, 0.0)}
 
 
 def casadi_function(
-    tyre: Tyre,
+    tyre: TyreRecord,
     *,
     name: str | None = None,
     outputs: tuple[str, ...] = Forces._fields,
@@ -38,7 +34,7 @@ def casadi_function(
     limits: bool = False,
     tunable: Sequence[str] = (),
 ) -> Any:
-    """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, pressure (ISO-W, SI, radians).
+    """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, p (ISO-W, SI, radians).
 
     An input that a call by name omits has the value of an FMU's start: FNOMIN, LONGVL, INFLPRES, the factors of the file, else 0.
 
@@ -61,13 +57,13 @@ def casadi_function(
         import casadi
     except ImportError:
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
-    refuse_zero_divisors(tyre.p)
     switches = exported(tyre, turn_slip, star, limits)
+    refuse_zero_divisors(tyre.p, switches, outputs)
     name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
     factors = {one.name: one.start for one in chosen(tyre, tunable)}
     turned = [*factors]
     program = trace_tuned(tyre, switches, outputs, turned)
-    inputs = {key: casadi.SX.sym(key) for key in (*INPUTS, *turned)}
+    inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *turned)}
     known: dict[int, Any] = {}
 
     def of(x: Any) -> Any:
@@ -90,7 +86,7 @@ def casadi_function(
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
         "default_in": [float(usual.get(key, 0.0)) for key in inputs],
     }
-    return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)
+    return casadi.Function(name, [*inputs.values()], results, [*map(called, inputs)], [*outputs], options)
 
 
 def _guarded(casadi: Any, word: str, x: Any, end: float, there: float) -> Any:

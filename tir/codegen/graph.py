@@ -87,7 +87,8 @@ def _number(x: Any) -> float | bool:
 
 def _compute(operation: str, arguments: tuple[Any, ...]) -> float | bool:
     if operation == "where":
-        return arguments[1] if arguments[0] else arguments[2]
+        chosen: float | bool = arguments[1] if arguments[0] else arguments[2]
+        return chosen
     with np.errstate(all="ignore"):
         return _number(UFUNCS[operation](*arguments))
 

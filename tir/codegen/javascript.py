@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.codegen.program import INPUTS, Switches, trace
+from tir.codegen.program import INPUTS, Switches, called, trace
 from tir.codegen.source import COMMON, FUNCTIONS, SourceDialect, assignments
 from tir.equations.forces import Forces
 
@@ -33,7 +33,8 @@ def javascript(
     """The model, for any tyre, as one JavaScript expression.
 
     Its value is a function of the tyre's parameters (an object by name) that returns a function of
-    :data:`~tir.codegen.program.INPUTS` in this order (ISO-W, SI, radians), which returns an object of the outputs.
+    :data:`~tir.codegen.program.INPUTS` in this order, named as in a call (ISO-W, SI, radians), which returns an object of the
+    outputs.
 
     Parameters
     ----------
@@ -47,10 +48,10 @@ def javascript(
     found = ", ".join(f"{name}: {text}" for name, text in zip(program.outputs, results, strict=True))
     return "\n".join(
         [
-            "p => {",
-            f"  const {{{given}}} = p;",
+            "values => {",
+            f"  const {{{given}}} = values;",
             *(f"  {line}" for line in once),
-            f"  return ({', '.join(INPUTS)}) => {{",
+            f"  return ({', '.join(map(called, INPUTS))}) => {{",
             *(f"    {line}" for line in each),
             f"    return {{{found}}};",
             "  };",

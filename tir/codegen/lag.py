@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph
 from tir.codegen.program import NUMBERS, Program, Switches, program_of
@@ -13,10 +13,8 @@ from tir.codegen.single import MATH, Run, constants, with_defaults
 from tir.codegen.source import conditions, preparation
 from tir.equations import contact
 from tir.evaluate import either_way
+from tir.record import TyreRecord
 from tir.tuning import tunables, warm
-
-if TYPE_CHECKING:
-    from tir.tyre import Tyre
 
 LAG_INPUTS = ("Fz", "Vx", "Vsx", "Vsy", "gamma", "phi_t", "pressure", "damping")
 LAG_TEXTS = {
@@ -31,7 +29,7 @@ LAG_TEXTS = {
 LAGGING = ("u", "v")
 
 
-def lag_programs(tyre: Tyre, switches: Switches, states: Sequence[str]) -> tuple[Program, Program]:
+def lag_programs(tyre: TyreRecord, switches: Switches, states: Sequence[str]) -> tuple[Program, Program]:
     """The deflection after a step ``dt``; and forces, ``states`` and the lagging slips of a deflection.
 
     Inputs are LAG_INPUTS, the deflection u and v, and for the step ``dt`` [s]. Tunables are symbols, other values numbers.

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
-from tir.errors import TirError
-from tir.evaluate import either_way
+from tir.errors import TirError, some
+from tir.evaluate import either_way, zero_divisors
 from tir.parameters import TABLE
 
 INPUTS = ("Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "pressure")
+CALLED = {"pressure": "p"}
+"""Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
 NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
+
+
+def called(name: str) -> str:
+    """The name of an input in a call of the tyre and in exported code."""
+    return CALLED.get(name, name)
 
 
 class Switches(NamedTuple):
@@ -79,9 +87,33 @@ def run_on_symbols(
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
     if changed is not None:
         changed(p, graph)
-    inputs = {name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS}
+    inputs: dict[str, Any] = {
+        name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS
+    }
     forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
     return {**state._asdict(), **forces._asdict()}
+
+
+def refuse_zero_divisors(p: Any, switches: Switches, outputs: Sequence[str]) -> None:
+    """Raise TirError if a parameter is 0 by which the equations of these forces and states divide."""
+    for name in zero_divisors(p):
+        need = that_need(name, switches, outputs)
+        if need:
+            mode = " with turn slip" if switches.turn_slip else ""
+            raise TirError(
+                f"{name} is 0, but the equations of {some(need)}{mode} divide by it: give its value",
+                name=name,
+            )
+
+
+def that_need(name: str, switches: Switches, outputs: Sequence[str]) -> list[str]:
+    """The outputs that depend on a parameter."""
+    return [output for output in outputs if name in _parameters_of(output, switches)]
+
+
+@cache
+def _parameters_of(output: str, switches: Switches) -> tuple[str, ...]:
+    return trace(switches, (output,)).parameters
 
 
 def needed(results: Collection[Any]) -> list[Node]:

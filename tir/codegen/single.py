@@ -28,7 +28,8 @@ def _compiled(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
 
 def preparation_of(switches: Switches, outputs: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
     """See :func:`tir.codegen.source.preparation`."""
-    return _compiled(switches, outputs)[0]
+    found: Callable[..., tuple[float, ...]] = _compiled(switches, outputs)[0]
+    return found
 
 
 def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, float]) -> tuple[float, ...]:

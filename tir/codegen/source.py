@@ -10,7 +10,7 @@ from typing import Any
 
 from tir.codegen.constants import LONGEST_INLINED_EXPRESSION
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS, Program
+from tir.codegen.program import INPUTS, Program, called
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
 COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
@@ -56,7 +56,7 @@ PYTHON = SourceDialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({}
 
 def name_of(node: Node) -> str:
     """The name of the variable that holds the result of an operation."""
-    return node.name if node.operation == "symbol" else f"v{node.number}"
+    return called(node.name) if node.operation == "symbol" else f"v{node.number}"
 
 
 def assignments(
@@ -100,7 +100,7 @@ def preparation(program: Program) -> str:
 def conditions(program: Program, inputs: Sequence[str] = INPUTS) -> str:
     """Python source of ``run(<inputs>, <constants>)``: the outputs at an operating condition."""
     lines, results = assignments(program.per_point, program.outputs.values(), PYTHON)
-    given = (*inputs, *map(name_of, program.constants))
+    given = (*map(called, inputs), *map(name_of, program.constants))
     return function(f"run({', '.join(given)})", [*lines, _returned(results)])
 
 

@@ -9,8 +9,9 @@ The numbers are those of :mod:`tir.codegen.instructions`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from tir.codegen.instructions import bits, number, select, sqrt
+from tir.codegen.instructions import VectorValue, bits, number, select, sqrt
 
 ROUND = 6755399441055744.0
 """1.5 2^52: adding and subtracting it rounds to an integer, which is in the lowest bits in between."""
@@ -44,9 +45,9 @@ LOG = (
 )  # fmt: skip
 
 
-def polynomial(x, coefficients):
+def polynomial(x: VectorValue, coefficients: Sequence[float]) -> VectorValue:
     """c0 + c1 x + c2 x^2 ...; neighbours are added first, because sums that do not wait for each other run side by side."""
-    terms = list(coefficients)
+    terms: list[VectorValue] = list(coefficients)  # type: ignore[arg-type]  # numbers until the first sums
     while len(terms) > 1:
         terms = [
             terms[i] + x * terms[i + 1] if i + 1 < len(terms) else terms[i] for i in range(0, len(terms), 2)
@@ -55,39 +56,39 @@ def polynomial(x, coefficients):
     return terms[0]
 
 
-def sin(x):
+def sin(x: VectorValue) -> VectorValue:
     turns = x * PER_PI + ROUND
     return _with_sign_of(turns, _sin_in_half_turn(_reduced(x, turns - ROUND)))
 
 
-def cos(x):
+def cos(x: VectorValue) -> VectorValue:
     turns = (x * PER_PI + 0.5) + ROUND
     return _with_sign_of(turns, _sin_in_half_turn(_reduced(x, (turns - ROUND) - 0.5)))
 
 
-def tan(x):
+def tan(x: VectorValue) -> VectorValue:
     half_turns = (x * PER_PI + ROUND) - ROUND
     r = _reduced(x, half_turns)
     from_pole = _reduced(x, half_turns + select(r < 0.0, -0.5, 0.5))
     return _sin_in_half_turn(r) / _sin_in_half_turn(abs(from_pole))
 
 
-def _reduced(x, half_turns):
+def _reduced(x: VectorValue, half_turns: VectorValue) -> VectorValue:
     return (x - half_turns * PI_1) - half_turns * PI_2
 
 
-def _with_sign_of(turns, value):
+def _with_sign_of(turns: VectorValue, value: VectorValue) -> VectorValue:
     """The value, negative where the number of half turns is odd."""
     return number(bits(value) ^ (bits(turns) << 63))
 
 
-def _sin_in_half_turn(r):
+def _sin_in_half_turn(r: VectorValue) -> VectorValue:
     """sin(r) for abs(r) <= pi/2."""
     s = r * r
     return r + (r * s) * polynomial(s, SIN)
 
 
-def arctan(x):
+def arctan(x: VectorValue) -> VectorValue:
     t = abs(x)
     steep, middle = t > 1.0, (t > TAN_PI_12) & (t < TAN_5PI_12)
     top, bottom = select(steep, 1.0, t), select(steep, t, 1.0)
@@ -99,12 +100,12 @@ def arctan(x):
     return number(bits(value) | (bits(x) & SIGN_BIT))
 
 
-def arccos(x):
+def arccos(x: VectorValue) -> VectorValue:
     """For -1 < x <= 1."""
     return 2.0 * arctan(sqrt((1.0 - x) / (1.0 + x)))
 
 
-def exp(x):
+def exp(x: VectorValue) -> VectorValue:
     x = select(x > 709.0, 709.0, select(x < -708.0, -708.0, x))
     turns = x * PER_LN2 + ROUND
     n = turns - ROUND
@@ -112,7 +113,7 @@ def exp(x):
     return (1.0 + (r + (r * r) * polynomial(r, EXP))) * number((bits(turns) << 52) + EXPONENT_OF_ONE)
 
 
-def log(x):
+def log(x: VectorValue) -> VectorValue:
     """Of abs(x)."""
     whole = bits(abs(x))
     exponent = number((whole >> 52) + INTEGER_IN_BITS) - (4503599627370496.0 + 1023.0)
@@ -123,14 +124,16 @@ def log(x):
     s = f * f
     tail = (f * s) * polynomial(s, LOG)
     value = exponent * LN2_1 + (2.0 * f + (tail + exponent * LN2_2))
-    return select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
+    found: VectorValue = select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
+    return found
 
 
-def power(x, y):
+def power(x: VectorValue, y: VectorValue | float) -> VectorValue:
     """As numpy's: 1 for y = 0, NaN for a negative x unless y is an integer."""
     exponent = y * log(x)
     size = select(exponent < -708.0, 0.0, select(exponent > 709.78, math.inf, exp(exponent)))
     half = 0.5 * y
     integer, even = (y + ROUND) - ROUND == y, (half + ROUND) - ROUND == half
     negative = select(integer, select(even, size, -size), math.nan)
-    return select(y == 0.0, 1.0, select(x < 0.0, negative, size))
+    found: VectorValue = select(y == 0.0, 1.0, select(x < 0.0, negative, size))
+    return found

@@ -14,9 +14,13 @@ def longitudinal_slip_stiffness(p, q: Inputs):
 
 def cornering_stiffness(p, q: Inputs, gamma, zeta3=1.0):
     """K_ya [N/rad], negative for a normal tyre, at the camber given; 4.E25."""
-    peak_load = (p.PKY2 + p.PKY5 * gamma**2) * (1.0 + p.PPY2 * q.dpi)
     magnitude = p.PKY1 * q.Fz0 * (1.0 + p.PPY1 * q.dpi) * (1.0 - p.PKY3 * absolute(gamma))
-    return magnitude * sin(p.PKY4 * arctan(q.Fz / q.Fz0 / peak_load)) * zeta3 * p.LKY  # 4.E25
+    return magnitude * sin(p.PKY4 * arctan(q.Fz / q.Fz0 / peak_load(p, q, gamma))) * zeta3 * p.LKY  # 4.E25
+
+
+def peak_load(p, q: Inputs, gamma):
+    """Load over the nominal one whose arctangent scales the cornering stiffness, at the camber given; 4.E25."""
+    return (p.PKY2 + p.PKY5 * gamma**2) * (1.0 + p.PPY2 * q.dpi)  # 4.E25
 
 
 def camber_stiffness(p, q: Inputs):

@@ -1,9 +1,9 @@
-"""The influences of :mod:`mffit.fit.influences.nuisances` that a fit models, chosen by how well left-out sweeps are predicted."""
+"""The influences of :mod:`mffit.fit.influences.nuisances` that a fit models: those that the sweeps show beyond chance."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -14,10 +14,11 @@ from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
-from mffit.fit.influences.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.fit.problem import FitProblem
+from mffit.fit.run_scatter import OfRuns, Part, Runs, halves_of_runs
+from mffit.fit.weights import stated_or_nominal
 from mffit.least_squares import FreeNumber, condensed, minimum
-from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
+from mffit.left_out import Predicted, Support, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
@@ -55,6 +56,9 @@ class NuisanceChoice:
         return tuple(verdict.nuisance for verdict in self.verdicts if verdict.modelled)
 
 
+_WITHIN_CHANCE = "what it explains is within chance"
+_LITTLE = "it explains little of what the fit misses"
+_WORSE = "left-out sweeps are predicted worse with it"
 _TOO_FEW = f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
 
 
@@ -72,10 +76,10 @@ class NearSolution(NamedTuple):
 
 
 def choose(config: Any, first: Fitted) -> NuisanceChoice:
-    """The influences that [fit] demands, and those that predict left-out sweeps better.
+    """The influences that [fit] demands, and those that explain more than chance does.
 
-    ``first`` is the fit without any. Forward steps as in the diagnosis of fitted models: the influence that predicts best is
-    added while the prediction improves beyond chance, and one that a later step makes needless is dropped.
+    ``first`` is the fit without any. Forward steps: the influence that chance explains least is added, and one that a later step
+    makes needless is dropped. Grip and stiffness may differ from sweep to sweep meanwhile, so that no influence is taken for it.
     """
     points = first.problem.points
     verdicts: dict[str, Verdict] = {}
@@ -135,35 +139,40 @@ def _judged(
         model = _refitted(model, demanded)
         here = predicted_left_out(model, (), group)
     enough = len(np.unique(group)) >= FEWEST_SWEEPS_TO_PREDICT
-    needed, left = needed_fall(len(candidates)), list(candidates)
-    tried: dict[str, _Prediction] = {}
-
+    left = list(candidates)
+    tried: dict[str, tuple[str, _Prediction]] = {}
     channels = list(model.problem.sigma)
-
-    def better(before: _Prediction, after: _Prediction, about: Collection[str] = ()) -> bool:
-        least = LEAST_PREDICTED_SHARE * before.by_sweep.total
-        own = [channels.index(name) for name in about if name in channels] or None
-        return improves(before.by_sweep, after.by_sweep, least=least, needed=needed, channels=own)
-
     while enough and left:
-        found = {step: predicted_left_out(model, step, group) for step in _steps(left, model.chosen)}
-        tried |= {step[-1].id: prediction for step, prediction in found.items()}
-        helpful = [step for step, prediction in found.items() if better(here, prediction, step[-1].about)]
+        least = LEAST_PREDICTED_SHARE * _beyond_noise(model.problem)
+        equations, helpful = _equations(model, left, group), dict[tuple[Nuisance, ...], Support]()
+        steps = list(_steps(left, model.chosen))
+        for step in steps:
+            support, last = equations.support(step), step[-1]
+            # What needs another influence is no rival of that one; two together are one more chance beside each alone.
+            rivals = len(steps) if step[1:] else sum(other.after == last.after for other in left)
+            after = predicted_left_out(model, step, group)
+            seen = _WORSE if support.removed > least else _LITTLE
+            tried[last.id] = (seen if support.beyond_chance(rivals) else _WITHIN_CHANCE, after)
+            own = [channels.index(name) for name in last.about if name in channels] or None
+            if improves(here.by_sweep, after.by_sweep, support, candidates=rivals, least=least, channels=own):
+                helpful[step] = support
         if not helpful:
             break
-        best = min(helpful, key=lambda step: found[step].by_sweep.total)
-        rivals = {nuisance.rival for nuisance in best}
-        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals]
-        last, model = here, _refitted(model, best)
+        # Two together only if neither does alone; of those that chance never explains, the one that explains most.
+        best = min(helpful, key=lambda step: (len(step), helpful[step].chance, -helpful[step].chi2))
+        rivals_of_best = {nuisance.rival for nuisance in best}
+        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals_of_best]
+        model = _refitted(model, best)
         here = predicted_left_out(model, (), group)
-        for old in [n for n in model.chosen if n in candidates and n is not best[0]]:
-            fewer = _without(model, old)
-            before = predicted_left_out(fewer, (), group)
-            # What came in one step is one influence: its parts must matter, but not each be beyond chance.
-            share = 1.0 - here.by_sweep.total / before.by_sweep.total
-            helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here, old.about)
-            if better(last, before) and not helps:
-                model, here, tried[old.id] = fewer, before, here
+        for old in [n for n in model.chosen if n in candidates and n not in best]:
+            if old not in model.chosen:
+                continue
+            equations = _equations(model, (), group)
+            needed = equations.support(_with_those_after(model, old)).beyond_chance()
+            if not needed and equations.support(best, without=_with_those_after(model, old)).beyond_chance():
+                tried[old.id] = (_WITHIN_CHANCE, here)
+                model = _without(model, old)
+                here = predicted_left_out(model, (), group)
     return _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough), model
 
 
@@ -179,7 +188,7 @@ def _of_runs(
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
     if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
         return Verdict(nuisance, False, _TOO_FEW), {}
-    runs = _linear_runs(model, nuisance)
+    runs = _linear_runs(model, nuisance, points.sweep)
     parts = runs.parts()
     spread = runs.spread(parts)
 
@@ -192,11 +201,13 @@ def _of_runs(
     gaps, scatter = (without.gaps, beside.gaps), dict(zip(nuisance.numbers, spread.tolist(), strict=True))
     if demanded:
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
-    least = LEAST_PREDICTED_SHARE * without.by_sweep.total
-    if not improves(without.by_sweep, beside.by_sweep, least=least, needed=needed_fall(1)):
-        return Verdict(
-            nuisance, False, "left-out halves of sweeps are not predicted clearly better with it", *gaps
-        ), {}
+    support = runs.support_of_scatter(parts, spread)
+    removed = 1.0 - beside.by_sweep.total / without.by_sweep.total
+    # A gain that few runs hold is theirs; a scatter shows in most of them.
+    shared = removed > LEAST_PREDICTED_SHARE and without.by_sweep.falls(beside.by_sweep) > needed_fall(1)
+    if not shared or not improves(without.by_sweep, beside.by_sweep, support):
+        seen = "left-out halves of sweeps are not predicted clearly better with it"
+        return Verdict(nuisance, False, seen if support.beyond_chance() else _WITHIN_CHANCE, *gaps), {}
     whole = predictions(sweeps)
     if whole[0].by_sweep.raised(whole[1].by_sweep):
         reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
@@ -204,8 +215,53 @@ def _of_runs(
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 
 
-def _linear_runs(model: NearSolution, nuisance: Nuisance) -> Runs:
-    """The fit, linearised, with numbers of every run."""
+class _Equations(NamedTuple):
+    """A fit, linearised, with numbers of influences that it does not model yet, beside grip and stiffness of every group."""
+
+    names: tuple[str, ...]  #: of all shared numbers
+    away: np.ndarray  #: (k,) their distance from where an influence has no effect; 0 of coefficients
+    candidates: frozenset[str]  #: those of the names that it does not model
+    runs: Runs
+    parts: Part
+
+    def support(self, more: Iterable[Nuisance], without: Iterable[Nuisance] = ()) -> Support:
+        """What the numbers of influences explain, after all numbers of the model but those of ``without``."""
+        tested = {name for nuisance in more for name in nuisance.numbers}
+        gone = (self.candidates | {name for nuisance in without for name in nuisance.numbers}) - tested
+        is_tested, is_gone = (np.array([name in some for name in self.names]) for some in (tested, gone))
+        step = np.where(is_tested | is_gone, -self.away, 0.0)
+        return self.runs.support(self.parts, np.flatnonzero(~is_gone), np.flatnonzero(is_tested), step)
+
+
+def _equations(model: NearSolution, candidates: Iterable[Nuisance], group: np.ndarray) -> _Equations:
+    """The equations of a fit with some candidates; groups (n,) differ in grip and stiffness."""
+    of_runs = next(nuisance for nuisance in NUISANCES if nuisance.per_run)
+    added = [number for nuisance in candidates for number in nuisance.free(model.problem.points, {})]
+    start = {number.name: number.start for number in added}
+    more = model._replace(problem=model.problem.with_values(start), numbers=[*model.numbers, *added])
+    runs, names = _linear_runs(more, of_runs, group), tuple(n.name for n in more.numbers)
+    own = {name for nuisance in model.chosen for name in nuisance.numbers}
+    away = [model.problem.value(name) - BY_NAME[name].undisturbed if name in own else 0.0 for name in names]
+    return _Equations(names, np.array(away), frozenset(start), runs, runs.parts())
+
+
+def _beyond_noise(problem: FitProblem) -> float:
+    """Sum of squares of the residuals that the noise of the points does not explain; 0 if it explains all."""
+    out = 0.0
+    for name, residual in problem.misfit().items():
+        used, sigma = residual != 0.0, problem.sigma[name]
+        u = stated_or_nominal(problem.points.u(name), np.where(used, problem.points.channel(name), np.nan))
+        noise = u[used] / sigma[used]
+        out += max(float(residual @ residual - noise @ noise), 0.0)
+    return out
+
+
+def _with_those_after(model: NearSolution, old: Nuisance) -> list[Nuisance]:
+    return [nuisance for nuisance in model.chosen if nuisance is old or nuisance.after == old.id]
+
+
+def _linear_runs(model: NearSolution, nuisance: Nuisance, run: np.ndarray) -> Runs:
+    """The fit, linearised, with numbers of every run (n,), which lies within a sweep."""
     problem = model.problem
     numbers = problem.starting_here(model.numbers)
     x = np.array([number.start for number in numbers])
@@ -218,7 +274,7 @@ def _linear_runs(model: NearSolution, nuisance: Nuisance) -> Runs:
             OfRuns(np.tile(rows, len(problem.sigma)), slope[:, : len(x)], slope[:, len(x) :], data)
             for rows, data, slope in sweeps()
         ),
-        run=problem.points.sweep,
+        run=run,
         information=np.diag(precision) + by_radii.T @ by_radii,
         pull=away + by_radii.T @ radii,
     )
@@ -242,7 +298,7 @@ def _verdicts(
     demanded: Sequence[Nuisance],
     base: _Prediction,
     here: _Prediction,
-    tried: Mapping[str, _Prediction],
+    tried: Mapping[str, tuple[str, _Prediction]],
     *,
     enough: bool,
 ) -> dict[str, Verdict]:
@@ -252,11 +308,11 @@ def _verdicts(
         if nuisance in demanded:
             reason, gaps = _said(config, nuisance), (base.gaps, here.gaps)
         elif modelled:
-            reason, gaps = "left-out sweeps are predicted better with it", (base.gaps, here.gaps)
+            reason, gaps = "what it explains is beyond chance", (base.gaps, here.gaps)
         elif nuisance.rival in there:
-            reason, gaps = f"the {_named(nuisance.rival)} predicts left-out sweeps better", ({}, {})
+            reason, gaps = f"the {_named(nuisance.rival)} explains more", ({}, {})
         elif other is not None:
-            reason, gaps = "left-out sweeps are not predicted clearly better with it", (here.gaps, other.gaps)
+            reason, gaps = other[0], (here.gaps, other[1].gaps)
         elif not enough:
             reason, gaps = _TOO_FEW, ({}, {})
         else:
@@ -317,7 +373,7 @@ def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
 
 def _without(model: NearSolution, dropped: Nuisance) -> NearSolution:
     """The model without an influence and those that need it, fitted again."""
-    kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
+    kept = tuple(n for n in model.chosen if n not in _with_those_after(model, dropped))
     gone = {name: BY_NAME[name].undisturbed for n in model.chosen if n not in kept for name in n.numbers}
     numbers = [number for number in model.numbers if number.name not in gone]
     return solved(NearSolution(model.problem.with_values(gone), numbers, kept))

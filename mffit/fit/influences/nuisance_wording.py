@@ -121,7 +121,7 @@ def _worth_telling(verdict: Verdict, found: NuisanceFit) -> bool:
 
 
 def _compared(verdict: Verdict) -> str:
-    return f"{_gaps(verdict.beside)} with it, {_gaps(verdict.without)} without"
+    return f"errors of what is left out: {_gaps(verdict.beside)} with it, {_gaps(verdict.without)} without"
 
 
 def _stated(name: str, value: float, u: float) -> str:

@@ -120,7 +120,7 @@ def _polished(
     numbers = tuple(n for nuisance in added for n in nuisance.free(problem.points, choice.scatter))
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
-    found = polish(here if plan.noise_stated else here.with_noise_of_misfit(), plan)
+    found = polish(here.with_noise_of_misfit(), plan)
     return replace(found, stages=fitted.stages, attempts=fitted.attempts)
 
 

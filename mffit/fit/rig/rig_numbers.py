@@ -38,10 +38,8 @@ def known_zeros(measured: Any, setups: Sequence[str]) -> dict[str, float]:
 
 
 def _misaligned(measured: Any, setup: str) -> float:
-    """Sideslip misalignment of a set-up [deg], mean over its paths; 0 if it is within what the alignment leaves."""
-    rows = measured.nominal.setups if measured.nominal else ()
-    found = [row.alpha_M.value for row in rows if row.name == setup and row.misaligned and row.alpha_M]
-    return math.degrees(sum(found) / len(found)) if found else 0.0
+    """Sideslip misalignment of a set-up [deg]; 0 if it is within what the alignment leaves."""
+    return math.degrees(measured.misaligned_setups.get(setup, 0.0))
 
 
 def rig_numbers(

@@ -93,7 +93,7 @@ class Imitation(NamedTuple):
         return MISFIT_UNIT[self.channel] * float(self.fixed["FNOMIN"])
 
     def _residuals(self, free: Mapping[str, float], *, derive: bool) -> Linear:
-        """Weighted misfits and broken limits, with derivatives by the free values if wanted."""
+        """Weighted misfits and limits, with derivatives by the free values if wanted."""
         numbers: Mapping[str, Any] = traced(free) if derive else free
         values = {**self.fixed, **numbers}
         by = list(numbers.values()) if derive else []
@@ -103,11 +103,10 @@ class Imitation(NamedTuple):
             factor = np.sqrt(goal.weight / goal.weight.sum()) / self._unit
             data.append((plain(out) - getattr(goal.forces, self.channel)) * factor)
             slopes.append(gradient(out, by) * factor[:, None])
-        broken, broken_slopes = self._broken(values, by)
-        return Linear(np.concatenate(data), np.concatenate(slopes), broken, broken_slopes)
+        return Linear(np.concatenate(data), np.concatenate(slopes), *self._limits(values, by))
 
-    def _broken(self, values: Mapping[str, Any], by: list[Any]) -> tuple[np.ndarray, np.ndarray]:
-        """Violations of the physical limits and of the lines of camber, with derivatives."""
+    def _limits(self, values: Mapping[str, Any], by: list[Any]) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals of the physical limits and of the lines of camber, above 0 where broken, with derivatives."""
         value, slope = limits(SimpleNamespace(**values), self.envelope, by)
         weight = constants.LIMIT_WEIGHT_OF_DERIVED_FILE
         over, by_number = weight * value, weight * slope
@@ -115,7 +114,7 @@ class Imitation(NamedTuple):
             reversal, reversal_slope = self._reversal(values, by, self.lines)
             over = np.concatenate([over, reversal])
             by_number = np.concatenate([by_number, reversal_slope])
-        return np.maximum(over, 0.0), by_number * (over > 0.0)[:, None]
+        return over, by_number
 
     def _reversal(
         self, values: Mapping[str, Any], by: list[Any], lines: Lines

@@ -13,7 +13,6 @@ from mffit.report.text.recordings import sniff_summary
 from mffit.report.text.verification import verification_summary
 
 __all__ = [
-    "prediction_summary",
     "alignment_table",
     "budget_table",
     "build_summary",
@@ -26,6 +25,7 @@ __all__ = [
     "many_summary",
     "models_written",
     "plan_summary",
+    "prediction_summary",
     "sniff_summary",
     "spin_summary",
     "verification_summary",

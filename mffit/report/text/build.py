@@ -12,7 +12,6 @@ from mffit.report.text.direct import setups_table, spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
-from mffit.scatter import finite_median
 from tir.errors import counted
 from tir.parameters import BY_NAME
 
@@ -32,7 +31,7 @@ def build_summary(result: BuildResult) -> str:
             name,
             str(a.n),
             f"{number(a.rmse, digits=3)} {CHANNELS[name].unit}",
-            times(a.rmse, finite_median(result.points.u(name))),
+            times(result.trust.over_noise.get(name), 1.0),
             f"{number(a.max_abs, digits=3)} {CHANNELS[name].unit}",
             number(a.r2, 5),
         )

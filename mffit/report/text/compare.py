@@ -32,7 +32,7 @@ def comparison_table(found: Comparison) -> str:
                 gap.channel,
                 f"{number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit}",
                 f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
-                number(gap.rms / gap.noise, digits=3) if gap.noise else "–",
+                number(gap.over_noise, digits=3) if gap.over_noise else "–",
             )
             for gap in found.sweeps[: constants.MOST_ROWS_IN_TERMINAL]
         ]

@@ -43,13 +43,15 @@ def budget_table(budget: Sequence[Contribution], total: float) -> str:
 
 def spin_summary(measured: Measured) -> str:
     """The text that ``mffit spin`` prints: results of the direct method, its budget, every load."""
+    against = [wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in measured.reasons]
     if measured.epsilon_gamma is None:
         reason = "see the warnings." if measured.warnings else "it was not measured."
         # Stiffnesses can be measured without turn slip, too.
         known = [row for row in measured.per_load if row.C_gamma is not None or row.C_alpha is not None]
         sentences = measured.notes or [f"No camber reduction factor: {reason}"]
-        return blocks([_per_load(known) if known else "", paragraphs(sentences)])
+        return blocks([*against, _per_load(known) if known else "", paragraphs(sentences)])
     parts = [
+        *against,
         spin_numbers(measured),
         budget_table(measured.budget, measured.epsilon_gamma.u),
         "\n".join(text for text in (wording.expanded(measured), wording.by_draws(measured)) if text),
@@ -93,8 +95,10 @@ def spin_numbers(measured: Measured) -> str:
     if row is None:
         return ""
     found = [(name, DIRECT[name], getattr(row, name)) for name in NUMBERS]
+    load = CONDITIONS["Fz_N"].of(row.load)
+    explained = {**EXPLAINED, "epsilon_gamma": f" at {load}"}
     lines = [
-        f"{q.ascii:<10} {stated(value, q.unit_behind)}{EXPLAINED.get(name, '')}"
+        f"{q.ascii:<10} {stated(value, q.unit_behind)}{explained.get(name, '')}"
         for name, q, value in found
         if value is not None
     ]

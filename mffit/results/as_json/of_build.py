@@ -67,28 +67,40 @@ def left_out(row: LeftOut) -> dict[str, Any]:
 
 
 def spin(measured: Measured) -> dict[str, Any]:
-    """The content of ``spin.json``, which is the ``spin`` part of ``result.json``; SI units, ISO signs, u with k = 1."""
+    """The content of ``spin.json``; SI units, ISO signs, u with k = 1.
+
+    It is the ``spin`` part of ``result.json``, which judges the whole build and has ``made`` and judgement beside it.
+    """
     row = measured.nominal
-    numbers = {key: value for key, value in _load(row).items() if key != "load_N"}
-    return numbers | {
-        "epsilon_gamma_model": measured.epsilon_gamma_model,
-        **stated("epsilon_gamma_debiased", measured.epsilon_gamma_debiased),
-        "pecp1": measured.pecp1,
-        "pecp2": measured.pecp2,
-        "u_pecp2": measured.u_pecp2,
-        "budget": [line._asdict() for line in measured.budget],
-        "expanded": _expanded(row),
-        "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
-        "interval_95_monte_carlo": list(row.interval) if row and row.interval else None,
-        **stated("camber_skew_deg", measured.camber_skew),
-        "misaligned": measured.axis_off,
-        "coverage_factor": 1,
-        "setups": [_setup(other) for other in row.setups] if row else [],
-        "setup_scatter": _scatter(measured.setup_scatter),
-        "notes": list(measured.notes),
-        "per_load": [_load(other) for other in measured.per_load],
-        **({} if measured.made is None else {"made": made(measured.made)}),
+    numbers = _load(row)
+    judged = {
+        "trusted": measured.trusted,
+        "reasons": list(measured.reasons),
+        "warnings": list(measured.warnings),
     }
+    return (
+        ({} if measured.made is None else judged)
+        | numbers
+        | {
+            "epsilon_gamma_model": measured.epsilon_gamma_model,
+            **stated("epsilon_gamma_debiased", measured.epsilon_gamma_debiased),
+            "pecp1": measured.pecp1,
+            "pecp2": measured.pecp2,
+            "u_pecp2": measured.u_pecp2,
+            "budget": [line._asdict() for line in measured.budget],
+            "expanded": _expanded(row),
+            "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
+            "interval_95_monte_carlo": list(row.interval) if row and row.interval else None,
+            **stated("camber_skew_deg", measured.camber_skew),
+            "misaligned": measured.axis_off,
+            "coverage_factor": 1,
+            "setups": [_setup(other) for other in row.setups] if row else [],
+            "setup_scatter": _scatter(measured.setup_scatter),
+            "notes": list(measured.notes),
+            "per_load": [_load(other) for other in measured.per_load],
+            **({} if measured.made is None else {"made": made(measured.made)}),
+        }
+    )
 
 
 def _expanded(row: LoadResult | None) -> dict[str, Any] | None:
@@ -131,6 +143,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
             for stage in found.stages
         ],
         "coverage": [picked(row, "stage", "supported", "held", "missing") for row in found.coverage],
+        "left": found.left,
         "files": _files(found.files) if found.files is not None else {},
         "explanations": list(found.explanations),
         "seconds": found.seconds,

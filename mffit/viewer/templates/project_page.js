@@ -42,15 +42,13 @@ function showMisfit() {
   channels.forEach((name, k) => {
     const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name), fit = fitMisfits[name] ??= misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
-    const known = project.channels[k].stated;
     line.cells[0].replaceChildren(shared.symbol(quantity(name)), ` [${unit(name)}]`);
     line.cells[1].textContent = written(now.rmse);
     line.cells[2].textContent = written(fit.rmse);
     line.cells[3].hidden = !project.before;
     line.cells[3].textContent = project.before && name in project.before.rmse ? written(project.before.rmse[name]) : "";
     line.cells[4].textContent = Number.isFinite(now.over_noise) ? now.over_noise.toFixed(2) : "–";
-    line.cells[4].title = known ? "root mean square of (model - reading) over the stated uncertainty of the reading"
-      : "no uncertainty is stated: over the scatter with which the fit weighs the readings";
+    line.cells[4].title = "root mean square of (model - reading) / u of the readings that state their uncertainty u";
   });
 }
 

@@ -33,7 +33,7 @@
   const text = name => document.querySelector(`[name=${name}]`).value;
   function choice() {
     return {
-      tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"), nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"), side: text("side")},
+      tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"), nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"), nominal_speed: number("nominal_speed"), width: number("width"), rim_radius: number("rim_radius"), side: text("side")},
       rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"), path_centre: text("path_centre")},
       groups: table.groups,
     };
@@ -130,16 +130,19 @@
     list(table.problems);
     if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : "No recordings here yet.", table.problems.length > 0);
     field(tyre, "name", "name", {value: table.tyre.name, required: true});
-    field(tyre, "size", "size", {value: table.tyre.size});
+    field(tyre, "size", "size", {value: table.tyre.size ?? ""});
     const any = {type: "number", step: "any", required: true, min: 0};
     field(tyre, "unloaded radius [m]", "unloaded_radius", any);
     field(tyre, "nominal load [N]", "nominal_load", any);
     field(tyre, "nominal pressure [kPa]", "nominal_pressure", {...any, value: table.tyre.nominal_pressure ?? ""});
+    const optional = {type: "number", step: "any", min: 0};
+    for (const [word, name] of [["nominal speed [m/s]", "nominal_speed"], ["width [m]", "width"], ["rim radius [m]", "rim_radius"]])
+      field(tyre, word, name, {...optional, value: table.tyre[name] ?? ""});
     select(tyre, "side of the measured tyre", "side", ["left", "right", "symmetric"].map(x => [x, x]), "left");
     const type = select(rig, "rig", "type", [["", "disc or belt?"], ["flat-track", "belt: a straight path"], ["rotating-disk", "disc: a curved path"]], disc ? "" : "flat-track");
     type.required = true;
     select(rig, "axes of the readings", "axes", ["iso", "sae", "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
-    const radius = field(rig, "path radius [m]", "path_radius", {type: "number", step: "any", min: 0});
+    const radius = field(rig, "path radius [m]", "path_radius", optional);
     const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]), "left");
     const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.disabled = type.value !== "rotating-disk"; };
     type.addEventListener("change", curved);

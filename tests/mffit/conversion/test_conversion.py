@@ -199,6 +199,34 @@ def test_what_cannot_be_converted_is_refused(tmp_path, mangled, said):
         convert(tmp_path / "other.tir")
 
 
+@pytest.mark.parametrize(
+    "stated",
+    [
+        "FITTYP = 52",
+        "FITTYP = 51\nPROPERTY_FILE_FORMAT = 'MF_05'",
+        "FITTYP = 62",
+        "PROPERTY_FILE_FORMAT = 'MF-MCTYRE'",
+        "$ nothing",
+    ],
+)
+def test_a_car_tyre_with_a_wrong_version_is_converted_when_told_so(tmp_path, capsys, converted, stated):
+    """The messages of reading and converting name the option, and with it the file is that of the right FITTYP."""
+    plain = re.sub(r"(FITTYP|PROPERTY_FILE_FORMAT).*\n", "", TEXT)
+    (tmp_path / "wrong.tir").write_text(plain.replace("[MODEL]\n", f"[MODEL]\n{stated}\n"))
+    if "MC" in stated or "5" in stated:
+        with pytest.raises(
+            tir.TirError, match=r"MF-MCTyre, the old formula for motorcycles.*write FITTYP 6 or.*--fittyp 6"
+        ):
+            tir.read(tmp_path / "wrong.tir")
+    with pytest.raises(tir.TirError, match="--fittyp 6"):
+        convert(tmp_path / "wrong.tir")
+    with pytest.raises(tir.TirError, match="FITTYP 52 cannot be converted: give 5, 6, 21"):
+        convert(tmp_path / "wrong.tir", fittyp=52)
+    main(["convert", str(tmp_path / "wrong.tir"), "--fittyp", "6", "--out", str(tmp_path / "new.tir")])
+    capsys.readouterr()
+    assert tir.read(tmp_path / "new.tir") == converted.tyre
+
+
 def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys):
     lacking = tmp_path / "old.tir"
     lacking.write_text(re.sub(r"UNLOADED_RADIUS.*\n", "", TEXT))

@@ -154,3 +154,14 @@ def test_a_sweep_with_an_offset_of_its_own_is_named_with_it(left, drawn):
     assert found.name == "coupled"
     assert re.match(r"a zero offset of \+(2[6-9]|3[0-4])", found.looks)
     assert odd_sweep(drawn[2], {"Fy": 1.0, "Mz": 1.0, "alpha": 1.0, "gamma": 1.0}) is None
+
+
+@pytest.mark.parametrize("amount", [-2.26, 2.26])
+def test_an_effect_of_an_impossible_size_is_not_suggested(left, amount):
+    """A load that changes by 226 % with camber: its shape alone, some 60 standard deviations strong."""
+    slope = left.simulation.sensitivities(left.points, ["load_camber"], left.channels)[1].stacked[:, :1]
+    far = best_effect(
+        replace(left, residual=left.residual + amount * left.outside(left.whitened(slope)[:, 0]))
+    )
+    assert all(step.effect.id != "load-camber" for step in (far.best, *far.rivals))
+    assert best_effect(left).best.effect.id == "load-camber"

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
+from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -161,6 +163,82 @@ def test_the_lag_of_the_contact_is_that_of_tir(tmp_path, fmi):
 
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("transient", [False, True])
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        ({"LFZO": 0.0}, "p = 250000.*LFZO = 0$"),
+        ({"p": float("nan")}, "p = nan"),
+        ({"Fz": float("inf")}, "Fz = inf"),
+    ],
+)
+def test_a_result_that_is_no_number_has_a_status_and_a_sentence(tmp_path, fmi, transient, start, said):
+    """A force over a nominal load of zero, 4.E2a, is no number, and a simulation must not go on with it."""
+    fmpy = pytest.importorskip("fmpy")
+    fmu, logged = write_fmu(FILE, tmp_path, fmi=fmi, transient=transient), []
+    run = partial(
+        fmpy.simulate_fmu, str(fmu), fmi_type="CoSimulation", stop_time=0.02, output_interval=0.01, output=["Fx", "Fy"],
+        logger=lambda *given: logged.append(given[-1].decode()),
+    )  # fmt: skip
+    with pytest.raises(Exception, match=r"failed with status 2 \(discard\)"):
+        run(start_values=start)
+    assert re.match(rf"Fx is not a finite number: correct the property file, or one of .*{said}", logged[0])
+    logged.clear()
+    assert np.all(np.isfinite(run(start_values={"LFZO": 1.1})["Fy"]))
+    assert not logged
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_step_that_gives_no_number_is_refused_and_leaves_the_contact(tmp_path, fmi):
+    fmpy = pytest.importorskip("fmpy")
+    fmu, logged = write_fmu(FILE, tmp_path, fmi=fmi, transient=True), []
+    description = fmpy.read_model_description(str(fmu))
+    reference = {x.name: x.valueReference for x in description.modelVariables}
+    instance = fmpy.instantiate_fmu(
+        fmpy.extract(str(fmu), str(tmp_path / "x")), description, "CoSimulation",
+        logger=lambda *given: logged.append(given[-1].decode()),
+    )  # fmt: skip
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    get = instance.getReal if fmi == 2 else instance.getFloat64
+    set_ = instance.setReal if fmi == 2 else instance.setFloat64
+    set_([reference["Vsy"]], [0.5])
+    instance.doStep(0.0, 0.01)
+    (before,) = get([reference["v"]])
+    assert before > 1e-4
+    set_([reference["Vsy"]], [float("nan")])
+    with pytest.raises(Exception, match=r"failed with status 3 \(error\)"):
+        instance.doStep(0.01, 0.01)
+    assert "the deflection of the contact is not a finite number" in logged[0]
+    assert "Vsy = nan" in logged[0]
+    set_([reference["Vsy"]], [0.5])
+    assert get([reference["v"], 0]) == [before, 0.01]
+    instance.freeInstance()
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_co_simulation_is_one_step_behind_its_inputs_and_says_so(fmus, fmi):
+    """A master that sets, steps and reads, as FMPy, gets at the end of a step the force of the inputs at its begin."""
+    fmpy = pytest.importorskip("fmpy")
+    n, dt = 20, 0.01
+    signals = np.zeros(n, dtype=[("time", float), ("alpha", float)])
+    signals["time"], signals["alpha"] = dt * np.arange(n), np.linspace(0.0, 0.1, n)
+    found = fmpy.simulate_fmu(
+        str(fmus[fmi]), fmi_type="CoSimulation", input=signals, stop_time=signals["time"][-1], output_interval=dt,
+        step_size=dt, output=["Fy"],
+    )  # fmt: skip
+    tyre = tir.read(FILE)
+    wanted = tyre(tyre["FNOMIN"], signals["alpha"], turn_slip=True).Fy
+    np.testing.assert_allclose(found["Fy"][1:], wanted[:-1], rtol=1e-9)
+    with zipfile.ZipFile(fmus[fmi]) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    assert "one communication step behind" in root.attrib["description"]
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
 def test_units_and_starts_are_declared(fmus, fmi):
     """Base units by hand: a moment is kg m2/s2; the start is the nominal condition of the file."""
     with zipfile.ZipFile(fmus[fmi]) as archive:
@@ -277,8 +355,12 @@ def test_instances_are_independent_and_states_come_back(fmus, tmp_path):
     assert hand.library.fmi2Reset(a) == 0
     assert hand.get(a, Fy) == [there]
     assert hand.set(a, alpha=float("nan")) == 0
-    assert np.isnan(hand.get(a, Fy)[0])
-    output = (c_uint * 1)(Fy)
+    output, value = (c_uint * 1)(Fy), (c_double * 1)()
+    assert hand.library.fmi2GetReal(a, output, 1, value) == 2, "outside the range of the equations: discard"
+    assert np.isnan(value[0])
+    assert np.isnan(hand.get(a, 1 + INPUTS.index("alpha"))[0]), "what was set can be read"
+    assert hand.set(a, alpha=-0.1) == 0
+    assert hand.get(a, Fy)[0] > 0.0
     assert hand.library.fmi2SetReal(a, output, 1, (c_double * 1)(1.0)) == 3, "an output cannot be set"
     assert hand.library.fmi2GetReal(a, (c_uint * 1)(99), 1, (c_double * 1)()) == 3
     step = hand.library.fmi2DoStep

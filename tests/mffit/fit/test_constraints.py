@@ -47,6 +47,17 @@ def test_a_broken_limit_is_a_violation(sound, change):
     assert np.any(violations(sound.replace(**change).p, ENVELOPE))
 
 
+def test_a_limit_announces_where_the_cornering_stiffness_jumps(sound):
+    """At 1 + PPY2 dpi = 0 the stiffness changes its sign from one value to the next: a search must see it coming."""
+    dpi = 300e3 / sound["NOMPRES"] - 1.0
+    near, far = (sound.replace(PPY2=-share / dpi) for share in (0.995, 0.9))
+    beyond = sound.replace(PPY2=-1.005 / dpi)
+    K_near, K_beyond = (tyre.state(1500.0, p=300e3).K_ya for tyre in (near, beyond))
+    assert K_near * K_beyond < 0.0
+    assert np.any(violations(near.p, ENVELOPE))
+    assert not np.any(violations(far.p, ENVELOPE))
+
+
 @pytest.mark.parametrize("factor", ["E_y", "E_t"])
 def test_the_violation_grows_with_the_factor(sound, factor):
     name = {"E_y": "PEY1", "E_t": "QEZ1"}[factor]

@@ -15,7 +15,9 @@ import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import DIRECTIONS, _correlation, relaxation, relaxation_sentences
+from mffit.points import Points
 from mffit.points.loading import read
+from mffit.points.points import make_points
 from mffit.points.steps import steps
 from mffit.results.as_json import of_build
 from mffit.rig import Simulation
@@ -178,3 +180,36 @@ def test_the_sentences_give_every_length_with_its_load(found):
     for one, said in zip(found, relaxation_sentences(found), strict=True):
         run = one.runs[0]
         assert f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N, " in said
+
+
+def instant_steps(truth: tir.Tyre, rate: float, random: np.random.Generator) -> Points:
+    """Samples of the response sigma alpha'' + alpha' = alpha in closed form, each step done in no time between two samples."""
+    load, V, hold = truth["FNOMIN"], 1.0, 2.0
+    sigma = float(truth.state(load).sigma_y)
+    time = np.arange(0.0, 5.0 * hold, 1.0 / rate)
+    read = follows = np.zeros(len(time))
+    for k, size in enumerate((1.0, -1.0, -1.0, 1.0), 1):
+        since = time - (k * hold + random.uniform(0.0, 1.0 / rate))
+        read = read + np.where(since >= 0.0, size, 0.0)
+        follows = follows + np.where(since >= 0.0, -size * np.expm1(-V * np.maximum(since, 0.0) / sigma), 0.0)
+    one = np.ones(len(time))
+    Fy = np.asarray(truth(load, alpha=np.radians(follows), turn_slip=False).Fy)
+    return make_points(
+        np.radians(read), 0.0 * one, load * one, sweep_names=("steps",), files=("steps.csv",), phi_t=0.0, time=time,
+        continuous=True, p=truth["NOMPRES"] * one, V=V * one, kappa=0.0 * one,
+        Fy=Fy + 5.0 * random.standard_normal(len(time)), direction=one.astype(int), line=np.arange(len(time)) + 2,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("rate", "draws"), [(20, 16), (50, 12), (100, 8), (1000, 2)])
+def test_steps_that_end_between_two_samples_give_the_length_within_its_uncertainty(truth, rate, draws):
+    """When within the sample they moved is not read; taken for a ramp from sample to sample, lengths are 15 u off."""
+    random = np.random.default_rng(8)
+    stiffness = float(truth["LATERAL_STIFFNESS"])
+    unknown = Simulation.of(truth.replace(LATERAL_STIFFNESS=2.0 * stiffness), turn_slip=False)
+    pulls = []
+    for _ in range(draws):
+        (run,) = relaxation({"alpha": instant_steps(truth, rate, random)}, unknown, NONE_KNOWN)[SIDEWAYS].runs
+        pulls.append((run.length.value - float(truth.state(run.load).sigma_y)) / run.length.u)
+    assert np.max(np.abs(pulls)) < 3.5
+    assert np.mean(np.abs(pulls) < 1.96) > 0.8

@@ -42,7 +42,7 @@ def direct(**changes):
         misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
         epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
         per_load=(SimpleNamespace(F_phit=Quantity(-400.0, 20.0, "N")),),
-        camber_skew=None,
+        camber_skew=None, misaligned_setups={},
     )  # fmt: skip
     return SimpleNamespace(**found | changes)
 
@@ -109,7 +109,7 @@ def test_what_is_exact_is_no_number_of_the_fit(key, name):
 
 def test_every_set_up_has_zeros_of_its_own_as_declared():
     """The zero of Mz, which no key declares, has its usual size; what is no zero is of the rig."""
-    measured = direct(setup_scatter=None, nominal=None)
+    measured = direct(setup_scatter=None)
     alone = by_name(rig(), measured)
     found = {n.name: n for n in rig_numbers(rig(), measured, ("A", "B"))}
     zeros = ("F0_N", "gamma_0_deg", "alpha_0_deg")
@@ -124,17 +124,13 @@ def test_every_set_up_has_zeros_of_its_own_as_declared():
 def test_a_straight_path_with_several_set_ups_has_their_zeros_only():
     """Ply-steer and conicity can absorb the zeros of one set-up, not those of two."""
     flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
-    measured = direct(epsilon_gamma=None, setup_scatter=None, nominal=None)
+    measured = direct(epsilon_gamma=None, setup_scatter=None)
     names = {number.name.partition("@")[0] for number in rig_numbers(flat, measured, ("A", "B"))}
     assert names == {"F0_N", "gamma_0_deg", "alpha_0_deg", "M0_Nm"}
 
 
 def test_the_misalignment_of_a_set_up_is_its_own():
-    rows = (
-        SimpleNamespace(name="A", alpha_M=Quantity(math.radians(0.02), 1e-4, "rad"), misaligned=False),
-        SimpleNamespace(name="B", alpha_M=ALPHA_M, misaligned=True),
-    )
-    measured = direct(setup_scatter=None, nominal=SimpleNamespace(setups=rows), misaligned=False)
+    measured = direct(setup_scatter=None, misaligned_setups={"B": math.radians(0.7)}, misaligned=False)
     assert known_zeros(measured, ("A", "B")) == {"alpha_0_deg@B": pytest.approx(0.7)}
     assert known_zeros(measured, ("A",)) == {}
     assert known_faults(rig(), direct(misaligned=True), ("A", "B"))["alpha_0_deg"] == 0.0
@@ -145,10 +141,10 @@ def test_the_misalignment_of_a_set_up_is_its_own():
 
 def test_a_straight_path_has_its_zeros_and_a_disc_without_any_has_none():
     flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
-    found = {name: n.spread for name, n in by_name(flat, direct(setup_scatter=None, nominal=None)).items()}
+    found = {name: n.spread for name, n in by_name(flat, direct(setup_scatter=None)).items()}
     angle = pytest.approx(math.degrees(20.0 / 18000.0))
     assert found == {"F0_N": 8.0, "alpha_0_deg": angle, "M0_Nm": 1.0}
-    turned = rig_numbers(flat, direct(setup_scatter=None, nominal=None), turned=True)
+    turned = rig_numbers(flat, direct(setup_scatter=None), turned=True)
     assert {n.name: n.spread for n in turned} == {**found, "gamma_0_deg": 0.3}
     assert held_rig(flat)["gamma_0_deg"] == 0.3
     assert "gamma_0_deg" not in {**held_rig(flat, turned=True), **held_rig(flat, ("A", "B"))}

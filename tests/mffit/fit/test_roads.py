@@ -12,10 +12,12 @@ from mffit import config, points, virtual_rig
 from mffit.config.models import NormalTable
 from mffit.fit import ranges
 from mffit.fit.comments import file_comments
-from mffit.fit.known import Known, given_values
+from mffit.fit.known import Known, given_values, known_before_fit
 from mffit.fit.wording import file_sentences, ranges_sentence
 from mffit.fit.written.files import file_names, make_files
 from mffit.fit.written.road import Road, inside, road_grid, weights
+from mffit.pipeline.measuring import measure
+from mffit.points import make_points
 from tir.parameters import TABLE
 
 TESTED = {
@@ -71,6 +73,18 @@ def test_the_grid_spans_the_written_ranges_and_is_symmetric(dense):
     assert set(grid.Fz[grid.pressure != 250e3]) == {1400.0}
     if dense:
         assert within.sum() > 300
+
+
+def test_a_default_of_tyre_toml_is_not_called_given():
+    found = make_points(np.radians([-2.0, 2.0]), 0.0, 1400.0, p=250e3, V=10.0, phi_t=0.0, Fy=[900.0, -900.0])
+    origins = []
+    for stated in ({}, {"nominal_speed": 10.0, "side": "left"}):
+        tyre = {"name": "t", "unloaded_radius": 0.3, "nominal_load": 1400, "nominal_pressure": 250, **stated}
+        settings = config.load({"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "any.csv"}]})
+        known = known_before_fit(settings, found, measure(settings, found, None)[1], None, {})
+        assert known.values["LONGVL"] == 10.0
+        origins.append([known.origin[name] for name in ("LONGVL", "TYRESIDE", "FNOMIN")])
+    assert origins == [["default", "default", "given"], ["given", "given", "given"]]
 
 
 @pytest.fixture(scope="module")

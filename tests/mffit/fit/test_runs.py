@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_rigs
+from scipy.optimize import minimize
 
 import mffit
 import tir
 from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.fit.influences.nuisance_choice import choose
-from mffit.fit.influences.run_scatter import OfRuns, Runs, halves_of_runs
+from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN
@@ -110,7 +111,7 @@ def test_runs_that_do_not_differ_get_no_numbers(alike):
     result = alike
     found = verdict(result.fit.choice)
     assert not found.modelled
-    assert found.reason == "left-out halves of sweeps are not predicted clearly better with it"
+    assert found.reason == "what it explains is within chance"
     assert result.fit.runs is None
     assert not any("@" in name for name in result.fit.rig)
 
@@ -207,6 +208,65 @@ def test_the_scatter_of_numbers_that_were_drawn_is_found():
     rows = of_runs(run, slope, own, residual)
     found = Runs(rows=rows, run=run, information=np.zeros((3, 3)), pull=np.zeros(3))
     assert found.spread(found.parts()) == pytest.approx([0.03, 0.006], rel=0.2)
+
+
+@pytest.fixture
+def runs_that_scatter():
+    """Readings of nine runs with two kinds of own numbers, and their covariance as a whole matrix for any spread."""
+    rng = np.random.default_rng(12)
+    run = np.repeat(np.arange(9), 8)
+    own, slope = rng.uniform(0.5, 1.5, (72, 2)), rng.standard_normal((72, 5))
+    slope[:, 4] = 0.8 * run + rng.standard_normal(72)  # nearly the same within a run
+    drawn = np.array([1.5, 0.5]) * rng.standard_normal((9, 2))
+    residual = np.sum(own * drawn[run], axis=1) + rng.standard_normal(72)
+    found = Runs(of_runs(run, slope, own, residual), run, np.zeros((5, 5)), np.zeros(5))
+
+    def covariance(spread):
+        wide = np.hstack([own * (run == k)[:, None] * spread for k in range(9)])
+        return np.eye(72) + wide @ wide.T
+
+    return found, slope, residual, covariance
+
+
+def restricted(slope, residual, V):
+    """-2 log of the restricted likelihood (Patterson and Thompson, Biometrika 1971, 58, 545), and the sum of squares left."""
+    inverse = np.linalg.inv(V)
+    A = slope.T @ inverse @ slope
+    left = residual - slope @ np.linalg.solve(A, slope.T @ inverse @ residual)
+    chi2 = left @ inverse @ left
+    return np.linalg.slogdet(V)[1] + np.linalg.slogdet(A)[1] + chi2, chi2
+
+
+def test_the_spread_is_that_of_the_greatest_restricted_likelihood(runs_that_scatter):
+    found, slope, residual, covariance = runs_that_scatter
+    parts = found.parts()
+    spread = found.spread(parts)
+    best = minimize(
+        lambda x: restricted(slope, residual, covariance(np.exp(x)))[0], np.zeros(2), method="Nelder-Mead"
+    )
+    assert spread == pytest.approx(np.exp(best.x), rel=0.03, abs=0.05)
+    gain = restricted(slope, residual, covariance(np.zeros(2)))[0] - best.fun
+    assert found.support_of_scatter(parts, spread).chi2 == pytest.approx(gain, rel=1e-3)
+
+
+def test_what_numbers_explain_is_the_fall_of_the_sum_of_squares_weighted_with_the_scatter(runs_that_scatter):
+    found, slope, residual, covariance = runs_that_scatter
+    parts, every = found.parts(), np.arange(5)
+    support = found.support(parts, every, np.array([4]), np.zeros(5))
+    for spread, own in ((found.spread(parts), support.chi2), (np.zeros(2), support.removed)):
+        V = covariance(spread)
+        fall = restricted(slope[:, :4], residual, V)[1] - restricted(slope, residual, V)[1]
+        assert own == pytest.approx(fall)
+    assert (
+        support.chi2 < 0.2 * support.removed
+    )  # what is nearly constant within a run competes with its own numbers
+    assert 1.0 < support.freedom < 18.0  # two numbers of nine runs at most
+    # The same from where the number is 0.3 already
+    there = [rows._replace(residual=rows.residual + 0.3 * rows.slope[:, 4]) for rows in found.rows()]
+    elsewhere = replace(found, rows=lambda: iter(there))
+    again = elsewhere.support(elsewhere.parts(), every, np.array([4]), np.array([0, 0, 0, 0, -0.3]))
+    assert again.chi2 == pytest.approx(support.chi2)
+    assert again.freedom == pytest.approx(support.freedom)
 
 
 def test_the_halves_of_a_run_are_the_two_sides_of_its_angle():

@@ -53,6 +53,10 @@ NOTES = [
     (notes.slope_too_steep(0.93), "would reach 0.93"),
     (notes.STANDARD_UNCERTAINTIES, "k = 1"),
     (notes.conicity(0.002, 3.0, 0.0096), "3 N (0.2 % of the load, u_conicity) would move eps_gamma by 0.010"),
+    (
+        notes.axis_of_other_loads((900.0,), (1500.0, 2000.0)),
+        "No backward zeros at 900 N: its zeros are corrected with alpha_M of the zeros at 1500, 2000 N",
+    ),
     (notes.CONTACT_WANDERS, "R holds for the upright wheel"),
 ]
 WARNINGS = [

@@ -136,9 +136,7 @@ def force_of_path(sign: float, C_phit: float, u: float, radius: float = R) -> Pa
     """A turn-slip force that gives this stiffness and standard uncertainty [Nm], shared with no other path."""
     exact = ufloat(radius, 1e-12)
     force = ufloat(sign * C_phit / radius, u / radius)
-    return PathForce(
-        sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force, alpha_M=None
-    )
+    return PathForce(sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force)
 
 
 @pytest.mark.parametrize(("apart", "contradictory"), [(3.25, False), (3.33, True)])

@@ -297,3 +297,58 @@ def test_lag_and_hysteresis_of_a_curve_that_is_known():
     assert found.lag == pytest.approx(0.4, abs=0.01)
     assert found.hysteresis == pytest.approx(0.0, abs=10.0)
     assert lag.measure(alpha[:400], Fy[:400], s[:400]) == lag.UNKNOWN
+
+
+def test_points_of_a_recording_know_when_they_were_taken(read, whole):
+    """From the first sample on, in order, as far apart as the samples that they average; for every effect of time."""
+    t = whole.points.t
+    assert np.all(np.isfinite(t))
+    assert 0.0 <= t.min() < 16.0
+    assert t.max() == pytest.approx(18 * 15.0, abs=1.0)
+    for note in kept(whole):
+        of_sweep = t[whole.points.sweep == whole.points.sweep_names.index(note.sweep)]
+        assert note.begin_s - 31.5 <= of_sweep.min() < of_sweep.max() <= note.end_s - 31.5
+        assert np.all(np.diff(of_sweep) > 0.0)
+    again = read(recording().assign(ET=lambda table: table["ET"] + 1.7e9))
+    np.testing.assert_allclose(again.points.t, t, atol=1e-5)
+
+
+def test_clocks_that_each_begin_anew_are_no_common_time(tmp_path):
+    table = recording(loads=(1500.0,), cambers=(0.0, 2.0), pressures=(83.0,))
+    later = table.assign(ET=table["ET"] + 100.0)
+
+    def times(*tables):
+        for k, one in enumerate(tables):
+            one.to_csv(tmp_path / f"{k}.csv", index=False)
+        content = {
+            "tyre": {"name": "x", "unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 83.0},
+            "rig": {"type": "flat-track", "axes": "sae"},
+            "columns": {**COLUMNS, "V_mps": {"column": "V", "unit": "km/h"}},
+            "sweep": [{"file": f"{k}.csv"} for k in range(len(tables))],
+        }
+        return points.read(configuration.load(content, folder=tmp_path)).points.t
+
+    assert np.all(np.isfinite(times(table, later)))
+    assert np.ptp(times(table, later)) > 100.0
+    assert not np.any(np.isfinite(times(table, table)))
+
+
+def test_without_a_speed_the_lag_is_a_time(read, tmp_path):
+    """A relaxation length of 0.5 m, less half a sample of way, is 40.5 ms at 11 m/s, whatever speed is assumed."""
+    table = recording(sigma=0.5, pressures=(83.0,)).drop(columns="V")
+    table.to_csv(tmp_path / "a.csv", index=False)
+    content = {
+        "tyre": {"name": "x", "unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 83.0},
+        "rig": {"type": "flat-track", "axes": "sae"},
+        "columns": {name: heading for name, heading in COLUMNS.items() if name != "V_mps"},
+        "sweep": [{"file": "a.csv"}],
+    }
+    found = points.read(configuration.load(content, folder=tmp_path))
+    (said,) = [sentence for sentence in found.warnings if "lags" in sentence]
+    assert " mm " not in said
+    assert float(said.split("lags ")[1].split(" ")[0]) == pytest.approx(40.5, rel=0.08)
+    assert not found.lags
+    stated = content | {"tyre": content["tyre"] | {"nominal_speed": 11.0}}
+    known = points.read(configuration.load(stated, folder=tmp_path))
+    assert any("mm of rolling" in sentence for sentence in known.warnings)
+    assert known.lags

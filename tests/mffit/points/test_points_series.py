@@ -198,3 +198,23 @@ def test_every_run_of_a_series_has_its_own_clock(project):
     part = of_file(found, "series.csv")
     assert len(part) == 2 * len(STATIONS)
     assert {part.sweep_names[k] for k in part.sweep} == {"series:a", "series:b"}
+
+
+@pytest.mark.parametrize("digits", [2, 1])
+def test_a_rounded_time_gives_the_points_of_the_true_one(project, digits):
+    """Recorders write 0.01 or 0.1 s: samples that share a time are spread evenly up to the next."""
+    table = series(rate=250.0, hold=8.0) if digits == 2 else series()
+    project.add("series.csv", table)
+    true = of_file(load(project)[0], "series.csv")
+    project.tables["series.csv"] = table.assign(time_s=np.floor(table["time_s"] * 10**digits) / 10**digits)
+    found, warnings = load(project)
+    part = of_file(found, "series.csv")
+    assert any("time is rounded" in sentence for sentence in warnings)
+    assert len(part) == len(true)
+    np.testing.assert_allclose(part.Fy, true.Fy, atol=2.0)
+
+
+def test_one_time_for_all_rows_is_told_from_rows_out_of_order(project):
+    project.add("series.csv", series().assign(time_s=3.0))
+    with pytest.raises(InputError, match="the same in all rows"):
+        load(project)

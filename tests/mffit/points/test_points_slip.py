@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from flat_belt import RATE, SPEED, write_mat73
+from flat_belt import RATE, SPEED, drive_recording, rolling_radius, write_mat73
 
 from mffit import config as configuration
 from mffit import points
@@ -129,3 +129,45 @@ def test_a_point_without_slip_rolls_freely():
     assert some.measured == ("Mx",)
     assert some.channel("Mx")[2] == 2.0
     assert np.all(np.isnan(some.u("Mx")))
+
+
+@pytest.fixture
+def by_speeds(tmp_path):
+    """Points of a recording of the machine with speeds of wheel and road, and with slip only if its heading is given."""
+
+    def reading(table, *without, **more):
+        columns = {
+            "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Fx_N": "FX",
+            "V_mps": {"column": "V", "unit": "km/h"}, "omega_radps": {"column": "N", "unit": "rpm"},
+            "RL_m": {"column": "RL", "unit": "cm"}, "p_kPa": "P", **more,
+        }  # fmt: skip
+        table.to_csv(tmp_path / "run.csv", index=False)
+        tyre = {"name": "x", "unloaded_radius": 0.228, "nominal_load": 1500.0, "nominal_pressure": 83.0}
+        content = {"tyre": tyre, "rig": {"type": "flat-track", "axes": "sae"}, "sweep": [{"file": "run.csv"}]}
+        content["columns"] = {name: heading for name, heading in columns.items() if name not in without}
+        return points.read(configuration.load(content, folder=tmp_path), may_be_empty=True)
+
+    return reading
+
+
+def test_slip_that_was_not_recorded_follows_from_the_speeds(by_speeds):
+    """The recorded slip against free rolling is the truth; without it, driven points counted as rolling freely."""
+    table = drive_recording()
+    true = by_speeds(table, kappa="SL").points
+    found = by_speeds(table)
+    assert len(found.points) == len(true)
+    assert np.max(np.abs(true.kappa)) > 0.13
+    np.testing.assert_allclose(found.points.kappa, true.kappa, atol=0.006)
+    assert np.std(found.points.kappa - true.kappa) < 0.002
+    assert any("no slip was recorded" in sentence for sentence in found.warnings)
+    blind = by_speeds(table, "Fx_N")
+    assert any(entry.rule == "driven-or-braked" for entry in blind.left_out)
+
+
+def test_a_wheel_that_rolls_freely_has_no_slip_from_its_speeds(by_speeds):
+    """Its radius changes by a twelfth from load to load, which is no slip."""
+    table = drive_recording(loads=(300.0, 1500.0, 2400.0))
+    table["N"] = SPEED / (rolling_radius(-table["FZ"]) + table["FZ"] / 1.2e5) * 30.0 / np.pi
+    found = by_speeds(table.assign(FX=0.0))
+    assert np.all(found.points.kappa == 0.0)
+    assert not any("slip" in sentence for sentence in found.warnings)

@@ -14,7 +14,9 @@ def readings(near: float) -> Driven:
     n = len(slip)
     some = np.tile([0.0, 0.02, -0.02, 0.01], n // 4)
     Fz = 1400.0 * (1.0 + 0.2 * some)
-    return Driven(slip, force * Fz, Fz, some, 0.0 * some, np.full(n, 250e3), np.full(n, np.nan))
+    return Driven(
+        slip, force * Fz, Fz, some, 0.0 * some, np.full(n, 250e3), np.full(n, np.nan), np.full(n, 16.7)
+    )
 
 
 def test_few_readings_near_zero_that_contradict_the_whole_curve_name_no_sign():
@@ -33,7 +35,7 @@ def test_the_zero_follows_load_camber_pressure_and_sideslip():
     compliance = 0.05 + 2.0 * alpha**2
     slip = zero + compliance * force
     slip[::40] += 0.3
-    driven = Driven(slip, force * load, load, alpha, gamma, p, np.full(n, np.nan))
+    driven = Driven(slip, force * load, load, alpha, gamma, p, np.full(n, np.nan), np.full(n, 16.7))
     np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=1e-6)
 
 

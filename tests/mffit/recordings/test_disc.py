@@ -15,7 +15,8 @@ from mffit.pipeline import init_from
 from mffit.points import make_points
 from mffit.points.loading import read
 from mffit.recordings import DiscPath, disc_signs, sniff
-from mffit.recordings.disc import rolls_backward, zero_of_upright
+from mffit.recordings.directions import rolls_backward
+from mffit.recordings.disc import zero_of_upright
 from mffit.recordings.project_file import _of_size
 from mffit.report.text import sniff_summary
 
@@ -100,7 +101,9 @@ def test_a_column_of_directions_speaks_for_a_disc(tmp_path):
 @pytest.mark.parametrize(
     ("name", "backward"),
     [("zero_backward.csv", True), ("Nullpunkt-Rückwärts.csv", True), ("zero_rev.csv", True), ("reversed-run", True),
-     ("previous.csv", False), ("revision2.csv", False), ("zero.csv", False)],
+     ("rück_1500.csv", True), ("1500-rueck.csv", True), ("Ruecklauf 3.csv", True), ("zuru\u0308ck2.csv", True),
+     ("Rückstellmoment.csv", False), ("truck.csv", False), ("previous.csv", False), ("revision2.csv", False),
+     ("zero.csv", False)],
 )  # fmt: skip
 def test_names_that_say_backward(name, backward):
     assert rolls_backward(Path(name)) is backward
@@ -233,8 +236,5 @@ def test_files_with_the_same_columns_share_a_table(german_disc):
     [("Hoosier 43075 16x7.5-10 LCO, 7 inch rim", 0.1905, 0.127), ("225/45R17 91W", 0.225, 0.2159), ("120/70-17", 0.12, 0.2159)],
 )  # fmt: skip
 def test_width_and_rim_as_the_size_says(tyre, width, rim):
-    assert _of_size(tyre) == [
-        f"width = {width:g}  # m, as the size says",
-        f"rim_radius = {rim:g}  # m, as the size says",
-    ]
-    assert _of_size("test 7 of 2024-11-02") == []
+    assert _of_size(tyre) == (width, rim)
+    assert _of_size("test 7 of 2024-11-02") == (None, None)

@@ -12,7 +12,7 @@ import pytest
 from mffit import pipeline
 from mffit.errors import InputError
 from mffit.points.stretch import StretchNote
-from mffit.recordings import project_text, sniff
+from mffit.recordings import Stated, project_text, sniff
 from mffit.recordings.guess import guesses
 from mffit.recordings.stretch_table import stretch_table
 from mffit.report import text
@@ -157,12 +157,35 @@ def test_a_speed_of_rotation_is_kept_only_if_it_agrees_with_the_speed():
     assert "omega_radps" not in guessed(N=np.full(N, turning), units={"N": "rad/s"}, radius=0.4).found
 
 
+@pytest.mark.parametrize(("unit", "metres"), [("m/s", 1.0), ("km/h", 1.0 / 3.6), ("mph", 0.44704)])
+@pytest.mark.parametrize("rotation", ["rad/s", "rpm"])
+@pytest.mark.parametrize("speed", [5.0, 20.0])
+def test_the_speed_is_in_the_unit_in_which_the_wheel_turns(unit, metres, rotation, speed):
+    """Speed over rotation is the radius of the wheel: 25 mph were read as km/h, and the rotation was blamed."""
+    turns = speed / 0.205 * (1.0 if rotation == "rad/s" else 60.0 / (2.0 * np.pi))
+    for known in ({"radius": 0.2057}, {"RL": np.full(N, 0.19), "units": {"RL": "m"}}):
+        found = units(V=np.full(N, speed / metres), N=np.full(N, turns), **known)
+        assert (found["V_mps"], found["omega_radps"]) == (unit, rotation)
+
+
 def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "FZ": "N"})
     assert any("Mz_Nm" in remark and "Torque" in remark for remark in found.remarks)
     found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "MX": "N-m"})
     (remark,) = (remark for remark in found.remarks if "Mz_Nm" in remark)
     assert "unused columns in a unit of moments: Torque;" in remark  # MX is used
+
+
+def test_a_speed_is_recognised_or_asked_for_by_its_unit():
+    road = np.full(N, 60.0)
+    assert (
+        guessed(V=None, **{"Roadway Speed": road}, units={"Roadway Speed": "km/h"}).found["V_mps"].heading
+        == "Roadway Speed"
+    )
+    found = guessed(V=None, **{"Zug": road}, units={"Zug": "km/h"})
+    (remark,) = [remark for remark in found.remarks if "V_mps" in remark]
+    assert 'V_mps = "Zug"' in remark
+    assert not [remark for remark in guessed().remarks if "V_mps" in remark]
 
 
 def test_a_column_without_readings_or_of_another_dimension_is_no_channel():
@@ -228,7 +251,9 @@ def test_only_measured_pressures_count(tmp_path):
         (tmp_path / f"{name}.csv").write_text(table(**more))
     found = sniff([f"{tmp_path}/*.csv"])
     assert [(round(level.value), level.stretches) for level in found.conditions["pressure"]] == [(83_000, 18)]
-    assert "nominal_pressure = 83 " in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "nominal_pressure = 83 " in project_text(
+        found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0)
+    )
 
 
 def test_rows_without_time_are_reported_as_points(tmp_path):
@@ -236,7 +261,7 @@ def test_rows_without_time_are_reported_as_points(tmp_path):
     found = sniff([tmp_path / "a.csv"])
     for said in (
         text.sniff_summary(found).replace("\n  ", " "),
-        project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
+        project_text(found, tmp_path),
     ):
         assert "no time: each of 18 rows is treated as a finished point" in said
         assert 'column "Timestamp" holds clock times ("2024-04-03 10:00:00.000")' in said
@@ -283,7 +308,9 @@ def test_files_are_named_by_pattern_and_a_folder_is_refused_with_its_pattern(tmp
 )
 def test_a_title_names_a_tyre_only_after_the_word_tyre(tmp_path, title, size):
     (tmp_path / "a.csv").write_text(f"{title.replace(',', ' ')}\n{table(P=83.0)}", encoding="utf-8")
-    written = project_text(sniff([tmp_path / "a.csv"]), tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    written = project_text(
+        sniff([tmp_path / "a.csv"]), tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0)
+    )
     assert (f'size = "{size}"' in written) if size else "\nsize" not in written
 
 
@@ -295,7 +322,7 @@ def test_a_column_of_doubtful_unit_is_left_out_and_the_rest_is_read(tmp_path):
     assert "p_kPa" in found.recordings[0].guesses
     (remark,) = [r for r in found.recordings[0].remarks if "TSTC" in r]
     assert remark.startswith("TSTC (300 to 300) is left out: in degC it is not within -60 to 250 degC")
-    written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    written = project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "# TSTC (300 to 300) is left out" in written
     assert "T_degC" not in tomllib.loads(written)["columns"]
 
@@ -331,13 +358,13 @@ Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+0
 Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
 Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
 p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
-V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h, less likely mph
 
 [[sweep]]
 file = "../a b.csv"
 
 [[sweep]]
-# N (3 to 3) is left out: at the speed in V, no wheel of this size turns at this rate
+# N (3 to 3) is left out: at the speed in V, in m/s, km/h or mph, no wheel of this size turns at this rate
 # P is in psi, so columns without a stated unit may be in American units, too: FZ (N or lbf), FY (N or lbf), MZ (N m or \
 in-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
 file = "../c.csv"
@@ -358,9 +385,9 @@ def two_recordings(folder: Path) -> list[Path]:
 
 def test_the_project_file_of_two_different_recordings(tmp_path):
     found = sniff(two_recordings(tmp_path))
-    assert project_text(found, tmp_path / "project", unloaded_radius=None, nominal_load=None) == WRITTEN
+    assert project_text(found, tmp_path / "project") == WRITTEN
     given = {"unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 90.0, "name": 'q"'}
-    lines = project_text(found, tmp_path / "project", **given).splitlines()
+    lines = project_text(found, tmp_path / "project", Stated(**given)).splitlines()
     assert lines[3:7] == [
         'name = "q\\""', "unloaded_radius = 0.2  # m", "nominal_load = 1500  # N, FNOMIN",
         "nominal_pressure = 90  # kPa, NOMPRES",
@@ -418,12 +445,12 @@ def test_a_nominal_load_above_all_loads_is_noticed(tmp_path):
     (tmp_path / "a.csv").write_text(table(P=83.0))
     found = sniff([tmp_path / "a.csv"])
     for nominal, is_noticed in ((2000.0, False), (3000.0, True)):
-        written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=nominal)
+        written = project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=nominal))
         assert ("above the highest load of 2000 N: check the unit of the load (N)" in written) == is_noticed
 
 
 def test_the_heading_of_a_section_is_no_title(tmp_path):
     (tmp_path / "a.csv").write_text(f"[DATA]\n{table(P=83.0)}")
     found = sniff([tmp_path / "a.csv"])
-    assert "DATA" not in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "DATA" not in project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "DATA" not in text.sniff_summary(found)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.points import make_points
-from mffit.rig.lag import lagged_setting
+from mffit.points.lag import rolled_distance
+from mffit.rig.lag import lag_of_move, lagged_setting
 
 TIME = np.arange(40) / 20.0
 ALPHA = np.radians(5.0 * np.sin(1.3 * TIME))
@@ -71,3 +72,25 @@ def test_every_sweep_begins_settled_and_steady_points_have_no_lag():
     assert slope == pytest.approx(np.concatenate([alone_slope, alone_slope, np.zeros(40)]))
     order = np.random.default_rng(1).permutation(120)
     assert lagged_setting(both.select(order), 0.4)[0] == pytest.approx(follows[order])
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
+def test_a_move_at_once_is_a_steep_one_between_two_more_samples(share):
+    """The same recording with samples just before and after the move, between which it goes evenly."""
+    row, sigma, short = 7, 0.4, 1e-6
+    moved = np.where(np.arange(40) > row, np.radians(1.0), 0.0)
+    rolled = rolled_distance(TIME, np.full(40, 6.0))
+    instant = TIME[row] + share / 20.0
+    time = np.insert(TIME, row + 1, [instant - short, instant + short])
+    known = {"p": 240e3, "V": 6.0, "phi_t": 0.0, "continuous": True}
+    even, _ = lagged_setting(make_points(moved, 0.0, 1400.0, time=TIME, **known), sigma)
+    fine = make_points(np.insert(moved, row + 1, [0.0, np.radians(1.0)]), 0.0, 1400.0, time=time, **known)
+    steep = np.delete(lagged_setting(fine, sigma)[0], [row + 1, row + 2])
+    added, by_sigma, by_share = lag_of_move(row, np.radians(1.0), rolled, sigma, share)
+    assert even - added == pytest.approx(steep, abs=1e-6)
+    for step, change in (((1e-5, 0.0), by_sigma), ((0.0, 1e-5), by_share)):
+        up, down = (
+            lag_of_move(row, np.radians(1.0), rolled, sigma + way * step[0], share + way * step[1])[0]
+            for way in (1.0, -1.0)
+        )
+        assert change == pytest.approx((up - down) / 2e-5, rel=1e-5, abs=1e-9)

@@ -7,12 +7,16 @@ import itertools
 import numpy as np
 import pytest
 from disc_project import SIDESLIP, disc_project, rows
+from flat_belt import recording
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.pipeline.inputs import read_points
+from mffit.points import make_points
+from mffit.recordings import sniff
+from mffit.suspicion.all_files import moment_reversed
 from tir.conventions import FLIPPED
 
 COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
@@ -257,3 +261,39 @@ def test_moments_about_another_point_than_declared_are_refused_by_name(project, 
     project.config["rig"]["moments"] = true
     found, _ = load(project)
     assert np.max(np.abs(found.Mx + 0.01 * found.Fy)) < 5.0
+
+
+@pytest.mark.parametrize("qsx3", [0.03, 0.1193791, -0.1])
+@pytest.mark.parametrize("driven", [False, True])
+def test_mx_of_the_wrong_sign_is_told_by_camber_whatever_sideslip_does(qsx3, driven):
+    """Coefficients of a public tyre, MagicFormula61.tir, whose Mx rises with sideslip; the book's Mx = R0 Fz (...)."""
+    alpha, gamma, Fz = (
+        x.ravel() for x in np.meshgrid(np.radians(np.linspace(-8, 8, 33)), np.radians([0, 2, 4]), [2e3, 4e3])
+    )
+    Fy = -1.1 * Fz * np.tanh(12.0 * alpha) - 0.7 * Fz * gamma
+    Mx = 0.3 * Fz * (-0.00055 - 2.178564 * gamma - qsx3 * Fy / 4e3) - 10.0
+    kappa = np.tile([0.1, -0.1], len(alpha) // 2) if driven else 0.0
+    config = configuration.load(
+        {
+            "tyre": {"name": "t", "unloaded_radius": 0.3, "nominal_load": 4000, "nominal_pressure": 200},
+            "rig": {"type": "flat-track"},
+            "sweep": [{"file": "any.csv"}],
+        }
+    )
+    found = []
+    for sign in (1.0, -1.0):
+        points = make_points(alpha, gamma, Fz, p=2e5, V=10.0, phi_t=0.0, Fy=Fy, Mx=sign * Mx, kappa=kappa)
+        found.append([moment_reversed.said(one.facts) for one in moment_reversed.find(points, config)])
+    assert found[0] == []
+    assert "scale = -1 for Mx_Nm" in found[1][0]
+
+
+def test_a_recording_with_mx_of_the_wrong_sign_is_told_so(tmp_path):
+    table = recording(pressures=(83.0,))
+    table["MX"] += -0.2 * table["FZ"].abs() * np.radians(table["IA"])
+    for sign in (1.0, -1.0):
+        table.assign(MX=sign * table["MX"]).to_csv(tmp_path / "a.csv", index=False)
+        said = [
+            one for one in sniff([tmp_path / "a.csv"]).reading.warnings if "Mx_Nm has the wrong sign" in one
+        ]
+        assert bool(said) is (sign < 0.0)

@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
+from mffit.measured.result import SideslipReading, SideslipZeros
 from mffit.points import make_points
 from mffit.rig import Readings
-from mffit.suspicion import CamberReduction, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
+from mffit.suspicion import (
+    CamberReduction,
+    FinishedFit,
+    HeldNumber,
+    JudgedMeasurement,
+    LeftOutSweeps,
+    Trust,
+    judge,
+)
+from tir import Quantity
 
 RNG = np.random.default_rng(3)
 SWEEPS, EACH, U = 10, 20, 6.0
@@ -54,6 +65,28 @@ def test_the_misfit_is_in_doubt_from_1_2_and_not_trusted_from_1_5(scale, trusted
     found = judged(noise(scale))
     assert found.trusted == trusted
     assert bool(found.doubts) == doubted
+
+
+@pytest.mark.parametrize(
+    ("sigma", "trusted", "doubted"),
+    [(3.4, True, False), (3.6, True, True), (4.9, True, True), (5.1, False, False)],
+)
+def test_sideslip_zeros_are_in_doubt_from_3_5_and_not_trusted_from_5_standard_deviations(
+    sigma, trusted, doubted
+):
+    """With a fit and without one."""
+    angle = Quantity(0.006, 0.0002, "rad")
+    one, other = SideslipReading(900.0, -0.75, angle), SideslipReading(1500.0, 0.75, angle)
+    zeros = SideslipZeros("A", float(norm.sf(sigma)), one, other)
+    points = make_points(0.0, 0.0, 1500.0, Fy=0.0, Mz=np.nan, p=2e5, V=11.0, phi_t=0.0)
+    for found in (
+        judge(JudgedMeasurement(points=points, sideslip_zeros=(zeros,))),
+        judged(noise(), sideslip_zeros=(zeros,)),
+    ):
+        assert found.trusted == trusted
+        assert bool(found.doubts) == doubted
+        for sentence in (*found.reasons, *found.doubts):
+            assert "0.344 +- 0.011 deg at 900 N (path centre 1.333 m to the left)" in sentence
 
 
 def test_few_readings_may_miss_by_chance():
@@ -123,9 +156,29 @@ def test_a_misfit_that_might_be_a_mistake_s_is_a_reason(changed):
 
 
 def test_a_model_explains_half_of_the_variance_or_is_not_trusted():
-    assert judged(noise(), u=np.nan, r2=0.51).trusted
-    assert "49 %" in judged(noise(), u=np.nan, r2=0.49).reasons[0]
-    assert " 0 %" in judged(noise(), u=np.nan, r2=-3.0).reasons[0]
+    """Its misfit follows a slow curve in every sweep, beside which neighbouring readings hardly scatter."""
+    off = noise(0.1) + U * np.tile(np.sin(np.linspace(0.0, 6.0, EACH)), SWEEPS)
+    assert judged(off, u=np.nan, r2=0.51).trusted
+    assert "49 %" in judged(off, u=np.nan, r2=0.49).reasons[0]
+    assert " 0 %" in judged(off, u=np.nan, r2=-3.0).reasons[0]
+
+
+def test_a_misfit_that_is_the_scatter_of_neighbours_leaves_nothing_to_explain():
+    """Whether a noise is stated or not."""
+    off = RNG.normal(0.0, U, SWEEPS * EACH)
+    assert judged(off, u=np.nan, r2=0.04).trusted
+    assert judged(off, r2=0.04).trusted
+
+
+@pytest.mark.parametrize(("times", "named"), [(4.0, False), (40.0, True)])
+def test_a_sweep_without_a_stated_noise_is_judged_by_the_others_and_its_own_scatter(times, named):
+    """Nine sweeps scatter by 6 N; the tenth scatters as they do about an offset."""
+    off = RNG.normal(0.0, U, SWEEPS * EACH)
+    off[SWEEP == 3] += times * U
+    u = np.where(SWEEP == 3, np.nan, U)
+    reasons = judged(off, u=u).reasons
+    assert any("sweep_3" in reason for reason in reasons) == named
+    assert judged(np.where(SWEEP == 3, 1.0, off), u=u).trusted
 
 
 @pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.51, True), (0.49, False), (1.25, False)])
@@ -138,21 +191,6 @@ def test_a_channel_with_nothing_but_its_stated_noise_has_nothing_to_explain(scal
 def test_a_misfit_far_below_the_noise_is_a_unit(scale, n, said):
     doubts = judged(noise(scale)[:n]).doubts
     assert any("check the units of Fy_N and u_Fy_N" in doubt for doubt in doubts) == said
-
-
-@pytest.mark.parametrize(
-    ("by_alpha", "by_gamma", "said"), [(60.0, 300.0, True), (-60.0, 300.0, False), (60.0, -300.0, False)]
-)
-def test_an_overturning_moment_against_side_force_and_lean_has_the_wrong_sign(by_alpha, by_gamma, said):
-    """Side force and lean move the load to their side, so that Mx falls with sideslip and with camber [Nm/rad]."""
-    alpha, gamma = (
-        x.ravel() for x in np.meshgrid(np.radians([-4.0, -1.0, 0.0, 1.0, 4.0]), np.radians([-4.0, 0.0, 4.0]))
-    )
-    Mx = by_alpha * alpha + by_gamma * gamma + 0.01 * RNG.standard_normal(len(alpha))
-    points = make_points(alpha, gamma, 1500.0, Mx=Mx, Fy=0.0, p=2e5, V=11.0, phi_t=0.0)
-    used = {"Mx": np.ones(len(Mx), bool)}
-    found = judge(FinishedFit(points=points, model=Readings(Mx=Mx), used=used, r2={"Mx": 1.0}))
-    assert any("scale = -1 for Mx_Nm" in doubt for doubt in found.doubts) == said
 
 
 def test_without_a_stated_noise_left_out_sweeps_decide():
@@ -179,6 +217,15 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
     assert "80 N" in told(80.0, np.nan)[0]
     assert told(60.0, np.nan) == ()
     assert told(80.0, U) == ()
+
+
+@pytest.mark.parametrize(("left", "trusted"), [(2.5, True), (11.0, False)])
+def test_a_search_that_is_stuck_is_not_trusted_whatever_its_misfit(left, trusted):
+    held = (HeldNumber("PPX4", 1.0, 0.0),)
+    for u in (U, np.nan):
+        found = judged(noise(), u=u, left=left, held=held)
+        assert found.trusted == trusted
+        assert trusted or ("stuck" in found.reasons[0] and "PPX4" in found.reasons[0])
 
 
 @pytest.mark.parametrize(

@@ -125,3 +125,21 @@ def test_the_scatter_of_every_point_counts(simulation, sweep):
     assert (
         explanation(sweep.replace(Fy=out.Fy), errors, simulation, ISO) == "a zero offset of +40.0 N in Fy_N"
     )
+
+
+def first_order(simulation, points, name, step, size):
+    """Readings that change with a setting as their slope at the labels says, by ``size`` of its unit."""
+    here, there = simulation.readings(points), simulation.readings(points.replace(**{name: step(points)}))
+    return [getattr(here, c) + size * (getattr(there, c) - getattr(here, c)) for c in ("Fy", "Mz")]
+
+
+def test_what_no_rig_can_have_is_no_suggestion(simulation, sweep):
+    """A gain below zero, a load that was -226 % off, an axis that is 9 deg out: the formula of each fits exactly."""
+    out = simulation.readings(sweep)
+    assert said(simulation, sweep, -1.3 * out.Fy, out.Mz) == "its side force reversed"
+    load = first_order(simulation, sweep, "Fz", lambda p: 1.0001 * p.Fz, -22600.0)
+    assert "load" not in said(simulation, sweep, *load)
+    axis = first_order(simulation, sweep, "alpha", lambda p: p.alpha + np.radians(0.001), 9000.0)
+    assert "axis" not in said(simulation, sweep, *axis)
+    sound = first_order(simulation, sweep, "Fz", lambda p: 1.0001 * p.Fz, -4000.0)
+    assert said(simulation, sweep, *sound).startswith("a load that was -40")

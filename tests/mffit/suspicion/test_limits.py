@@ -161,6 +161,16 @@ def test_a_nominal_load_above_all_measured_ones_is_pointed_out(load, cases):
     assert found("nominal-load-above-all", tyre(alpha=np.linspace(-0.1, 0.1, 40), Fz=Fz)) == cases
 
 
+@pytest.mark.parametrize(
+    ("loads", "cases"),
+    [((1000.0, 1500.0, 2000.0), 0), ((4400.0, 5200.0), 0), ((9000.0, 21000.0), 1), ((150.0, 300.0), 1)],
+)
+def test_a_nominal_load_of_other_loads_is_refused(loads, cases):
+    """The nominal load is 1500 N: a digit is missing in it, or in the loads."""
+    Fz = np.repeat(loads, 20)
+    assert found("nominal-load-of-other-loads", tyre(alpha=np.linspace(-0.1, 0.1, len(Fz)), Fz=Fz)) == cases
+
+
 @pytest.mark.parametrize(("degrees", "cases"), [(166.0, 1), (108.0, 0), (np.nan, 0)])
 def test_a_tread_that_stays_hotter_than_any_is_pointed_out(degrees, cases):
     """One hot reading is no sign; of two files it is enough that one is hot."""
@@ -254,6 +264,11 @@ def sentence(rule: str, points: Points) -> str:
             "nominal-load-above-all",
             tyre(Fz=1300.0),
             "the nominal load of 1500 N is above the highest measured load of 1300 N",
+        ),
+        (
+            "nominal-load-of-other-loads",
+            tyre(Fz=15000.0),
+            "1500 N does not belong to measured loads of 15000 to 15000 N: correct nominal_load",
         ),
         ("hot-tread", tyre(T=166.0), "T_degC is 166 degC in the middle in"),
         ("copied-sweep", sweeps(SOUND, SOUND), "holds exactly the readings of s0"),

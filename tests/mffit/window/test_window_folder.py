@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from flat_belt import drive_recording, recording, write_mat
 
 from mffit import config, points
 from mffit.errors import InputError
+from mffit.pipeline import init_from
+from mffit.recordings import DiscPath, Stated
+from mffit.recordings.project_file import TyreFound
 
 pytest.importorskip("starlette")
 testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
@@ -20,6 +25,7 @@ from mffit.window.recordings_folder import RecordingsFolder  # noqa: E402
 
 TOKEN, PORT = "a-token-of-the-test", 8124
 HERE = f"http://127.0.0.1:{PORT}"
+DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
 BELT = {"type": "flat-track", "axes": "iso", "path_radius": None, "path_centre": "left"}
 
@@ -71,6 +77,70 @@ def test_the_corrected_project_reads_the_true_points(folder, original):
         mine, true = (x.Fy[np.array(x.files)[x.file] == name] for x in (ours, theirs))
         assert len(mine) >= len(true) > 10  # the original leaves one out
         assert np.max(np.min(np.abs(true[:, None] - mine), axis=1)) < 1e-6
+
+
+def untouched(found: RecordingsFolder, rig: dict[str, Any]) -> dict[str, Any]:
+    """What the form sends if nothing is changed but what it cannot know."""
+    table = found.table()
+    tyre = table["tyre"] | {"unloaded_radius": 0.2057, "nominal_load": 1500, "side": "left"}
+    return {"tyre": tyre, "rig": rig | {"axes": table["axes"][0]}, "groups": table["groups"]}
+
+
+@pytest.mark.parametrize("kind", ["belt", "disc", "slip"])
+def test_the_window_and_the_command_make_the_same_project(tmp_path, kind):
+    """Size, width, rim, speed and pressure come from the recordings in both, and so do units, signs and remarks."""
+    path = {"path_radius": None, "path_centre": "left"}
+    options: dict[str, Any] = {"belt": True}
+    if kind == "belt":
+        write_mat(recording(pressures=(83.0, 97.0)), tmp_path / "cornering.mat")
+    elif kind == "slip":
+        table = drive_recording()
+        table.assign(SR=-100.0 * table["SR"]).drop(columns="SL").to_csv(tmp_path / "drive.csv", index=False)
+    else:
+        path, options = {"path_radius": 1.3, "path_centre": "left"}, {"disc": DiscPath(1.3, "left")}
+        (tmp_path / "rueck.csv").write_bytes((DISC / "zero_1400N_backward.csv").read_bytes())
+        for name in ("sideslip_1400N.csv", "camber_1400N.csv", "zero_1400N_forward.csv"):
+            (tmp_path / name).write_bytes((DISC / name).read_bytes())
+    given = sorted(path for path in tmp_path.iterdir() if path.name != "tyre.toml")
+    type_ = "rotating-disk" if kind == "disc" else "flat-track"
+    found = RecordingsFolder(tmp_path)
+    made = found.make(untouched(found, {"type": type_, **path}))
+    in_window = made.read_text()
+    made.unlink()
+    _, (written, *_) = init_from(given, tmp_path, unloaded_radius=0.2057, nominal_load=1500.0, **options)
+    assert written.read_text() == in_window
+    if kind == "belt":
+        tyre = config.load(written).tyre
+        assert (tyre.nominal_speed, tyre.nominal_pressure) == (11.0, pytest.approx(83.0, abs=15.0))
+    if kind == "disc":
+        assert 'file = "rueck.csv"\ndirection = "backward"' in in_window
+    if kind == "slip":
+        assert "scale = -1" in in_window
+
+
+def test_the_form_has_every_field_that_a_project_is_made_of():
+    script = files("mffit.window").joinpath("templates", "recordings.js").read_text(encoding="utf-8")
+    path = {"disc": ("path_radius", "path_centre"), "belt": ("type",)}
+    names = [name for field in Stated._fields for name in path.get(field, (field,))]
+    assert [name for name in names if f'"{name}"' not in script] == []
+    assert set(TyreFound._fields) <= set(Stated._fields)
+
+
+def test_a_correction_changes_its_line_alone(folder, original):
+    for name in ("sideslip_1400.csv", "camber_1400.csv"):
+        (folder / name).write_bytes((original.parent / name).read_bytes())
+    found = RecordingsFolder(folder)
+    before = found.make(untouched(found, BELT))
+    text = before.read_text().splitlines()
+    before.unlink()
+    choice = untouched(found, BELT)
+    choice["tyre"] |= {"width": 0.2, "side": "right"}
+    after = found.make(choice).read_text().splitlines()
+    assert sorted(set(after) - set(text)) == [
+        'side = "right"',
+        "width = 0.2  # m",
+    ]
+    assert not set(text) - set(after)
 
 
 def test_the_summary_of_the_test_is_no_recording_and_leaves_its_bad_run_out(folder):

@@ -217,7 +217,7 @@ def test_only_results_are_served(client, session, tmp_path):
     assert [page["href"] for page in state["pages"] if page["run"] == "build"] == ["out/report.html"]
 
 
-def until(true: Callable[[], bool], seconds: float = 60.0) -> None:
+def until(true: Callable[[], bool], seconds: float = 600.0) -> None:
     end = time.monotonic() + seconds
     while not true():
         assert time.monotonic() < end, "not in time"

@@ -17,17 +17,22 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from tir.codegen.constants import NARROW_LANES, VECTOR_LANES
+from tir.codegen.cpython import SCALARS
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
-SCALARS = frozenset({float, int, bool, np.float64, np.float32, np.int64, np.int32})
-"""Types of the arguments that a scalar call takes as they are."""
-SOURCES = ("equations", "codegen", "constants.py", "evaluate.py", "derivatives.py", "parameters.csv")
+SOURCES = (
+    "equations",
+    "codegen",
+    "codegen/cpython",
+    "constants.py",
+    "evaluate.py",
+    "derivatives.py",
+    "parameters.csv",
+)
 """Files that the machine code depends on."""
 LANES = int(VECTOR_LANES)
 """Conditions that a call of the kernel for arrays has at least."""
@@ -44,13 +49,14 @@ class Kernel(NamedTuple):
     prepare: Callable[..., tuple[float, ...]]  #: see :func:`tir.codegen.source.preparation`
 
     def run_of(self, values: Mapping[str, float]) -> Callable[..., Any]:
-        """The function of :func:`tir.codegen.entry.module`, bound to the values of a tyre."""
+        """The function of :func:`tir.codegen.cpython.entry.module`, bound to the values of a tyre."""
         bind = ctypes.pythonapi.PyCFunction_NewEx
         bind.argtypes, bind.restype = (ctypes.c_void_p, ctypes.py_object, ctypes.py_object), ctypes.py_object
         numbers = array("d", constants(self.prepare, values)).tobytes()
         numbers += array("Q", sorted(map(id, SCALARS))).tobytes()
         keeps_alive = self
-        return bind(ctypes.addressof(self.definition), numbers, keeps_alive)
+        bound: Callable[..., Any] = bind(ctypes.addressof(self.definition), numbers, keeps_alive)
+        return bound
 
 
 class _Definition(ctypes.Structure):
@@ -114,7 +120,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     path = _place(kind, switches)
     code = _read(path)
     if code is None:
-        from tir.codegen import entry
+        from tir.codegen.cpython import entry
 
         code = _compiled(entry.module(kind, trace(switches, Forces._fields), _lanes()), machine)
         _write(path, code)
@@ -138,7 +144,7 @@ def _machine() -> Any:
     """LLVM's description of this processor; also makes the functions of Python known that the machine code calls."""
     from llvmlite import binding
 
-    from tir.codegen.entry import API
+    from tir.codegen.cpython.entry import API
 
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
@@ -163,7 +169,8 @@ def _compiled(text: str, machine: Any) -> bytes:
     module.triple, module.data_layout = machine.triple, str(machine.target_data)
     passes = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
     passes.getModulePassManager().run(module, passes)
-    return machine.emit_object(module)
+    code: bytes = machine.emit_object(module)
+    return code
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Scatter of grip and stiffness from run to run: its size, and its effect on the prediction of left-out readings.
+"""Numbers that scatter from run to run: their size, what others explain beside them, and the prediction of left-out readings.
 
 A run is a sweep. Its own numbers act on its own readings only, so they are eliminated run by run, and the equations that
 remain are those of the shared numbers.
@@ -7,12 +7,13 @@ remain are those of the shared numbers.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.fit import constants
+from mffit.left_out import Support, alone
 from mffit.points import Points
 
 
@@ -20,13 +21,13 @@ from mffit.points import Points
 class Part:
     """Normal equations of some readings, shared numbers (k,) beside the own numbers (j,) of their run.
 
-    Those of several runs have one more axis in front.
+    Those of several runs have one more axis in front, but for the sums ``shared`` and ``shared_pull``.
     """
 
-    shared: np.ndarray  #: (..., k, k)
+    shared: np.ndarray  #: (k, k)
     mixed: np.ndarray  #: (..., k, j)
     own: np.ndarray  #: (..., j, j)
-    shared_pull: np.ndarray  #: (..., k) derivatives times residuals
+    shared_pull: np.ndarray  #: (k,) derivatives times residuals
     own_pull: np.ndarray  #: (..., j)
 
     @classmethod
@@ -47,15 +48,30 @@ class Part:
         return spread[:, None] * np.linalg.solve(inside, np.broadcast_to(np.diag(spread), inside.shape))
 
     def eliminated(self, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Equations of the shared numbers alone: matrix (..., k, k) and pull (..., k)."""
-        through = self.mixed @ self.inverse(spread)
-        matrix = self.shared - through @ np.swapaxes(self.mixed, -1, -2)
-        return matrix, self.shared_pull - (through @ self.own_pull[..., None])[..., 0]
+        """Equations of the shared numbers alone: matrix (k, k) and pull (k,)."""
+        k, j = self.mixed.shape[-2:]
+        mixed, pull = self.mixed.reshape(-1, k, j), self.own_pull.reshape(-1, j)
+        through = (self.mixed @ self.inverse(spread)).reshape(-1, k, j)
+        matrix = self.shared - np.tensordot(through, mixed, axes=([0, 2], [0, 2]))
+        return matrix, self.shared_pull - np.tensordot(through, pull, axes=([0, 2], [0, 1]))
+
+    def moved(self, step: np.ndarray) -> Part:
+        """The equations after a step (k,) of the shared numbers."""
+        own = self.own_pull + np.swapaxes(self.mixed, -1, -2) @ step
+        return replace(self, shared_pull=self.shared_pull + self.shared @ step, own_pull=own)
+
+    def only(self, kept: np.ndarray) -> Part:
+        """The equations without the shared numbers that are not ``kept``, by their index (i,)."""
+        return replace(
+            self,
+            shared=self.shared[np.ix_(kept, kept)],
+            mixed=self.mixed[..., kept, :],
+            shared_pull=self.shared_pull[kept],
+        )
 
     def solved(self, shared: np.ndarray, spread: np.ndarray) -> np.ndarray:
         """Change of the own numbers (..., j) for a change of the shared ones (k,)."""
-        pull = self.own_pull + np.swapaxes(self.mixed, -1, -2) @ shared
-        return -(self.inverse(spread) @ pull[..., None])[..., 0]
+        return -(self.inverse(spread) @ self.moved(shared).own_pull[..., None])[..., 0]
 
 
 class OfRuns(NamedTuple):
@@ -86,17 +102,20 @@ class Runs:
 
     def parts(self) -> Part:
         """The equations of all runs, in the order of :meth:`rows` and of their index within a block."""
-        each = [
-            rows.part(np.flatnonzero(self.run[rows.point] == k))
-            for rows in self.rows()
-            for k in np.unique(self.run[rows.point])
-        ]
-        return Part(*(np.array([getattr(part, field.name) for part in each]) for field in fields(Part)))
+        runs: dict[str, list[np.ndarray]] = {"mixed": [], "own": [], "own_pull": []}
+        shared, pull = np.zeros_like(self.information), np.zeros_like(self.pull)
+        for rows in self.rows():
+            for k in np.unique(self.run[rows.point]):
+                part = rows.part(np.flatnonzero(self.run[rows.point] == k))
+                shared, pull = shared + part.shared, pull + part.shared_pull
+                for name, each in runs.items():
+                    each.append(getattr(part, name))
+        return Part(shared, shared_pull=pull, **{name: np.array(each) for name, each in runs.items()})
 
     def common(self, parts: Part, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Equations of the shared numbers from all runs and priors."""
         matrix, pull = parts.eliminated(spread)
-        return self.information + matrix.sum(axis=0), self.pull + pull.sum(axis=0)
+        return self.information + matrix, self.pull + pull
 
     def own_numbers(self, parts: Part, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own numbers (runs, j) and their variances (runs, j)."""
@@ -107,17 +126,64 @@ class Runs:
         return parts.solved(-covariance @ pull, spread), np.diagonal(inside, axis1=-2, axis2=-1)
 
     def spread(self, parts: Part) -> np.ndarray:
-        """Standard deviation (j,) of the own numbers among the runs, of maximum likelihood; ``parts`` are :meth:`parts`.
+        """Standard deviation (j,) of the own numbers among the runs, of the restricted likelihood; ``parts`` are :meth:`parts`.
 
-        Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
+        Iterated: the sum of squares of the numbers over how many of them the readings determine (MacKay, Neural Computation
+        1992, 4, 415, section 4.3), which also reaches a scatter of zero soon.
         """
         found = np.full(parts.own.shape[-1], float(constants.USUAL_RUN_SCATTER))
         for _ in range(constants.RUN_SCATTER_STEPS):
-            values, variances = self.own_numbers(parts, found)
-            last, found = found, np.sqrt(np.mean(values**2 + variances, axis=0))
+            values, _ = self.own_numbers(parts, found)
+            known = np.maximum(self.determined(parts, found), np.finfo(float).tiny)
+            last = found
+            found = np.maximum(np.sqrt(np.sum(values**2, axis=0) / known), float(constants.LEAST_RUN_SCATTER))
             if np.all(np.abs(found - last) < constants.RUN_SCATTER_TOLERANCE * last):
                 break
-        return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
+        return found
+
+    def determined(self, parts: Part, spread: np.ndarray) -> np.ndarray:
+        """How many (j,) of the own numbers the readings determine, rather than their spread."""
+        _, variances = self.own_numbers(parts, spread)
+        return np.sum(np.maximum(1.0 - variances / spread**2, 0.0), axis=0)
+
+    def support(self, parts: Part, kept: np.ndarray, more: np.ndarray, step: np.ndarray) -> Support:
+        """What the shared numbers ``more`` explain beside the others of ``kept``, by their index (i,) and (m,).
+
+        Numbers are first moved by ``step`` (k,), which takes ``more`` and those that are not kept to where they have no effect.
+        The own numbers scatter as they do with all of ``kept``: without them, what they explain would count as scatter. The
+        degrees of freedom of this scatter follow Satterthwaite (Biometrics Bulletin 1946, 2, 110).
+        """
+        information = self.information[np.ix_(kept, kept)]
+        there = replace(self, information=information, pull=(self.pull + self.information @ step)[kept])
+        parts, place = parts.moved(step).only(kept), np.flatnonzero(np.isin(kept, more))
+        spread = there.spread(parts)
+        own, gradient = alone(*there.common(parts, spread), place)
+        alike, plain = alone(*there.common(parts, np.zeros_like(spread)), place)
+        share = 1.0 - float(np.trace(np.linalg.solve(alike, own))) / len(more)
+        known = max(float(np.mean(there.determined(parts, spread))), 1.0)
+        return Support(
+            chi2=float(gradient @ np.linalg.solve(own, gradient)),
+            removed=float(plain @ np.linalg.solve(alike, plain)),
+            numbers=len(more),
+            freedom=known / max(share, np.finfo(float).eps) ** 2,
+        )
+
+    def support_of_scatter(self, parts: Part, spread: np.ndarray) -> Support:
+        """What the scatter of the own numbers explains, by the restricted likelihood."""
+        gain = self._deviance(parts, np.zeros_like(spread)) - self._deviance(parts, spread)
+        return Support(chi2=gain, removed=gain, numbers=len(spread), freedom=np.inf)
+
+    def explained(self, parts: Part, spread: np.ndarray) -> float:
+        """Sum of squares of the residuals that the own numbers and a step of the shared ones to the best take away."""
+        matrix, pull = self.common(parts, spread)
+        own = np.einsum("...i,...ij,...j", parts.own_pull, parts.inverse(spread), parts.own_pull)
+        return float(np.sum(own) + pull @ np.linalg.solve(matrix, pull))
+
+    def _deviance(self, parts: Part, spread: np.ndarray) -> float:
+        """-2 log of the restricted likelihood, less what does not depend on the spread."""
+        inside = np.eye(len(spread)) + spread[:, None] * parts.own * spread
+        volume = np.sum(np.linalg.slogdet(inside)[1]) + np.linalg.slogdet(self.common(parts, spread)[0])[1]
+        return float(volume) - self.explained(parts, spread)
 
     def left_out(self, parts: Part, group: np.ndarray, spreads: Sequence[np.ndarray]) -> np.ndarray:
         """Errors (s, c, n) of the readings when each group (n,), a run or a piece of one, is predicted from all other readings.

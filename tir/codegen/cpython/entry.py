@@ -16,6 +16,7 @@ from llvmlite import ir
 
 from tir.codegen import vector_math
 from tir.codegen.constants import DIVISION_TAKES
+from tir.codegen.cpython import SCALARS
 from tir.codegen.graph import Node
 from tir.codegen.instructions import (
     DOUBLE,
@@ -27,7 +28,6 @@ from tir.codegen.instructions import (
     select,
     sqrt,
 )
-from tir.codegen.kernel import SCALARS
 from tir.codegen.program import INPUTS, Program
 from tir.codegen.source import FUNCTIONS
 

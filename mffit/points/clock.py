@@ -1,0 +1,57 @@
+"""Times of samples: rounded ones, and the clock that several recordings share."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mffit.points import constants
+from mffit.sweeps import Sweep
+
+
+def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
+    """The series with the samples of equal time spread over the time to the next, and a sentence about it.
+
+    A few samples that were written twice are no rounding; they are left out later.
+    """
+    if not sweep.is_series or len(sweep) < 2:
+        return sweep, ()
+    repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
+    if len(repeated) <= constants.MOST_REPEATED_SAMPLES * len(sweep):
+        return sweep, ()
+    time = spread(sweep.time)
+    if time is sweep.time:
+        return sweep, ()
+    shared = len(sweep) / (len(sweep) - len(repeated))
+    place = f"{sweep.file}:{int(sweep.line[repeated[0]])}"
+    sentence = (
+        f"{place}: time is rounded, so that {shared:.2g} samples share one on average; they are spread evenly"
+    )
+    return replace(sweep, time=time), (sentence,)
+
+
+def spread(time: np.ndarray) -> np.ndarray:
+    """Times (n,) with those that are equal spread up to the next; the same array if none is, or if time falls."""
+    steps = np.diff(time)
+    if not np.any(steps == 0.0) or np.any(steps < 0.0) or not np.any(steps > 0.0):
+        return time
+    first = np.r_[0, np.flatnonzero(steps > 0.0) + 1]
+    counts = np.diff(np.r_[first, len(time)])
+    distinct = time[first]
+    step = np.minimum(np.r_[np.diff(distinct), np.inf], np.median(np.diff(distinct)))
+    within = np.arange(len(time)) - np.repeat(first, counts)
+    return np.asarray(np.repeat(distinct, counts) + within * np.repeat(step / counts, counts))
+
+
+def with_common_clock(sweeps: Sequence[Sweep]) -> list[Sweep]:
+    """The series with the time since the first sample as ``t``, if all share a clock: none begins before another ends."""
+    begins = sorted((sweep.time[0], sweep.time[-1]) for sweep in sweeps if sweep.is_series and len(sweep))
+    if len(begins) < len(sweeps) or any(one[1] > next_[0] for one, next_ in itertools.pairwise(begins)):
+        return list(sweeps)
+    return [
+        sweep if np.any(np.isfinite(sweep.t)) else replace(sweep, t=sweep.time - begins[0][0])
+        for sweep in sweeps
+    ]

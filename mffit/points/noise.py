@@ -1,0 +1,55 @@
+"""Misfit over the stated noise, and the noise that neighbouring readings show where none is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.points import constants
+from mffit.points.points import Points
+from mffit.scatter import rms, robust
+
+
+class OverNoise(NamedTuple):
+    """A misfit in units of the noise."""
+
+    ratio: float  #: root mean square of (model - reading) / u; NaN if no reading has a noise
+    n: int  #: number of readings that have one
+
+
+def over_noise(
+    model: np.ndarray, measured: np.ndarray, u: np.ndarray, used: np.ndarray | None = None
+) -> OverNoise:
+    """THE misfit over noise: of the readings that have an uncertainty (n,), of the ``used`` ones (mask (n,)) only."""
+    known = stating(u) & np.isfinite(measured) & np.isfinite(model)
+    known = known if used is None else known & used
+    return OverNoise(rms((model - measured)[known] / u[known]), int(known.sum()))
+
+
+def stating(u: np.ndarray) -> np.ndarray:
+    """Mask (n,) of the readings that state their uncertainty."""
+    return np.isfinite(u) & (u > 0.0)
+
+
+def estimated_noise(points: Points, model: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """By channel, the noise of the readings that state none, from the misfit of neighbours; NaN where it cannot be seen."""
+    found = {}
+    for name, values in model.items():
+        silent = ~stating(points.u(name))
+        found[name] = neighbour_noise(points, np.where(silent, points.channel(name) - values, np.nan))
+    return found
+
+
+def neighbour_noise(points: Points, values: np.ndarray) -> float:
+    """Robust noise of values (n,) from third differences along each sweep, in which a smooth curve nearly vanishes.
+
+    NaN if all sweeps are too short.
+    """
+    sweeps = [values[(points.sweep == k) & np.isfinite(values)] for k in np.unique(points.sweep)]
+    # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
+    differences = [
+        np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS_FOR_NEIGHBOURS
+    ]
+    return robust(np.concatenate(differences)) if differences else float("nan")

@@ -1,0 +1,123 @@
+"""One misfit over noise: of the readings that state their noise, the same in terminal, page, window and result.json.
+
+Campaigns of the virtual rig (3 N and 0.3 Nm of noise), whose files then lose the columns of the uncertainty.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from small_rigs import FY, flat, simulated
+
+import mffit
+from mffit.report import text
+from mffit.viewer.project import project_data
+
+Change = Callable[[pd.DataFrame], pd.DataFrame]
+
+
+def silent(table: pd.DataFrame) -> pd.DataFrame:
+    """Without any statement of the noise."""
+    return table.drop(columns=[name for name in table if name.startswith("u_")])
+
+
+def campaign(folder: Path, change: Change, *names: str) -> Path:
+    """The project of a campaign of which some files, all without names, are changed."""
+    simulated(flat(), folder)
+    for path in folder.glob("*.csv"):
+        if not names or path.name in names:
+            change(pd.read_csv(path)).to_csv(path, index=False)
+    return folder / "tyre.toml"
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory):
+    """Only the sweep with camber states its noise, and twice what it is; the others scatter by 3 N alike."""
+    folder = tmp_path_factory.mktemp("few")
+    simulated(flat(), folder)
+    for path in folder.glob("*.csv"):
+        table = pd.read_csv(path)
+        own = table.assign(u_Fy_N=2.0 * FY) if path.name == "coupled.csv" else silent(table)
+        own.to_csv(path, index=False)
+    return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
+
+
+@pytest.fixture(scope="module")
+def unstated(tmp_path_factory):
+    return mffit.build(campaign(tmp_path_factory.mktemp("unstated"), silent))
+
+
+def test_every_place_shows_the_misfit_of_the_readings_that_state_their_noise(few):
+    """By hand from points.csv, where all other readings have no u."""
+    result, out = few
+    points = pd.read_csv(out / "points.csv", dtype={"outlier": str})
+    stated = points[points["u_Fy_N"].notna() & ~points["outlier"].fillna("").str.contains("Fy")]
+    assert 0 < len(stated) < 0.2 * len(points)
+    z = (stated["Fy_model_N"] - stated["Fy_N"]) / stated["u_Fy_N"]
+    expected = float(np.sqrt(np.mean(z**2)))
+    written = json.loads((out / "result.json").read_text())["fit"]["channels"]["Fy"]["over_noise"]
+    assert written == pytest.approx(expected, rel=1e-3)
+    shown = f"{expected:.2f}"
+    assert re.search(rf"^Fy .* {shown} ", text.build_summary(result), re.MULTILINE)
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert f"{shown} × the noise" in page
+    assert f">{shown} ×<" in page  # the table of the fit
+
+
+def test_the_window_has_the_noise_of_the_same_readings(few):
+    data = project_data(few[0])
+    assert [u is not None for u in data["points"]["u"]["Fy"]] == np.isfinite(few[0].points.u_Fy).tolist()
+
+
+def test_without_a_stated_noise_no_place_shows_a_ratio(unstated):
+    assert np.isnan(unstated.trust.over_noise["Fy"])
+    assert re.search(r"^Fy .* N +- ", text.build_summary(unstated), re.MULTILINE)
+    assert set(project_data(unstated)["points"]["u"]["Fy"]) == {None}
+
+
+def test_without_a_stated_noise_the_scatter_is_estimated(unstated, tmp_path):
+    """The same readings with their noise stated: uncertainties within a quarter, not several times as large."""
+    stated = mffit.build(campaign(tmp_path, lambda table: table))
+    for name in ("PKY1", "PKY2", "PDY1", "PCY1", "QBZ1"):
+        u, reference = (fit.fit.coefficients[name].stderr for fit in (unstated, stated))
+        assert u == pytest.approx(reference, rel=0.25), name
+
+
+@pytest.mark.parametrize("file", ["sideslip_2100.csv", "coupled.csv"])
+def test_one_bad_file_without_a_stated_noise_is_not_hidden_by_the_others(tmp_path, file):
+    """Its side force is read a tenth too large: 90 N, where all other files miss by 3 N."""
+    result = mffit.build(
+        campaign(tmp_path, lambda table: silent(table).assign(Fy_N=1.1 * table["Fy_N"]), file)
+    )
+    assert result.trust.over_noise["Fy"] < 1.2  # of the others
+    assert not result.trusted
+    assert Path(file).stem in result.reasons[0]
+
+
+def test_files_without_a_stated_noise_are_no_reason_by_themselves(few, unstated):
+    assert few[0].trusted
+    assert unstated.trusted
+
+
+def test_a_channel_without_anything_to_explain_is_no_reason(tmp_path):
+    """A wheel that rolls upright and straight: Fy and Mz are their zero and the noise, which nothing states."""
+    content = flat()
+    content["sweep"] = [
+        {"file": "rolling.csv", "load_N": [700, 1000, 1400, 1800, 2100], "p_kPa": [200, 250, 300]}
+    ]
+    content["sweep"] += [
+        {"file": "sideslip.csv", "load_N": 1400, "alpha_deg": [-4, -3, -2, -1, 0, 1, 2, 3, 4]}
+    ]
+    simulated(content, tmp_path)
+    for path in tmp_path.glob("*.csv"):
+        table = silent(pd.read_csv(path))
+        noise = np.random.default_rng(5).normal(0.0, 6.0, len(table))
+        table.assign(Mx_Nm=noise).to_csv(path, index=False)
+    result = mffit.build(tmp_path / "tyre.toml")
+    assert not any("variance of Mx" in reason for reason in result.reasons)
