@@ -12,7 +12,7 @@ from mffit.cli.console import Voice, out_option, voiced
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path), metavar="DIR")
 @click.argument("conditions", type=click.Path(path_type=Path), metavar="CONDITIONS.csv")
-@out_option("File to write.", required=True)
+@out_option("File to write.", is_file=True, required=True)
 @voiced
 def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     """Predict forces at conditions, from the folder of a build.
@@ -25,6 +25,6 @@ def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     from mffit.report import text
 
     found = pipeline.predict(folder, conditions)
-    write_table(found, out)
+    write_table(found, out, conditions)
     voice.say(text.prediction_summary(found, out))
     voice.give(lambda: {"written": [str(out)], "conditions": len(found)})

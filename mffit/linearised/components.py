@@ -26,10 +26,16 @@ class Components:
 
     @classmethod
     def guess(cls, smooth: Smooth, misfit: float) -> Components:
-        """Where the search begins: a third of the misfit of each kind."""
-        third = misfit / 3.0
-        lengths = tuple(2.0 * one.spacing for one in smooth.inputs)
-        return cls(misfit, lengths, third, float(constants.LARGEST_RUN_SCALE) / 10.0, third, 0.3, 1.0)
+        """Where the search begins: the formula misses all of the misfit, and runs differ by a third of it."""
+        return cls(
+            missed=misfit,
+            lengths=tuple(2.0 * one.spacing for one in smooth.inputs),
+            offset=misfit / 3.0,
+            scale=constants.LARGEST_RUN_SCALE / 10.0,
+            shape=misfit / 3.0,
+            shape_length=0.3,
+            noise=1.0,
+        )
 
     @property
     def logarithms(self) -> np.ndarray:
@@ -54,7 +60,8 @@ class Components:
 
     def run_variance(self, force: np.ndarray) -> np.ndarray:
         """Variance (n,) of a new run around the mean of all, where the force is as given (n,)."""
-        return np.asarray(self.offset**2 + (self.scale * force) ** 2 + self.shape**2)
+        of_scale: np.ndarray = (self.scale * force) ** 2
+        return self.offset**2 + of_scale + self.shape**2
 
 
 def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -81,19 +88,19 @@ def variances(x: np.ndarray, smooth: Smooth) -> tuple[Variances, np.ndarray, np.
     return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
-def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) -> Components:
-    """The components of the largest evidence, near their first guess; residuals are of size ``unit``."""
-    begin = first.logarithms
+def most_probable(model: Mixed, smooth: Smooth, misfit: float) -> Components:
+    """The components of the largest evidence, near their first guess; ``misfit`` is the size of the residuals."""
+    begin = Components.guess(smooth, misfit).logarithms
     usual = float(np.log(constants.USUAL_RATIO))
-    held = np.ones(len(begin))
-    held[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
+    has_prior = np.ones(len(begin))
+    has_prior[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
         found = model.evidence(given)
         slope = found.common @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
-        far = held * (x - begin) / usual
+        far = has_prior * (x - begin) / usual
         return -found.value + 0.5 * float(far @ far), -slope + far / usual
 
     readings = sum(len(group) for group in model.groups)
@@ -102,7 +109,7 @@ def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) 
         begin,
         jac=True,
         method="L-BFGS-B",
-        bounds=_bounds(smooth, unit),
+        bounds=_bounds(smooth, misfit),
         options={
             "maxiter": int(constants.COMPONENT_STEPS),
             "ftol": constants.COMPONENT_TOLERANCE / max(readings, 1),
@@ -111,10 +118,10 @@ def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) 
     return Components.of_logarithms(found.x)
 
 
-def _bounds(smooth: Smooth, unit: float) -> list[tuple[float, float]]:
-    """Of the logarithms: a run differs by no more than the formula misses, and no length is below the settings' distance."""
-    tiny = unit * 1e-4
-    size = (tiny, 3.0 * unit)
+def _bounds(smooth: Smooth, misfit: float) -> list[tuple[float, float]]:
+    """Of the logarithms: a run differs by no more than the misfit, and no length is below the settings' distance."""
+    tiny = 1e-4 * misfit
+    missed = (tiny, 3.0 * misfit)
     lengths = [(one.spacing, 20.0 * one.width) for one in smooth.inputs]
-    of_runs = [(tiny, unit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, unit), (0.05, 1.0)]
-    return [tuple(np.log(pair).tolist()) for pair in [size, *lengths, *of_runs, (1e-3, 1e3)]]
+    of_runs = [(tiny, misfit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, misfit), (0.05, 1.0)]
+    return [tuple(np.log(pair).tolist()) for pair in [missed, *lengths, *of_runs, (1e-3, 1e3)]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 FUNCTIONS = Count(
     300, "-", "Most functions of what the formula misses of a channel: 450 predict no better on real tyres."
@@ -18,7 +18,20 @@ POINTS_EXAMINED = Count(
 DIVISIONS_OF_A_SWEEP = Count(
     12, "-", "Shortest length of a smooth function along what is swept, as a part of its range."
 )
+STEPS_OF_A_SWEEP = Real(
+    1.5,
+    "-",
+    "Steps between settings from which a run that moves through them sweeps the condition; it may wander by half of one.",
+)
+ENDS_OF_A_RUN = Series(
+    (5.0, 95.0), "%", "Percentiles between which a run moves a condition; ignores single values."
+)
 DIVISIONS_OF_WARMING = Count(4, "-", "The same along the temperature of the tyre.")
+USUAL_TEMPERATURES = Series(
+    (10.0, 50.0, 90.0),
+    "%",
+    "Percentiles of the temperature over which a prediction averages that does not state it.",
+)
 ROOM = Real(
     0.15, "-", "Range beyond the tested one over which the functions run, so that their slope is free there."
 )

@@ -34,9 +34,8 @@ class LinearisedChannel:
     """Of residuals, measured less model, over ``unit``; its common numbers are the weights of ``smooth``, then changes of the
     numbers of the fit."""
     variances: Variances  #: of these
-    missed: (
-        np.ndarray
-    )  #: (m,) weights of the functions with the numbers of the fit as they are [unit of the channel]
+    missed: np.ndarray
+    """(m,) weights of the functions with the numbers of the fit as they are [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
@@ -52,11 +51,11 @@ class LinearisedChannel:
         """
         own, stride = np.exp(0.5 * self.variances.own), self.stride
         scaled = columns * self.unit[:, None]
-        out = stride * self.components.noise**2 * scaled.T @ scaled
+        out: np.ndarray = stride * self.components.noise**2 * scaled.T @ scaled
         for group in self.model.groups:
             through = stride * scaled[group].T @ (self.model.own[group] * own)
             out += through @ through.T
-        return np.asarray(out)
+        return out
 
     @property
     def noise(self) -> float:
@@ -71,15 +70,43 @@ class LinearisedChannel:
     def left_out(self, groups: Sequence[np.ndarray] | None = None) -> list[Predicted]:
         """Each sweep, or each set of groups, as all others predict it; rows count those of ``rows``."""
         which = [np.array([k]) for k in range(len(self.sweeps))] if groups is None else groups
-        found = self.model.left_out(self.variances, which)
-        return [
-            Predicted(
-                one.rows,
-                one.error * self.unit[one.rows],
-                one.covariance * np.outer(self.unit[one.rows], self.unit[one.rows]),
-            )
-            for one in found
-        ]
+        return [self._in_its_unit(one) for one in self.model.left_out(self.variances, which)]
+
+    def by_the_others(self, group: int) -> Predicted:
+        """A group as the others predict it, which alone say how much the formula misses and runs differ.
+
+        A run that is far off would otherwise widen what counts as usual, and hide in it.
+        """
+        rest = [rows for k, rows in enumerate(self.model.groups) if k != group]
+        given, _, _ = variances(
+            _found(self._alone(groups=rest), self.smooth, self.unit).logarithms, self.smooth
+        )
+        common = np.append(given.common, self.variances.common[len(self.missed) :])
+        (one,) = self.model.left_out(given._replace(common=common), [np.array([group])])
+        return self._in_its_unit(one)
+
+    def gain(self, change: np.ndarray) -> float:
+        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
+        without = self._alone(residual=self.model.residual - change / self.unit)
+        found = _found(without, self.smooth, self.unit)
+        before, after = (
+            alone.evidence(variances(of.logarithms, self.smooth)[0]).value
+            for alone, of in ((self._alone(), self.components), (without, found))
+        )
+        return self.stride * (after - before)
+
+    def _alone(self, residual: np.ndarray | None = None, groups: Sequence[np.ndarray] | None = None) -> Mixed:
+        """The model with the numbers of the fit as they are."""
+        return Mixed(
+            self.model.residual if residual is None else residual,
+            self.model.common[:, : len(self.missed)],
+            self.model.own,
+            self.model.groups if groups is None else groups,
+        )
+
+    def _in_its_unit(self, one: Predicted) -> Predicted:
+        unit = self.unit[one.rows]
+        return Predicted(one.rows, one.error * unit, one.covariance * np.outer(unit, unit))
 
 
 class Uncertain(NamedTuple):
@@ -152,29 +179,36 @@ def _channel(
     own = own_columns(model[rows], along(at_tyre, inputs))
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
     alone = Mixed(residual / unit, missed, own / unit[:, None], groups)
-    size = max(rms(residual), 1e-12)
-    components = most_probable(alone, smooth, Components.guess(smooth, size), size)
-    names, spread = zip(*sight.numbers, strict=True) if sight.numbers else ((), ())
-    found = np.asarray(sight.simulation.sensitivities(part, names, [name])[1][name])
-    weighted = found / sigma[rows][:, None]
-    turn = root(
-        inverse(
-            np.diag(np.array(spread) ** -2.0) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT
-        )
-    )
-    joint = Mixed(alone.residual, np.hstack([missed, found @ turn / unit[:, None]]), alone.own, groups)
+    components = most_probable(alone, smooth, max(rms(residual), 1e-12))
+    slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
+    turn = _turn(sight.numbers, slopes / sigma[rows][:, None], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
-    prior = of_functions._replace(common=np.append(of_functions.common, np.zeros(turn.shape[1])))
     return LinearisedChannel(
-        name,
-        rows,
-        stride,
-        unit,
-        smooth,
-        components,
-        joint,
-        prior,
-        alone.posterior(of_functions).mean,
-        turn,
-        np.unique(part.sweep),
+        name=name,
+        rows=rows,
+        stride=stride,
+        unit=unit,
+        smooth=smooth,
+        components=components,
+        model=Mixed(alone.residual, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
+        variances=of_functions._replace(common=np.append(of_functions.common, np.zeros(turn.shape[1]))),
+        missed=alone.posterior(of_functions).mean,
+        turn=turn,
+        sweeps=np.unique(part.sweep),
     )
+
+
+def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np.ndarray:
+    """Changes (k, k) of the numbers of the fit that are independent, each of variance 1, before what is missed is known.
+
+    ``weighted`` (n, k) are derivatives over the uncertainty that the fit used.
+    """
+    prior = np.array([number.spread for number in numbers]) ** -2.0
+    return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+
+
+def _found(alone: Mixed, smooth: Smooth, unit: np.ndarray) -> Components:
+    """The components of residuals over ``unit`` (n,)."""
+    rows = np.concatenate(list(alone.groups))
+    size = max(rms((alone.residual * unit)[rows]), 1e-12)
+    return most_probable(alone, smooth, Components.guess(smooth, size), size)

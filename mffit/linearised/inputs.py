@@ -30,7 +30,7 @@ class Input:
     lower: float
     upper: float  #: the tested range
     spacing: float  #: distance of neighbouring settings; nothing shorter is smooth
-    settings: tuple[float, ...] = ()
+    averaged: tuple[float, ...] = ()
     """Values over which a prediction averages that does not state the condition; empty: it is stated always."""
 
     @property
@@ -47,30 +47,29 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
         steps = levels.count(values, kind) - 1
         if steps < 1:
             continue
-        swept = (
-            any(_width(values[rows]) > 1.5 * np.ptp(values) / steps for rows in _runs(points)) or steps > 8
-        )
-        steps = int(constants.DIVISIONS_OF_A_SWEEP) if swept else steps
-        found.append(_input(name, values, steps))
+        most = int(constants.DIVISIONS_OF_A_SWEEP)
+        widest = max(_width(values[rows]) for rows in _runs(points))
+        is_swept = widest > constants.STEPS_OF_A_SWEEP * np.ptp(values) / steps
+        found.append(_input(name, values, most if is_swept else min(steps, most)))
     for name in ALSO:
         values = np.asarray(getattr(points, name), dtype=float)
-        if not np.all(np.isfinite(values)) or np.ptp(values) <= 1e-9 * np.max(np.abs(values), initial=1e-300):
+        if not np.all(np.isfinite(values)) or np.allclose(values, values[0]):
             continue
         if name == "T":
-            found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), averaged=True))
+            usual = tuple(np.percentile(values, constants.USUAL_TEMPERATURES).tolist())
+            found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), usual))
         else:
             found.append(_input(name, values, 1))
-    if "T" not in [one.name for one in found]:
-        both = sense(points, swept_of(points, tuple(found)))
-        if np.any(both > 0.0) and np.any(both < 0.0):
+    if "T" not in [one.name for one in found]:  # a sweep up and back differs mostly by its warmth
+        senses = sense(points, swept_of(points, tuple(found)))
+        if np.any(senses > 0.0) and np.any(senses < 0.0):
             found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
     return tuple(found)
 
 
-def _input(name: str, values: np.ndarray, steps: int, *, averaged: bool = False) -> Input:
+def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...] = ()) -> Input:
     low, high = float(values.min()), float(values.max())
-    usual = tuple(np.quantile(values, (0.1, 0.5, 0.9)).tolist()) if averaged else ()
-    return Input(name, low, high, (high - low) / steps, usual)
+    return Input(name, low, high, (high - low) / steps, averaged)
 
 
 def _runs(points: Points) -> list[np.ndarray]:
@@ -78,7 +77,8 @@ def _runs(points: Points) -> list[np.ndarray]:
 
 
 def _width(values: np.ndarray) -> float:
-    low, high = np.quantile(values, (0.05, 0.95))
+    """How far a run moves a condition."""
+    low, high = np.percentile(values, constants.ENDS_OF_A_RUN)
     return float(high - low)
 
 
@@ -103,19 +103,18 @@ def sense(points: Points, swept: Mapping[int, str]) -> np.ndarray:
     return out
 
 
-def settings_of(points: Points, inputs: tuple[Input, ...]) -> dict[str, np.ndarray]:
-    """The conditions (n,) by name; one that a sweep holds is the mean of that sweep, so that its control does not count."""
-    out = {}
-    for one in inputs:
+def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
+    """The conditions (n, d); one that a run holds is its mean over that run, so that its control does not count."""
+    out = np.empty((len(points), len(inputs)))
+    for i, one in enumerate(inputs):
         if one.name == "sense":
-            out[one.name] = sense(points, swept_of(points, inputs))
+            out[:, i] = sense(points, swept_of(points, inputs))
             continue
-        values = np.array(getattr(points, one.name), dtype=float)
+        out[:, i] = getattr(points, one.name)
         if one.name != "T":
             for rows in _runs(points):
-                if _width(values[rows]) < one.spacing:
-                    values[rows] = values[rows].mean()
-        out[one.name] = values
+                if _width(out[rows, i]) < one.spacing:
+                    out[rows, i] = out[rows, i].mean()
     return out
 
 

@@ -7,8 +7,6 @@ lengths. There is no constant among them: that belongs to the zeros of the rig.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,21 +27,22 @@ class Smooth:
     @classmethod
     def over(cls, inputs: tuple[Input, ...]) -> Smooth:
         """The functions that matter most at the shortest lengths."""
-        most = [_most_half_waves(one) for one in inputs]
-        orders = np.array(list(itertools.product(*(range(n + 1) for n in most))), dtype=int)[1:]
-        size = sum(
-            -0.5 * (np.pi * orders[:, i] * one.spacing / _length(one)) ** 2 for i, one in enumerate(inputs)
-        )
-        order = np.argsort(-np.asarray(size), kind="stable")[: constants.FUNCTIONS]
-        return cls(inputs, orders[order[np.asarray(size)[order] > -LEAST]])
+        orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
+        for one in inputs:  # functions too small in some conditions are so in all: they never become many
+            order = np.arange(_most_half_waves(one) + 1)
+            size = (size[:, None] - 0.5 * (np.pi * order * one.spacing / _length(one)) ** 2).ravel()
+            orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
+            orders, size = orders[size > -LEAST], size[size > -LEAST]
+        largest = np.argsort(-size[1:], kind="stable")[: constants.FUNCTIONS]
+        return cls(inputs, orders[1:][largest])
 
-    def columns(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Values (n, m) at conditions (n,); beyond the tested range those at its end."""
-        out = np.ones((len(next(iter(at.values()))), len(self.orders)))
+    def columns(self, at: np.ndarray) -> np.ndarray:
+        """Values (n, m) at conditions (n, d); beyond the tested range those at its end."""
+        out = np.ones((len(at), len(self.orders)))
         for i, one in enumerate(self.inputs):
-            place = (np.clip(at[one.name], one.lower, one.upper) - one.lower) / _length(one)
-            place += constants.ROOM / (1.0 + 2.0 * constants.ROOM)
-            order = np.arange(int(self.orders[:, i].max()) + 1)
+            inside = np.clip(at[:, i], one.lower, one.upper)
+            place = (inside - one.lower + constants.ROOM * one.width) / _length(one)
+            order = np.arange(int(self.orders[:, i].max(initial=0)) + 1)
             waves = np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0)
             out *= waves[:, self.orders[:, i]]
         return out
@@ -61,13 +60,12 @@ class Smooth:
             slope[:, i] = 2.0 * (exponent - share @ exponent)[self.orders[:, i]]
         return size, slope
 
-    def likeness(self, at: Mapping[str, np.ndarray], lengths: np.ndarray) -> np.ndarray:
-        """Correlation (n,) of the functions at conditions beyond the tested range with those at its end; 1 within it."""
-        far = np.zeros(len(next(iter(at.values()))))
-        for one, length in zip(self.inputs, lengths, strict=True):
-            beyond = np.maximum(np.maximum(one.lower - at[one.name], at[one.name] - one.upper), 0.0)
-            far += (beyond / length) ** 2
-        return np.asarray(np.exp(-0.5 * far))
+    def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """Correlation (n,) of what is missed at conditions (n, d) with that at the nearest tested ones; 1 within their range."""
+        lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
+        beyond = (at - np.clip(at, lower, upper)) / lengths
+        found: np.ndarray = np.exp(-0.5 * np.sum(beyond**2, axis=1))
+        return found
 
 
 def _length(one: Input) -> float:

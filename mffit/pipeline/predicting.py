@@ -7,7 +7,6 @@ from pathlib import Path
 import pandas as pd
 
 from mffit import prediction
-from mffit.prediction.conditions import checked
 
 
 def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.DataFrame:
@@ -22,19 +21,17 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     Returns
     -------
     DataFrame
-        The conditions, and for each fitted channel, here Fy: ``Fy_N`` of the plain file; ``u_Fy_N``, with which a reading of a
-        new run lies around it; ``Fy_best_N`` with what the formula misses; ``u_Fy_best_N`` of that as the tyre's mean force;
-        ``u_Fy_run_N`` of a reading of a new run around it.
+        The conditions in the units of their names, and for each fitted channel, here Fy: ``Fy_N`` of the plain file;
+        ``u_Fy_N``, with which a reading of a new run lies around it; ``Fy_best_N`` with what the formula misses;
+        ``u_Fy_best_N`` of that as the tyre's mean force; ``u_Fy_run_N`` of a reading of a new run around it. Columns of these
+        names in the conditions are replaced.
 
     Raises
     ------
     InputError
-        The folder is not that of a build, or the table lacks a column or holds something that is no number.
+        The folder is not that of a build, or the table lacks a column or has a value that is no number or impossible.
     """
     known, tyre, fitted = prediction.load(Path(folder))
-    table = (
-        checked(conditions)
-        if isinstance(conditions, pd.DataFrame)
-        else prediction.read_conditions(Path(conditions))
-    )
-    return known.predict(tyre, fitted, table)
+    if isinstance(conditions, pd.DataFrame):
+        return known.predict(tyre, fitted, prediction.checked(conditions))
+    return known.predict(tyre, fitted, prediction.read_conditions(Path(conditions)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,16 +11,15 @@ import pandas as pd
 
 from mffit.linearised import LinearisedFit
 from mffit.linearised.components import Components
+from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import Smooth
 from mffit.points import Points, main_path, make_points
 from mffit.points.points import OF_SI
-from mffit.quantities import CONDITIONS, column, u_column
+from mffit.prediction.conditions import PATH, UNITS
+from mffit.quantities import column, u_column
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from tir import Tyre
-
-PATH = "phi_t_per_m"
-"""Column of the path curvature, beside those of :data:`mffit.quantities.CONDITIONS`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,24 +28,21 @@ class MissedChannel:
 
     smooth: Smooth  #: m functions
     components: Components
-    missed: (
-        np.ndarray
-    )  #: (m,) weights of the functions [unit of the channel], the coefficients as they are in the file
+    missed: np.ndarray
+    """(m,) weights of the functions with the coefficients as they are in the file [unit of the channel]."""
     root: np.ndarray
     """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of the coefficients."""
     noise: float  #: of a usual reading [unit of the channel]
     size: float  #: rms of what the formula misses at the readings [unit of the channel]
 
-    def at(
-        self, settings: Mapping[str, np.ndarray], slopes: np.ndarray, path: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def at(self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What the file misses (n,), and its variance (n,).
 
         The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
         off counts in its variance.
 
-        ``slopes`` (n, k) are derivatives by the coefficients, ``path`` (n,) the correlation of what the formula misses with
-        that on the measured path.
+        ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by the coefficients, ``path`` (n,) the correlation
+        of what the formula misses with that on the measured path.
         """
         likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
         columns = np.hstack([likeness[:, None] * self.smooth.columns(settings), slopes])
@@ -60,7 +56,7 @@ class Predictor:
     """What the file of a build misses at any conditions, with its uncertainty."""
 
     path: float  #: path curvature of most readings [1/m], taken where none is stated; 0 on a flat track
-    names: tuple[str, ...]  #: (k,) of uncertain coefficients
+    names: tuple[str, ...]  #: (k,) of the uncertain coefficients
     channels: Mapping[str, MissedChannel]
 
     @property
@@ -83,13 +79,13 @@ class Predictor:
         DataFrame
             The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
         """
-        points, warmth = self._points(tyre, conditions)
+        points = self._points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
         simulation = Simulation.of(fitted, turn_slip=self.curved)
         forces, slopes = simulation.sensitivities(points, self.names, self.channels)
         found = conditions.copy()
         for name, channel in self.channels.items():
-            missed, variance, unstated = self._missed(channel, points, warmth, slopes[name])
+            missed, variance, unstated = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
             run = variance + unstated + channel.components.run_variance(best) + channel.noise**2
             found[column(name)] = plain[name]
@@ -99,17 +95,16 @@ class Predictor:
             found[f"u_{column(name, 'run')}"] = np.sqrt(run)
         return found
 
-    def _points(self, tyre: Tyre, conditions: pd.DataFrame) -> tuple[Points, np.ndarray]:
-        """The conditions as points, and the temperature (n,), NaN where none is stated."""
+    def _points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
+        """The conditions as points; a temperature that is not stated is NaN, all others are nominal then."""
 
         def stated(name: str, otherwise: float) -> np.ndarray:
             if name not in conditions:
                 return np.full(len(conditions), otherwise)
             values = conditions[name].to_numpy(dtype=float)
-            unit = CONDITIONS[name].unit if name in CONDITIONS else "1/m"
-            return np.where(np.isfinite(values), values / OF_SI.get(unit, 1.0), otherwise)
+            return np.where(np.isfinite(values), values / OF_SI.get(UNITS[name], 1.0), otherwise)
 
-        points = make_points(
+        return make_points(
             stated("alpha_deg", np.nan),
             stated("gamma_deg", np.nan),
             stated("Fz_N", np.nan),
@@ -117,40 +112,33 @@ class Predictor:
             p=stated("p_kPa", float(tyre["NOMPRES"])),
             V=stated("V_mps", float(tyre["LONGVL"])),
             phi_t=stated(PATH, self.path) if self.curved else 0.0,
+            T=stated("T_degC", np.nan),
         )
-        return points, stated("T_degC", np.nan)
 
     def _missed(
-        self, channel: MissedChannel, points: Points, warmth: np.ndarray, slopes: np.ndarray
+        self, channel: MissedChannel, points: Points, slopes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the file misses (n,), its variance (n,), and the variance (n,) over what the conditions do not state."""
-        means, variances = [], []
-        for unstated in _unstated(channel.smooth):
-            settings = {
-                one.name: np.where(np.isfinite(warmth), warmth, unstated[one.name])
-                if one.name == "T"
-                else np.full(len(points), unstated[one.name])
-                if one.name in unstated
-                else np.asarray(getattr(points, one.name), dtype=float)
-                for one in channel.smooth.inputs
-            }
-            mean, variance = channel.at(settings, slopes, self._of_path(channel, points))
-            means.append(mean)
-            variances.append(variance)
-        return np.mean(means, axis=0), np.mean(variances, axis=0), np.var(means, axis=0)
+        path = self._of_path(channel, points)
+        found = [channel.at(settings, slopes, path) for settings in _settings(points, channel.smooth.inputs)]
+        means, variances = (np.array(own) for own in zip(*found, strict=True))
+        return means.mean(axis=0), variances.mean(axis=0), means.var(axis=0)
 
     def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
         """Correlation (n,) of what the formula misses with that on the measured path, as over a length of its curvature."""
         if not self.curved or any(one.name == "phi_t" for one in channel.smooth.inputs):
             return np.ones(len(points))
-        return np.asarray(np.exp(-0.5 * (points.phi_t / self.path - 1.0) ** 2))
+        found: np.ndarray = np.exp(-0.5 * (points.phi_t / self.path - 1.0) ** 2)
+        return found
 
 
-def _unstated(smooth: Smooth) -> Iterator[dict[str, float]]:
-    """Every combination of the conditions that a prediction may lack: those over which it averages."""
-    averaged = [one for one in smooth.inputs if one.settings]
-    for values in itertools.product(*(one.settings for one in averaged)):
-        yield {one.name: value for one, value in zip(averaged, values, strict=True)}
+def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
+    """The conditions (n, d) with every combination of the values of those that are not stated."""
+    unstated = np.full(len(points), np.nan)
+    stated = [getattr(points, one.name, unstated) for one in inputs]
+    for values in itertools.product(*(one.averaged or (np.nan,) for one in inputs)):
+        columns = [np.where(np.isfinite(own), own, value) for own, value in zip(stated, values, strict=True)]
+        yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
 
 
 def predictor(points: Points, left: LinearisedFit) -> Predictor:
@@ -167,16 +155,5 @@ def predictor(points: Points, left: LinearisedFit) -> Predictor:
         m = len(own.smooth.orders)
         found = own.posterior
         root = np.vstack([found.root[:m], own.turn[of_tyre] @ found.root[m:]])
-        channels[name] = MissedChannel(
-            own.smooth, own.components, own.missed, short_root(root @ root.T), own.noise, own.size
-        )
+        channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
     return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels)
-
-
-def short_root(covariance: np.ndarray) -> np.ndarray:
-    """A matrix (k, r) whose product with its transpose is the covariance to within a millionth of every variance's size."""
-    scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
-    kept = size > 1e-9 * size.max(initial=1e-300)
-    found: np.ndarray = scale[:, None] * axes[:, kept] * np.sqrt(size[kept])
-    return found

@@ -16,7 +16,9 @@ from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import Smooth
 from mffit.prediction.predictor import MissedChannel, Predictor
+from mffit.quantities import CHANNELS
 from tir import Tyre
+from tir.parameters import BY_NAME
 
 FILE = "prediction.json"
 ABOUT = "What mffit predict needs; arrays are base64 of little-endian numbers, row after row."
@@ -36,7 +38,6 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
                 "orders": own.smooth.orders.tolist(),
                 "components": asdict(own.components),
                 "missed": own.missed.tolist(),
-                "coefficients": len(own.root) - len(own.missed),
                 "root": _text(own.root),
                 "noise": own.noise,
                 "size": own.size,
@@ -44,7 +45,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
             for name, own in found.channels.items()
         },
     }
-    path.write_text(json.dumps(content) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
@@ -54,40 +55,50 @@ def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
     ------
     InputError
         The folder is not that of a build that states what it knows.
+    TirError
+        A property file of the build is missing or damaged.
     """
     path = folder / FILE
+    if not path.exists():
+        sentence = (
+            f"has no {FILE}; name the folder of a build, and build again if it is of an earlier version"
+        )
+        raise InputError(sentence, file=folder)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        file, fitted = (tir.read(folder / str(content[key])) for key in ("file", "fitted"))
-        return _predictor(content), file, fitted
-    except FileNotFoundError:
-        raise InputError(
-            f"there is no {FILE} in {folder}; name the folder of a build, and build again if it is of an earlier version"
-        ) from None
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
-        raise InputError(f"{path} cannot be used; build the tyre again") from None
+        content = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse)
+        known, names = _predictor(content), [str(content[key]) for key in ("file", "fitted")]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
+        raise InputError("is not as a build writes it; build the tyre again", file=path) from None
+    file, fitted = (tir.read(folder / name) for name in names)
+    return known, file, fitted
 
 
 def _predictor(content: dict[str, Any]) -> Predictor:
+    names, channels = tuple(content["coefficients"]), content["channels"]
+    if not (set(names) <= set(BY_NAME) and set(channels) <= set(CHANNELS)):
+        raise ValueError("an unknown name")
     return Predictor(
         path=float(content["phi_t_per_m"]),
-        names=tuple(map(str, content["coefficients"])),
-        channels={name: _channel(own) for name, own in content["channels"].items()},
+        names=names,
+        channels={name: _channel(own, len(names)) for name, own in channels.items()},
     )
 
 
-def _channel(own: dict[str, Any]) -> MissedChannel:
-    inputs = tuple(Input(**{**one, "settings": tuple(one["settings"])}) for one in own["inputs"])
-    orders = np.array(own["orders"], dtype=int).reshape(-1, len(inputs))
-    components = Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])})
+def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
+    inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
+    missed = np.array(own["missed"], dtype=float)
     return MissedChannel(
-        smooth=Smooth(inputs, orders),
-        components=components,
-        missed=np.array(own["missed"], dtype=float),
-        root=_array(own["root"], len(orders) + int(own["coefficients"])),
+        smooth=Smooth(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
+        components=Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])}),
+        missed=missed,
+        root=_array(own["root"], len(missed) + coefficients),
         noise=float(own["noise"]),
         size=float(own["size"]),
     )
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"{constant} is no number")
 
 
 def _text(values: np.ndarray) -> str:
@@ -96,4 +107,6 @@ def _text(values: np.ndarray) -> str:
 
 def _array(text: str, rows: int) -> np.ndarray:
     values = np.frombuffer(base64.b64decode(text), dtype="<f4").astype(float)
-    return values.reshape(rows, -1) if rows else np.zeros((0, 0))
+    if not np.all(np.isfinite(values)):
+        raise ValueError("a number is not finite")
+    return values.reshape(rows, len(values) // max(rows, 1))

@@ -23,7 +23,7 @@ def prediction_summary(found: pd.DataFrame, out: Path) -> str:
         )
         missed = rms((found[column(name, "best")] - found[column(name)]).to_numpy())
         lines.append(
-            f"{name}: a new run lies within {of_file:.3g} {quantity.unit} of the file, within {of_best:.3g} {quantity.unit} of the "
-            f"best estimate (95 %, rms over the conditions); the file misses the best estimate by {missed:.3g} {quantity.unit}"
+            f"{name}: a new run lies within {of_file:.3g} {quantity.unit} of the file, within {of_best:.3g} {quantity.unit} of "
+            f"the best estimate (95 %, rms over the conditions); the file misses that estimate by {missed:.3g} {quantity.unit}"
         )
     return "\n".join([*lines, f"written to {out}"])
