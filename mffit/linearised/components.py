@@ -16,7 +16,7 @@ from mffit.linearised.smooth import Smooth
 class Components:
     """Standard deviations, in the unit of the channel where nothing else is said."""
 
-    missed: float  #: of what the formula misses, over the tested range
+    missed: float  #: of what the formula misses, over the tested range with its room, a constant included
     lengths: tuple[float, ...]  #: over which it changes, along every input [unit of the input]
     offset: float  #: of a run
     scale: float  #: of a run, relative [-]
