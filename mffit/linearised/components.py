@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
-from mffit.linearised.smooth import Smooth
+from mffit.linearised.smooth import SmoothFunctions
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Components:
     noise: float  #: over that stated [-]
 
     @classmethod
-    def guess(cls, smooth: Smooth, misfit: float) -> Components:
+    def guess(cls, smooth: SmoothFunctions, misfit: float) -> Components:
         """Where the search begins: the formula misses all of the misfit, and runs differ by a third of it."""
         return cls(
             missed=misfit,
@@ -71,7 +71,7 @@ def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
     return np.column_stack([np.ones(len(force)), force, waves])
 
 
-def variances(x: np.ndarray, smooth: Smooth) -> tuple[Variances, np.ndarray, np.ndarray]:
+def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.ndarray, np.ndarray]:
     """The variances of all numbers, and the derivatives of the common and of the own ones by the logarithms ``x``."""
     d, q = len(smooth.inputs), int(constants.FUNCTIONS_OF_A_RUN)
     share, by_length = smooth.log_variance(np.exp(x[1 : 1 + d]))
@@ -88,9 +88,9 @@ def variances(x: np.ndarray, smooth: Smooth) -> tuple[Variances, np.ndarray, np.
     return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
-def most_probable(model: Mixed, smooth: Smooth, misfit: float) -> Components:
+def most_probable(model: Mixed, smooth: SmoothFunctions, first: Components, misfit: float) -> Components:
     """The components of the largest evidence, near their first guess; ``misfit`` is the size of the residuals."""
-    begin = Components.guess(smooth, misfit).logarithms
+    begin = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
     has_prior = np.ones(len(begin))
     has_prior[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
@@ -118,7 +118,7 @@ def most_probable(model: Mixed, smooth: Smooth, misfit: float) -> Components:
     return Components.of_logarithms(found.x)
 
 
-def _bounds(smooth: Smooth, misfit: float) -> list[tuple[float, float]]:
+def _bounds(smooth: SmoothFunctions, misfit: float) -> list[tuple[float, float]]:
     """Of the logarithms: a run differs by no more than the misfit, and no length is below the settings' distance."""
     tiny = 1e-4 * misfit
     missed = (tiny, 3.0 * misfit)

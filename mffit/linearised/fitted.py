@@ -13,8 +13,8 @@ from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import Components, most_probable, own_columns, variances
 from mffit.linearised.inputs import along, inputs_of, settings_of
-from mffit.linearised.mixed import Mixed, Posterior, Predicted, Variances
-from mffit.linearised.smooth import Smooth
+from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
+from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -28,7 +28,7 @@ class LinearisedChannel:
     rows: np.ndarray  #: (n,) of the points that are looked at
     stride: int  #: readings for each of them
     unit: np.ndarray  #: (n,) their noise as stated, or usual [N], [Nm], [m]
-    smooth: Smooth
+    smooth: SmoothFunctions
     components: Components
     model: Mixed
     """Of residuals, measured less model, over ``unit``; its common numbers are the weights of ``smooth``, then changes of the
@@ -40,7 +40,7 @@ class LinearisedChannel:
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
     @cached_property
-    def posterior(self) -> Posterior:
+    def posterior(self) -> MixedPosterior:
         """Of the common numbers."""
         return self.model.posterior(self.variances)
 
@@ -67,46 +67,18 @@ class LinearisedChannel:
         """Root mean square of what the formula misses at the readings."""
         return rms(self.unit * (self.model.common[:, : len(self.missed)] @ self.missed))
 
-    def left_out(self, groups: Sequence[np.ndarray] | None = None) -> list[Predicted]:
+    def left_out(self, groups: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
         """Each sweep, or each set of groups, as all others predict it; rows count those of ``rows``."""
         which = [np.array([k]) for k in range(len(self.sweeps))] if groups is None else groups
-        return [self._in_its_unit(one) for one in self.model.left_out(self.variances, which)]
-
-    def by_the_others(self, group: int) -> Predicted:
-        """A group as the others predict it, which alone say how much the formula misses and runs differ.
-
-        A run that is far off would otherwise widen what counts as usual, and hide in it.
-        """
-        rest = [rows for k, rows in enumerate(self.model.groups) if k != group]
-        given, _, _ = variances(
-            _found(self._alone(groups=rest), self.smooth, self.unit).logarithms, self.smooth
-        )
-        common = np.append(given.common, self.variances.common[len(self.missed) :])
-        (one,) = self.model.left_out(given._replace(common=common), [np.array([group])])
-        return self._in_its_unit(one)
-
-    def gain(self, change: np.ndarray) -> float:
-        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
-        without = self._alone(residual=self.model.residual - change / self.unit)
-        found = _found(without, self.smooth, self.unit)
-        before, after = (
-            alone.evidence(variances(of.logarithms, self.smooth)[0]).value
-            for alone, of in ((self._alone(), self.components), (without, found))
-        )
-        return self.stride * (after - before)
-
-    def _alone(self, residual: np.ndarray | None = None, groups: Sequence[np.ndarray] | None = None) -> Mixed:
-        """The model with the numbers of the fit as they are."""
-        return Mixed(
-            self.model.residual if residual is None else residual,
-            self.model.common[:, : len(self.missed)],
-            self.model.own,
-            self.model.groups if groups is None else groups,
-        )
-
-    def _in_its_unit(self, one: Predicted) -> Predicted:
-        unit = self.unit[one.rows]
-        return Predicted(one.rows, one.error * unit, one.covariance * np.outer(unit, unit))
+        found = self.model.left_out(self.variances, which)
+        return [
+            LeftOutReadings(
+                one.rows,
+                one.error * self.unit[one.rows],
+                one.covariance * np.outer(self.unit[one.rows], self.unit[one.rows]),
+            )
+            for one in found
+        ]
 
 
 class Uncertain(NamedTuple):
@@ -174,12 +146,13 @@ def _channel(
     usual = float(np.median(sigma[rows]))
     unit = np.where(np.isfinite(stated) & (stated > 0.0), stated, usual)
     inputs = inputs_of(at_tyre)
-    smooth = Smooth.over(inputs)
+    smooth = SmoothFunctions.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], along(at_tyre, inputs))
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
     alone = Mixed(residual / unit, missed, own / unit[:, None], groups)
-    components = most_probable(alone, smooth, max(rms(residual), 1e-12))
+    misfit = max(rms(residual), 1e-12)
+    components = most_probable(alone, smooth, Components.guess(smooth, misfit), misfit)
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
     turn = _turn(sight.numbers, slopes / sigma[rows][:, None], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
@@ -205,10 +178,3 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
     return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
-
-
-def _found(alone: Mixed, smooth: Smooth, unit: np.ndarray) -> Components:
-    """The components of residuals over ``unit`` (n,)."""
-    rows = np.concatenate(list(alone.groups))
-    size = max(rms((alone.residual * unit)[rows]), 1e-12)
-    return most_probable(alone, smooth, Components.guess(smooth, size), size)

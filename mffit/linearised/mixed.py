@@ -23,7 +23,7 @@ class Variances(NamedTuple):
     noise: float  #: over that of the readings as stated
 
 
-class Evidence(NamedTuple):
+class MixedEvidence(NamedTuple):
     """Logarithm of the probability of the residuals, less a constant, and its derivatives by :class:`Variances`."""
 
     value: float
@@ -54,7 +54,7 @@ class Mixed:
             readings=sum(len(r) for *_, r in parts),
         )
 
-    def evidence(self, given: Variances) -> Evidence:
+    def evidence(self, given: Variances) -> MixedEvidence:
         """The evidence of some variances."""
         found, sums = self.posterior(given), self._sums
         w, gain = np.exp(-given.noise), found.gain
@@ -77,14 +77,14 @@ class Mixed:
         misfit = square - scaled @ scaled - np.sum(own**2 / own_size)
         effective = np.sum(1.0 - gain) + np.sum(1.0 - own_variance / own_size)
         log_size = found.log_determinant + sums.readings * given.noise
-        return Evidence(
+        return MixedEvidence(
             value=-0.5 * float(square + log_size),
             common=0.5 * (share - 1.0),
             own=0.5 * np.sum(own_share - 1.0, axis=0),
             noise=-0.5 * float(sums.readings - misfit - effective),
         )
 
-    def posterior(self, given: Variances) -> Posterior:
+    def posterior(self, given: Variances) -> MixedPosterior:
         """The shared numbers given the residuals."""
         sums, w = self._sums, float(np.exp(-given.noise))
         size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
@@ -99,7 +99,7 @@ class Mixed:
         factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
         scaled = cho_solve(factor, size * pull, check_finite=False)
-        return Posterior(
+        return MixedPosterior(
             mean=size * scaled,
             root=size[:, None] * root,
             pull=pull,
@@ -111,14 +111,14 @@ class Mixed:
             + float(np.sum(np.linalg.slogdet(inner)[1])),
         )
 
-    def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[Predicted]:
+    def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         """Each set of groups, numbered as in ``groups``, as all others predict it."""
         found, w = self.posterior(given), float(np.exp(-given.noise))
         return [self._predicted(found, w, [self.groups[k] for k in one], one) for one in rows]
 
     def _predicted(
-        self, found: Posterior, w: float, groups: Sequence[np.ndarray], which: np.ndarray
-    ) -> Predicted:
+        self, found: MixedPosterior, w: float, groups: Sequence[np.ndarray], which: np.ndarray
+    ) -> LeftOutReadings:
         """By the inverse of the covariance of all readings: its block of the left-out ones, inverted, is their covariance."""
         size = [len(g) for g in groups]
         block = np.zeros(2 * (sum(size),))
@@ -135,7 +135,7 @@ class Mixed:
         information = block - through @ through.T
         covariance = np.linalg.inv(information)
         covariance = 0.5 * (covariance + covariance.T)
-        return Predicted(
+        return LeftOutReadings(
             rows=np.concatenate(groups), error=covariance @ np.concatenate(moved), covariance=covariance
         )
 
@@ -152,7 +152,7 @@ class _Sums(NamedTuple):
     readings: int
 
 
-class Posterior(NamedTuple):
+class MixedPosterior(NamedTuple):
     """The shared numbers given the residuals, and what left-out groups need."""
 
     mean: np.ndarray  #: (m,)
@@ -165,7 +165,7 @@ class Posterior(NamedTuple):
     log_determinant: float
 
 
-class Predicted(NamedTuple):
+class LeftOutReadings(NamedTuple):
     """Readings as other groups predict them, in units of their stated noise."""
 
     rows: np.ndarray  #: (k,)

@@ -18,14 +18,14 @@ LEAST = float(-np.log(constants.LEAST_SHARE))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Smooth:
+class SmoothFunctions:
     """The functions: m products of cosines over d conditions."""
 
     inputs: tuple[Input, ...]  #: (d,)
     orders: np.ndarray  #: (m, d) half waves of every function along every condition
 
     @classmethod
-    def over(cls, inputs: tuple[Input, ...]) -> Smooth:
+    def over(cls, inputs: tuple[Input, ...]) -> SmoothFunctions:
         """The functions that matter most at the shortest lengths."""
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
         for one in inputs:  # functions too small in some conditions are so in all: they never become many

@@ -12,7 +12,7 @@ import pandas as pd
 from mffit.linearised import LinearisedFit
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
-from mffit.linearised.smooth import Smooth
+from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points, main_path, make_points
 from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
@@ -26,7 +26,7 @@ from tir import Tyre
 class MissedChannel:
     """What the formula misses of a channel, how its runs scatter, and how far its coefficients may be off."""
 
-    smooth: Smooth  #: m functions
+    smooth: SmoothFunctions  #: m functions
     components: Components
     missed: np.ndarray
     """(m,) weights of the functions with the coefficients as they are in the file [unit of the channel]."""

@@ -14,7 +14,7 @@ import tir
 from mffit.errors import InputError
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
-from mffit.linearised.smooth import Smooth
+from mffit.linearised.smooth import SmoothFunctions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS
 from tir import Tyre
@@ -88,7 +88,7 @@ def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
     inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
     missed = np.array(own["missed"], dtype=float)
     return MissedChannel(
-        smooth=Smooth(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
+        smooth=SmoothFunctions(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
         components=Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])}),
         missed=missed,
         root=_array(own["root"], len(missed) + coefficients),

@@ -2,8 +2,10 @@
 
 The sweeps of a project are divided at random. The tyre is built without each part, and `mffit predict` says the forces of the
 part's readings. Printed for every channel: the errors of the file and of the best estimate, the share of readings inside their
-95 % intervals, and the usual half width over the error; the last also without the temperature of the readings. The errors of
-the rig, as each build found them, are taken off the readings.
+95 % intervals, and the usual half width over the error; all of it again without the temperature of the readings. The errors
+of the rig, as each build found them, are taken off the readings. The intervals hold what these errors may be, which readings of
+the same rig cannot show: with `--truth FILE.tir` the forces of the tyre that was drawn are compared instead, with the interval
+of the tyre's mean force.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 import mffit
+import tir
 from mffit import config as configuration
 from mffit.config.exclusion import ExcludeTable
 from mffit.constants import COVERAGE_FACTOR_95
@@ -24,6 +27,7 @@ from mffit.pipeline.inputs import read_points
 from mffit.points import Points
 from mffit.prediction.conditions import PATH
 from mffit.quantities import column, u_column
+from mffit.rig import Simulation
 from mffit.scatter import rms
 
 STATED = ("alpha_deg", "gamma_deg", "Fz_N", "kappa", "p_kPa", "V_mps")
@@ -54,15 +58,17 @@ def conditions(points: Points, stated: tuple[str, ...]) -> pd.DataFrame:
     return pd.DataFrame({name: points.condition(name) for name in stated} | {PATH: points.phi_t})
 
 
-def errors(points: Points, found: pd.DataFrame, channel: str) -> Found:
-    """The predictions of a channel against the readings at the tyre."""
-    measured = points.channel(channel)
-    return Found(
-        measured - found[column(channel)].to_numpy(),
-        found[u_column(channel)].to_numpy(),
-        measured - found[column(channel, "best")].to_numpy(),
-        found[f"u_{column(channel, 'run')}"].to_numpy(),
-    )
+def errors(points: Points, found: pd.DataFrame, channel: str, truth: tir.Tyre | None) -> Found:
+    """The predictions of a channel against the readings at the tyre, or against the true forces."""
+    file, best = (found[name].to_numpy() for name in (column(channel), column(channel, "best")))
+    if truth is None:
+        run = found[f"u_{column(channel, 'run')}"].to_numpy()
+        measured = points.channel(channel)
+        return Found(measured - file, found[u_column(channel)].to_numpy(), measured - best, run)
+    curved = bool(np.any(points.phi_t))
+    true = Simulation.of(truth, turn_slip=curved).readings(points, [channel])[channel]
+    u = found[f"u_{column(channel, 'best')}"].to_numpy()
+    return Found(true - file, np.hypot(u, best - file), true - best, u)
 
 
 def line(channel: str, parts: list[Found]) -> str:
@@ -82,6 +88,7 @@ def main() -> None:
     ask.add_argument("project", type=Path)
     ask.add_argument("--folds", type=int, default=8)
     ask.add_argument("--seed", type=int, default=5)
+    ask.add_argument("--truth", type=tir.read, help="property file of the drawn tyre")
     given = ask.parse_args()
     config = configuration.load(given.project)
     points = read_points(config).points
@@ -102,9 +109,9 @@ def main() -> None:
             for way, stated in ways.items():
                 table = mffit.predict(folder, conditions(held, stated))
                 for channel in result.prediction.channels:
-                    found[way].setdefault(channel, []).append(errors(held, table, channel))
+                    found[way].setdefault(channel, []).append(errors(held, table, channel, given.truth))
     for way, channels in found.items():
-        print(f"{len(points)} readings of {len(forward)} sweeps, errors rms [N], [Nm]{way}")
+        print(f"errors rms [N], [Nm], share inside 95 %, half width over error{way}")
         for channel, own in channels.items():
             print(line(channel, own))
 

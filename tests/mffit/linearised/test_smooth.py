@@ -7,13 +7,13 @@ import pytest
 
 from mffit.linearised import constants
 from mffit.linearised.inputs import Input
-from mffit.linearised.smooth import Smooth
+from mffit.linearised.smooth import SmoothFunctions
 
 ALPHA = Input("alpha", -0.2, 0.3, 0.1)
 LOAD = Input("Fz", 1000.0, 3000.0, 1000.0)
 
 
-def covariance(smooth: Smooth, at: np.ndarray, lengths: list[float]) -> np.ndarray:
+def covariance(smooth: SmoothFunctions, at: np.ndarray, lengths: list[float]) -> np.ndarray:
     """By the functions, between places (n, d); of all variance 1."""
     columns = smooth.columns(at)
     return (columns * np.exp(smooth.log_variance(np.array(lengths))[0])) @ columns.T
@@ -38,14 +38,14 @@ def reflected(one: Input, at: np.ndarray, length: float) -> np.ndarray:
 @pytest.mark.parametrize("length", [0.12, 0.2, 0.5])
 def test_functions_of_one_condition_have_a_squared_exponential_covariance(length):
     at = np.linspace(ALPHA.lower, ALPHA.upper, 9)
-    smooth = Smooth.over((ALPHA,))
+    smooth = SmoothFunctions.over((ALPHA,))
     found = covariance(smooth, at[:, None], [length])
     assert found == pytest.approx(reflected(ALPHA, at, length), abs=0.01)
 
 
 def test_shares_of_all_functions_are_the_whole_variance():
     """Those of products, with the constant and the smallest, which are left out."""
-    smooth = Smooth.over((ALPHA, LOAD))
+    smooth = SmoothFunctions.over((ALPHA, LOAD))
     shares = np.exp(smooth.log_variance(np.array([0.15, 1500.0]))[0])
     left = 1.0
     for one, length in ((ALPHA, 0.15), (LOAD, 1500.0)):
@@ -56,7 +56,7 @@ def test_shares_of_all_functions_are_the_whole_variance():
 
 
 def test_slopes_of_the_shares_are_their_differences():
-    smooth, at = Smooth.over((ALPHA, LOAD)), np.log([0.15, 1500.0])
+    smooth, at = SmoothFunctions.over((ALPHA, LOAD)), np.log([0.15, 1500.0])
     slopes = smooth.log_variance(np.exp(at))[1]
     for i, step in enumerate(1e-5 * np.eye(2)):
         rise = smooth.log_variance(np.exp(at + step))[0] - smooth.log_variance(np.exp(at - step))[0]
@@ -64,7 +64,7 @@ def test_slopes_of_the_shares_are_their_differences():
 
 
 def test_beyond_the_tested_range_the_functions_stay_and_likeness_fades():
-    smooth = Smooth.over((ALPHA, LOAD))
+    smooth = SmoothFunctions.over((ALPHA, LOAD))
     inside, end, beyond = [0.1, 2000.0], [0.3, 3000.0], [0.4, 3500.0]
     columns = smooth.columns(np.array([inside, end, beyond]))
     assert np.array_equal(columns[1], columns[2])
@@ -74,14 +74,14 @@ def test_beyond_the_tested_range_the_functions_stay_and_likeness_fades():
 
 
 def test_a_tyre_at_one_condition_has_no_functions():
-    smooth = Smooth.over(())
+    smooth = SmoothFunctions.over(())
     assert smooth.columns(np.empty((3, 0))).shape == (3, 0)
     assert np.array_equal(smooth.likeness(np.empty((3, 0)), np.empty(0)), np.ones(3))
 
 
 def test_many_conditions_keep_to_the_largest_functions():
     """Ten conditions would have a billion products."""
-    smooth = Smooth.over(tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10)))
+    smooth = SmoothFunctions.over(tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10)))
     assert len(smooth.orders) == constants.FUNCTIONS
     shares = smooth.log_variance(np.full(10, 1.0))[0]
     assert np.all(smooth.orders.sum(axis=1) > 0)
