@@ -58,13 +58,12 @@ class Mixed:
         """The evidence of some variances."""
         found, sums = self.posterior(given), self._sums
         w, gain = np.exp(-given.noise), found.gain
-        size, own_size = np.exp(given.common), np.exp(given.own)
+        own_size = np.exp(given.own)
         own = w * (
             np.einsum("gqr,gr->gq", found.own, sums.own_pull)
             - np.einsum("gmq,m->gq", found.through, found.mean)
         )
-        flat = found.through.transpose(1, 0, 2).reshape(len(size), -1)
-        spread = np.sum((found.root.T @ flat) ** 2, axis=0).reshape(own.shape)
+        spread = np.sum((found.root.T @ np.hstack(found.through)) ** 2, axis=0).reshape(own.shape)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
         square = (
             w * sums.square
@@ -92,9 +91,7 @@ class Mixed:
         own = np.linalg.inv(inner) * own_size[:, None] * own_size
         through = sums.across @ own
         m = len(size)
-        left = through.transpose(1, 0, 2).reshape(m, -1)
-        right = sums.across.transpose(1, 0, 2).reshape(m, -1)
-        information = w * sums.common - w * w * left @ right.T
+        information = w * sums.common - w * w * np.hstack(through) @ np.hstack(sums.across).T
         pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
         factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
