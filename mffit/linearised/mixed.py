@@ -63,7 +63,7 @@ class Mixed:
             np.einsum("gqr,gr->gq", found.own, sums.own_pull)
             - np.einsum("gmq,m->gq", found.through, found.mean)
         )
-        spread = np.sum((found.root.T @ np.hstack(found.through)) ** 2, axis=0).reshape(own.shape)
+        spread = np.sum((found.root.T @ np.hstack([*found.through])) ** 2, axis=0).reshape(own.shape)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
         square = (
             w * sums.square
@@ -91,7 +91,7 @@ class Mixed:
         own = np.linalg.inv(inner) * own_size[:, None] * own_size
         through = sums.across @ own
         m = len(size)
-        information = w * sums.common - w * w * np.hstack(through) @ np.hstack(sums.across).T
+        information = w * sums.common - w * w * np.hstack([*through]) @ np.hstack([*sums.across]).T
         pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
         factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
