@@ -27,7 +27,18 @@ if any(Path(_TIR.origin).parents[1].glob("mffit_tir-*.dist-info")):
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu
-    from mffit.pipeline import align, build, compare, diagnose, plan, show, spin, verify, write_tydex
+    from mffit.pipeline import (
+        align,
+        build,
+        compare,
+        diagnose,
+        plan,
+        predict,
+        show,
+        spin,
+        verify,
+        write_tydex,
+    )
 
     __version__: str
 
@@ -38,6 +49,7 @@ __all__ = [
     "convert",
     "diagnose",
     "plan",
+    "predict",
     "show",
     "spin",
     "verify",

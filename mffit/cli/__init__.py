@@ -17,6 +17,7 @@ from mffit.cli import (
     measuring,
     opening,
     planning,
+    predicting,
     projects,
     rigs,
 )
@@ -31,6 +32,7 @@ COMMANDS = (
     diagnosing.diagnose,
     comparing.compare,
     planning.plan,
+    predicting.predict,
     files.check,
     files.show,
     opening.open_window,

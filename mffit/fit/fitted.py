@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import StageRecord
 from mffit.least_squares import FreeNumber, solve
+from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME
 
@@ -45,6 +48,24 @@ class Fitted:
     def simulation(self) -> Simulation:
         """The fitted tyre on the rig as fitted."""
         return self.problem.simulation
+
+
+def left_by(fitted: Fitted) -> LinearisedFit:
+    """What a fit leaves of its points, as one linear model.
+
+    A number at a bound stays there. One without a prior has half the width of the values that tyres have.
+    """
+    numbers = []
+    for number in fitted.problem.starting_here(fitted.numbers):
+        if number.name not in fitted.at_bound:
+            known = np.isfinite(number.spread)
+            width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
+            spread = number.spread if known else 0.5 * width
+            numbers.append(Uncertain(number.name, spread))
+    held = {**fitted.held, **fitted.held_rig}
+    numbers += [Uncertain(name, u) for name, u in held.items() if u > 0.0]
+    problem = fitted.problem
+    return linearised(problem.points, problem.simulation, problem.sigma, numbers)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

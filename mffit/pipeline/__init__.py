@@ -9,6 +9,7 @@ from mffit.pipeline.intake import init_from, project_of, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
+from mffit.pipeline.predicting import predict
 from mffit.pipeline.showing import show
 from mffit.pipeline.verifying import verify
 
@@ -21,6 +22,7 @@ __all__ = [
     "fleet",
     "init_from",
     "plan",
+    "predict",
     "project_of",
     "show",
     "spin",

@@ -10,6 +10,7 @@ import pandas as pd
 import tomli_w
 
 from mffit import config as configuration
+from mffit import prediction
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.fit import name_at_temperature
@@ -26,7 +27,7 @@ from mffit.suspicion import marks
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
 REPORT = "report.html"
-WRITTEN = ("result.json", "information.json", "points.csv", REPORT)
+WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", REPORT)
 """Files that every build writes beside its property files."""
 
 
@@ -47,6 +48,9 @@ def write_build(
         as_json.write(folder / "result.json", as_json.build(result))
         as_json.write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
+        if result.prediction is not None:
+            fitted = result.files["turn-slip" if "turn-slip" in result.files else "normal"]
+            prediction.write(folder / prediction.FILE, result.prediction, result.tir_path, fitted)
         if stretches:
             write_csv(stretch_table(stretches), folder / "stretches.csv")
         (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))

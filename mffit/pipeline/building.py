@@ -30,6 +30,7 @@ from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
 from mffit.points.loading import Reading
+from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult
 from tir import Tyre
@@ -85,6 +86,10 @@ def build(
         trust, left = judged(
             config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
         )
+        progress("finding what the formula misses")
+        search = fitted.search
+        assert search is not None
+        left_by_formula = fitting.left_by(search)
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
@@ -117,6 +122,7 @@ def build(
         seconds=time.perf_counter() - began,
         trust=trust,
         remains=left,
+        prediction=predictor(reading.points, left_by_formula),
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,

@@ -17,6 +17,7 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
+from mffit.prediction import Predictor
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
@@ -42,6 +43,7 @@ class BuildResult(Brief):
     remains: Remains = NOTHING_REMAINS  #: what the fit leaves of the readings
     made: Made = field(default_factory=made_now)
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
+    prediction: Predictor | None = None  #: of forces at any conditions
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
     campaigns: tuple[

@@ -74,7 +74,7 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
     width = len(head.headings)
     if not data:
         raise InputError(
-            "has headings but no data; add one row per point, or remove the [[sweep]] of this file",
+            "has headings but no data; add one row per point",
             file=path,
             line=heading_line,
         )

@@ -8,6 +8,7 @@ from mffit.report.text.direct import alignment_table, budget_table, spin_summary
 from mffit.report.text.fleet import fleet_summary
 from mffit.report.text.many import lacking, many_line, many_summary
 from mffit.report.text.plan import plan_summary
+from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary
 from mffit.report.text.verification import verification_summary
 
@@ -24,6 +25,7 @@ __all__ = [
     "many_summary",
     "models_written",
     "plan_summary",
+    "prediction_summary",
     "sniff_summary",
     "spin_summary",
     "verification_summary",

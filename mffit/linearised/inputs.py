@@ -1,0 +1,129 @@
+"""The conditions over which a formula may miss a tyre smoothly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.linearised import constants
+from mffit.points import Points, levels
+
+LEVELS: Mapping[str, levels.LevelKind] = {
+    "alpha": levels.SIDESLIP,
+    "kappa": levels.SLIP,
+    "Fz": levels.LOAD,
+    "gamma": levels.CAMBER,
+    "p": levels.PRESSURE,
+}
+"""Settings of a test plan and the tolerance of their levels."""
+ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
+"""Further conditions, each used where it varies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """One condition, in SI units."""
+
+    name: str  #: field of :class:`mffit.points.Points`, or ``sense``
+    lower: float
+    upper: float  #: the tested range
+    spacing: float  #: distance of neighbouring settings; nothing shorter is smooth
+    averaged: tuple[float, ...] = ()
+    """Values over which a prediction averages that does not state the condition; empty: it is stated always."""
+
+    @property
+    def width(self) -> float:
+        """Width of the tested range."""
+        return self.upper - self.lower
+
+
+def inputs_of(points: Points) -> tuple[Input, ...]:
+    """The conditions that vary in these points."""
+    found = []
+    for name, kind in LEVELS.items():
+        values = getattr(points, name)
+        steps = levels.count(values, kind) - 1
+        if steps < 1:
+            continue
+        most = int(constants.DIVISIONS_OF_A_SWEEP)
+        widest = max(_width(values[rows]) for rows in _runs(points))
+        is_swept = widest > constants.STEPS_OF_A_SWEEP * np.ptp(values) / steps
+        found.append(_input(name, values, most if is_swept else min(steps, most)))
+    for name in ALSO:
+        values = np.asarray(getattr(points, name), dtype=float)
+        if not np.all(np.isfinite(values)) or np.allclose(values, values[0]):
+            continue
+        if name == "T":
+            usual = tuple(np.percentile(values, constants.USUAL_TEMPERATURES).tolist())
+            found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), usual))
+        else:
+            found.append(_input(name, values, 1))
+    if "T" not in [one.name for one in found]:  # a sweep up and back differs mostly by its warmth
+        senses = sense(points, swept_of(points, tuple(found)))
+        if np.any(senses > 0.0) and np.any(senses < 0.0):
+            found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
+    return tuple(found)
+
+
+def _input(name: str, values: np.ndarray, steps: int, averaged: tuple[float, ...] = ()) -> Input:
+    low, high = float(values.min()), float(values.max())
+    return Input(name, low, high, (high - low) / steps, averaged)
+
+
+def _runs(points: Points) -> list[np.ndarray]:
+    return [np.flatnonzero(points.sweep == k) for k in np.unique(points.sweep)]
+
+
+def _width(values: np.ndarray) -> float:
+    """How far a run moves a condition."""
+    low, high = np.percentile(values, constants.ENDS_OF_A_RUN)
+    return float(high - low)
+
+
+def swept_of(points: Points, inputs: tuple[Input, ...]) -> dict[int, str]:
+    """By number of a sweep, the condition that moves most in it, over its tested range."""
+    out = {}
+    steered = [one for one in inputs if one.name in LEVELS and one.name != "p"]
+    for k in np.unique(points.sweep).tolist():
+        rows = points.sweep == k
+        moved = {one.name: np.ptp(getattr(points, one.name)[rows]) / one.width for one in steered}
+        out[k] = max(moved, key=lambda name: moved[name], default="alpha")
+    return out
+
+
+def sense(points: Points, swept: Mapping[int, str]) -> np.ndarray:
+    """Sense (n,) of moving sweeps: 1 where the swept condition rises, -1 where it falls; 0 at steady points."""
+    out = np.zeros(len(points))
+    for k, name in swept.items():
+        rows = np.flatnonzero((points.sweep == k) & points.continuous)
+        if len(rows) > 2:
+            out[rows] = np.sign(np.gradient(getattr(points, name)[rows]))
+    return out
+
+
+def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
+    """The conditions (n, d); one that a run holds is its mean over that run, so that its control does not count."""
+    out = np.empty((len(points), len(inputs)))
+    for i, one in enumerate(inputs):
+        if one.name == "sense":
+            out[:, i] = sense(points, swept_of(points, inputs))
+            continue
+        out[:, i] = getattr(points, one.name)
+        if one.name != "T":
+            for rows in _runs(points):
+                if _width(out[rows, i]) < one.spacing:
+                    out[rows, i] = out[rows, i].mean()
+    return out
+
+
+def along(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
+    """Place (n,) of every point within the tested range of what its sweep moves, from 0 to 1."""
+    by_name = {one.name: one for one in inputs}
+    out = np.zeros(len(points))
+    for k, name in swept_of(points, inputs).items():
+        rows = points.sweep == k
+        if name in by_name:
+            out[rows] = (getattr(points, name)[rows] - by_name[name].lower) / by_name[name].width
+    return out

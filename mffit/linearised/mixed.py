@@ -1,0 +1,178 @@
+"""A linear model of residuals: numbers that all groups share, numbers that each group has of its own, and noise; all Gaussian.
+
+Whatever is asked of it (evidence, posterior, prediction of groups that are left out) comes from sums over groups, so it costs
+as much for many readings of a group as for few.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
+
+
+class Variances(NamedTuple):
+    """Logarithms of the variances of the priors and of the noise."""
+
+    common: np.ndarray  #: (m,) of the shared numbers
+    own: np.ndarray  #: (q,) of the numbers of every group
+    noise: float  #: over that of the readings as stated
+
+
+class MixedEvidence(NamedTuple):
+    """Logarithm of the probability of the residuals, less a constant, and its derivatives by :class:`Variances`."""
+
+    value: float
+    common: np.ndarray  #: (m,)
+    own: np.ndarray  #: (q,)
+    noise: float
+
+
+@dataclass(frozen=True, eq=False)
+class Mixed:
+    """Residuals (n,) = common @ shared numbers + own @ numbers of the group + noise, each row in units of its stated noise."""
+
+    residual: np.ndarray  #: (n,)
+    common: np.ndarray  #: (n, m)
+    own: np.ndarray  #: (n, q)
+    groups: Sequence[np.ndarray]  #: rows of every group
+
+    @cached_property
+    def _sums(self) -> _Sums:
+        parts = [(self.common[g], self.own[g], self.residual[g]) for g in self.groups]
+        return _Sums(
+            common=sum((x.T @ x for x, _, _ in parts), np.zeros(2 * (self.common.shape[1],))),
+            pull=sum((x.T @ r for x, _, r in parts), np.zeros(self.common.shape[1])),
+            across=np.array([x.T @ z for x, z, _ in parts]),
+            own=np.array([z.T @ z for _, z, _ in parts]),
+            own_pull=np.array([z.T @ r for _, z, r in parts]),
+            square=float(sum(r @ r for *_, r in parts)),
+            readings=sum(len(r) for *_, r in parts),
+        )
+
+    def evidence(self, given: Variances) -> MixedEvidence:
+        """The evidence of some variances."""
+        found, sums = self.posterior(given), self._sums
+        w, gain = np.exp(-given.noise), found.gain
+        own_size = np.exp(given.own)
+        own = w * (
+            np.einsum("gqr,gr->gq", found.own, sums.own_pull)
+            - np.einsum("gmq,m->gq", found.through, found.mean)
+        )
+        spread = np.sum((found.root.T @ np.hstack([*found.through])) ** 2, axis=0).reshape(own.shape)
+        own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
+        square = (
+            w * sums.square
+            - found.mean @ found.pull
+            - w * w * np.einsum("gq,gqr,gr->", sums.own_pull, found.own, sums.own_pull)
+        )
+        scaled = found.scaled
+        share = gain + scaled**2
+        own_share = (own_variance + own**2) / own_size
+        misfit = square - scaled @ scaled - np.sum(own**2 / own_size)
+        effective = np.sum(1.0 - gain) + np.sum(1.0 - own_variance / own_size)
+        log_size = found.log_determinant + sums.readings * given.noise
+        return MixedEvidence(
+            value=-0.5 * float(square + log_size),
+            common=0.5 * (share - 1.0),
+            own=0.5 * np.sum(own_share - 1.0, axis=0),
+            noise=-0.5 * float(sums.readings - misfit - effective),
+        )
+
+    def posterior(self, given: Variances) -> MixedPosterior:
+        """The shared numbers given the residuals."""
+        sums, w = self._sums, float(np.exp(-given.noise))
+        size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
+        inner = np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size
+        own = np.linalg.inv(inner) * own_size[:, None] * own_size
+        through = sums.across @ own
+        m = len(size)
+        information = w * sums.common - w * w * np.hstack([*through]) @ np.hstack([*sums.across]).T
+        pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
+        factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
+        root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
+        scaled = cho_solve(factor, size * pull, check_finite=False)
+        return MixedPosterior(
+            mean=size * scaled,
+            root=size[:, None] * root,
+            pull=pull,
+            scaled=scaled,
+            gain=np.sum(root**2, axis=1),
+            own=own,
+            through=through,
+            log_determinant=2.0 * float(np.sum(np.log(np.diag(factor[0]))))
+            + float(np.sum(np.linalg.slogdet(inner)[1])),
+        )
+
+    def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
+        """Each set of groups, numbered as in ``groups``, as all others predict it."""
+        found, w = self.posterior(given), float(np.exp(-given.noise))
+        return [self._predicted(found, w, [self.groups[k] for k in one], one) for one in rows]
+
+    def _predicted(
+        self, found: MixedPosterior, w: float, groups: Sequence[np.ndarray], which: np.ndarray
+    ) -> LeftOutReadings:
+        """By the inverse of the covariance of all readings: its block of the left-out ones, inverted, is their covariance."""
+        size = [len(g) for g in groups]
+        block = np.zeros(2 * (sum(size),))
+        whitened, moved = [], []
+        begin = 0
+        for k, g in zip(which, groups, strict=True):
+            z, x, r = self.own[g], self.common[g], self.residual[g]
+            inverse = w * np.eye(len(g)) - w * w * z @ found.own[k] @ z.T
+            block[begin : begin + len(g), begin : begin + len(g)] = inverse
+            begin += len(g)
+            whitened.append(inverse @ x)
+            moved.append(inverse @ (r - x @ found.mean))
+        through = np.concatenate(whitened) @ found.root
+        information = block - through @ through.T
+        covariance = np.linalg.inv(information)
+        covariance = 0.5 * (covariance + covariance.T)
+        return LeftOutReadings(
+            rows=np.concatenate(groups), error=covariance @ np.concatenate(moved), covariance=covariance
+        )
+
+
+class _Sums(NamedTuple):
+    """Sums of products over the rows."""
+
+    common: np.ndarray  #: (m, m)
+    pull: np.ndarray  #: (m,)
+    across: np.ndarray  #: (groups, m, q)
+    own: np.ndarray  #: (groups, q, q)
+    own_pull: np.ndarray  #: (groups, q)
+    square: float
+    readings: int
+
+
+class MixedPosterior(NamedTuple):
+    """The shared numbers given the residuals, and what left-out groups need."""
+
+    mean: np.ndarray  #: (m,)
+    root: np.ndarray  #: (m, m) whose product with its transpose is the covariance
+    pull: np.ndarray  #: (m,)
+    scaled: np.ndarray  #: (m,) the mean over the prior's standard deviation
+    gain: np.ndarray  #: (m,) variance over that of the prior
+    own: np.ndarray  #: (groups, q, q) covariance of the groups' numbers if the shared ones were known
+    through: np.ndarray  #: (groups, m, q)
+    log_determinant: float
+
+
+class LeftOutReadings(NamedTuple):
+    """Readings as other groups predict them, in units of their stated noise."""
+
+    rows: np.ndarray  #: (k,)
+    error: np.ndarray  #: (k,) measured less predicted
+    covariance: np.ndarray  #: (k, k) of the error: prediction, run to run and noise
+
+    @property
+    def log_density(self) -> float:
+        """Logarithm of the probability of the readings as predicted, less a constant."""
+        factor = cho_factor(self.covariance, lower=True)
+        return -0.5 * float(self.error @ cho_solve(factor, self.error)) - float(
+            np.sum(np.log(np.diag(factor[0])))
+        )

@@ -1,0 +1,78 @@
+"""Smooth functions of several conditions, with a Gaussian prior of few numbers.
+
+Products of cosines over the tested range with a little room around it, as in a reduced-rank Gaussian process with a squared
+exponential covariance (Solin and Sarkka 2020, Statistics and Computing 30, 419), so that only variances change with size and
+lengths. There is no constant among them: that belongs to the zeros of the rig.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.linearised import constants
+from mffit.linearised.inputs import Input
+
+LEAST = float(-np.log(constants.LEAST_SHARE))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SmoothFunctions:
+    """The functions: m products of cosines over d conditions."""
+
+    inputs: tuple[Input, ...]  #: (d,)
+    orders: np.ndarray  #: (m, d) half waves of every function along every condition
+
+    @classmethod
+    def over(cls, inputs: tuple[Input, ...]) -> SmoothFunctions:
+        """The functions that matter most at the shortest lengths."""
+        orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
+        for one in inputs:  # functions too small in some conditions are so in all: they never become many
+            order = np.arange(_most_half_waves(one) + 1)
+            size = (size[:, None] - 0.5 * (np.pi * order * one.spacing / _length(one)) ** 2).ravel()
+            orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
+            orders, size = orders[size > -LEAST], size[size > -LEAST]
+        largest = np.argsort(-size[1:], kind="stable")[: constants.FUNCTIONS]
+        return cls(inputs, orders[1:][largest])
+
+    def columns(self, at: np.ndarray) -> np.ndarray:
+        """Values (n, m) at conditions (n, d); beyond the tested range those at its end."""
+        out = np.ones((len(at), len(self.orders)))
+        for i, one in enumerate(self.inputs):
+            inside = np.clip(at[:, i], one.lower, one.upper)
+            place = (inside - one.lower + constants.ROOM * one.width) / _length(one)
+            order = np.arange(int(self.orders[:, i].max(initial=0)) + 1)
+            waves = np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0)
+            out *= waves[:, self.orders[:, i]]
+        return out
+
+    def log_variance(self, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Logarithm of the share (m,) of every function in the variance, and its derivatives (m, d) by those of the lengths."""
+        size = np.zeros(len(self.orders))
+        slope = np.zeros((len(self.orders), len(self.inputs)))
+        for i, one in enumerate(self.inputs):
+            order = np.arange(_most_half_waves(one) + 1)
+            exponent = -0.5 * (np.pi * order * lengths[i] / _length(one)) ** 2
+            total = float(np.log(np.sum(np.exp(exponent))))
+            share = np.exp(exponent - total)
+            size += (exponent - total)[self.orders[:, i]]
+            slope[:, i] = 2.0 * (exponent - share @ exponent)[self.orders[:, i]]
+        return size, slope
+
+    def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """Correlation (n,) of what is missed at conditions (n, d) with that at the nearest tested ones; 1 within their range."""
+        lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
+        beyond = (at - np.clip(at, lower, upper)) / lengths
+        found: np.ndarray = np.exp(-0.5 * np.sum(beyond**2, axis=1))
+        return found
+
+
+def _length(one: Input) -> float:
+    """Range over which the functions of a condition run."""
+    return (1.0 + 2.0 * constants.ROOM) * one.width
+
+
+def _most_half_waves(one: Input) -> int:
+    """Half waves of the functions that matter at the shortest length."""
+    return int(np.ceil(np.sqrt(2.0 * LEAST) / np.pi * _length(one) / one.spacing))

@@ -1,0 +1,159 @@
+"""What a build knows about the forces of its tyre at any conditions."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from mffit.linearised import LinearisedFit
+from mffit.linearised.components import Components
+from mffit.linearised.inputs import Input
+from mffit.linearised.smooth import SmoothFunctions
+from mffit.points import Points, main_path, make_points
+from mffit.points.points import OF_SI
+from mffit.prediction.conditions import PATH, UNITS
+from mffit.quantities import column, u_column
+from mffit.rig import Simulation
+from mffit.rig_errors import error_of
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MissedChannel:
+    """What the formula misses of a channel, how its runs scatter, and how far its coefficients may be off."""
+
+    smooth: SmoothFunctions  #: m functions
+    components: Components
+    missed: np.ndarray
+    """(m,) weights of the functions with the coefficients as they are in the file [unit of the channel]."""
+    root: np.ndarray
+    """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of the coefficients."""
+    noise: float  #: of a usual reading [unit of the channel]
+    size: float  #: rms of what the formula misses at the readings [unit of the channel]
+
+    def at(self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the file misses (n,), and its variance (n,).
+
+        The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
+        off counts in its variance.
+
+        ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by the coefficients, ``path`` (n,) the correlation
+        of what the formula misses with that on the measured path.
+        """
+        likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
+        columns = np.hstack([likeness[:, None] * self.smooth.columns(settings), slopes])
+        known = np.sum((columns @ self.root) ** 2, axis=1)
+        missed = columns[:, : len(self.missed)] @ self.missed
+        return missed, known + (1.0 - likeness**2) * self.components.missed**2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Predictor:
+    """What the file of a build misses at any conditions, with its uncertainty."""
+
+    path: float  #: path curvature of most readings [1/m], taken where none is stated; 0 on a flat track
+    names: tuple[str, ...]  #: (k,) of the uncertain coefficients
+    channels: Mapping[str, MissedChannel]
+
+    @property
+    def curved(self) -> bool:
+        """Whether the readings were taken on a curved path."""
+        return self.path != 0.0
+
+    def predict(self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame) -> pd.DataFrame:
+        """The conditions with the forces of the file and the best estimates, all with standard uncertainties.
+
+        Parameters
+        ----------
+        tyre : the plain file of the build
+        fitted : the file of its fitted model, which is the plain one unless that is meant for turn slip off on a disc
+        conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; others of a sweep and ``phi_t_per_m`` are optional. In
+            ISO-W.
+
+        Returns
+        -------
+        DataFrame
+            The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
+        """
+        points = self._points(tyre, conditions)
+        plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
+        simulation = Simulation.of(fitted, turn_slip=self.curved)
+        forces, slopes = simulation.sensitivities(points, self.names, self.channels)
+        found = conditions.copy()
+        for name, channel in self.channels.items():
+            missed, variance, unstated = self._missed(channel, points, slopes[name])
+            best = forces[name] + missed
+            run = variance + unstated + channel.components.run_variance(best) + channel.noise**2
+            found[column(name)] = plain[name]
+            found[u_column(name)] = np.sqrt((best - plain[name]) ** 2 + run)
+            found[column(name, "best")] = best
+            found[f"u_{column(name, 'best')}"] = np.sqrt(variance)
+            found[f"u_{column(name, 'run')}"] = np.sqrt(run)
+        return found
+
+    def _points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
+        """The conditions as points; a temperature that is not stated is NaN, all others are nominal then."""
+
+        def stated(name: str, otherwise: float) -> np.ndarray:
+            if name not in conditions:
+                return np.full(len(conditions), otherwise)
+            values = conditions[name].to_numpy(dtype=float)
+            return np.where(np.isfinite(values), values / OF_SI.get(UNITS[name], 1.0), otherwise)
+
+        return make_points(
+            stated("alpha_deg", np.nan),
+            stated("gamma_deg", np.nan),
+            stated("Fz_N", np.nan),
+            kappa=stated("kappa", 0.0),
+            p=stated("p_kPa", float(tyre["NOMPRES"])),
+            V=stated("V_mps", float(tyre["LONGVL"])),
+            phi_t=stated(PATH, self.path) if self.curved else 0.0,
+            T=stated("T_degC", np.nan),
+        )
+
+    def _missed(
+        self, channel: MissedChannel, points: Points, slopes: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What the file misses (n,), its variance (n,), and the variance (n,) over what the conditions do not state."""
+        path = self._of_path(channel, points)
+        found = [channel.at(settings, slopes, path) for settings in _settings(points, channel.smooth.inputs)]
+        means, variances = (np.array(own) for own in zip(*found, strict=True))
+        return means.mean(axis=0), variances.mean(axis=0), means.var(axis=0)
+
+    def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
+        """Correlation (n,) of what the formula misses with that on the measured path, as over a length of its curvature."""
+        if not self.curved or any(one.name == "phi_t" for one in channel.smooth.inputs):
+            return np.ones(len(points))
+        found: np.ndarray = np.exp(-0.5 * (points.phi_t / self.path - 1.0) ** 2)
+        return found
+
+
+def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
+    """The conditions (n, d) with every combination of the values of those that are not stated."""
+    unstated = np.full(len(points), np.nan)
+    stated = [getattr(points, one.name, unstated) for one in inputs]
+    for values in itertools.product(*(one.averaged or (np.nan,) for one in inputs)):
+        columns = [np.where(np.isfinite(own), own, value) for own, value in zip(stated, values, strict=True)]
+        yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
+
+
+def predictor(points: Points, left: LinearisedFit) -> Predictor:
+    """What a build knows, for its folder.
+
+    Parameters
+    ----------
+    points : of the build
+    left : what its fitted model leaves of them
+    """
+    of_tyre = [i for i, number in enumerate(left.numbers) if error_of(number.name) is None]
+    channels = {}
+    for name, own in left.channels.items():
+        m = len(own.smooth.orders)
+        found = own.posterior
+        root = np.vstack([found.root[:m], own.turn[of_tyre] @ found.root[m:]])
+        channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
+    return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels)

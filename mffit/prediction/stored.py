@@ -1,0 +1,112 @@
+"""``prediction.json``: what ``mffit predict`` needs of a build, in its folder."""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tir
+from mffit.errors import InputError
+from mffit.linearised.components import Components
+from mffit.linearised.inputs import Input
+from mffit.linearised.smooth import SmoothFunctions
+from mffit.prediction.predictor import MissedChannel, Predictor
+from mffit.quantities import CHANNELS
+from tir import Tyre
+from tir.parameters import BY_NAME
+
+FILE = "prediction.json"
+ABOUT = "What mffit predict needs; arrays are base64 of little-endian numbers, row after row."
+
+
+def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
+    """Write what is known; ``file`` is the plain property file in the same folder, ``fitted`` that of the fitted model."""
+    content = {
+        "about": ABOUT,
+        "file": file,
+        "fitted": fitted,
+        "phi_t_per_m": found.path,
+        "coefficients": found.names,
+        "channels": {
+            name: {
+                "inputs": [asdict(one) for one in own.smooth.inputs],
+                "orders": own.smooth.orders.tolist(),
+                "components": asdict(own.components),
+                "missed": own.missed.tolist(),
+                "root": _text(own.root),
+                "noise": own.noise,
+                "size": own.size,
+            }
+            for name, own in found.channels.items()
+        },
+    }
+    path.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
+    """What is known, the plain file and that of the fitted model, of the folder of a build.
+
+    Raises
+    ------
+    InputError
+        The folder is not that of a build that states what it knows.
+    TirError
+        A property file of the build is missing or damaged.
+    """
+    path = folder / FILE
+    if not path.exists():
+        sentence = (
+            f"has no {FILE}; name the folder of a build, and build again if it is of an earlier version"
+        )
+        raise InputError(sentence, file=folder)
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse)
+        known, names = _predictor(content), [str(content[key]) for key in ("file", "fitted")]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
+        raise InputError("is not as a build writes it; build the tyre again", file=path) from None
+    file, fitted = (tir.read(folder / name) for name in names)
+    return known, file, fitted
+
+
+def _predictor(content: dict[str, Any]) -> Predictor:
+    names, channels = tuple(content["coefficients"]), content["channels"]
+    if not (set(names) <= set(BY_NAME) and set(channels) <= set(CHANNELS)):
+        raise ValueError("an unknown name")
+    return Predictor(
+        path=float(content["phi_t_per_m"]),
+        names=names,
+        channels={name: _channel(own, len(names)) for name, own in channels.items()},
+    )
+
+
+def _channel(own: dict[str, Any], coefficients: int) -> MissedChannel:
+    inputs = tuple(Input(**{**one, "averaged": tuple(one["averaged"])}) for one in own["inputs"])
+    missed = np.array(own["missed"], dtype=float)
+    return MissedChannel(
+        smooth=SmoothFunctions(inputs, np.array(own["orders"], dtype=int).reshape(len(missed), len(inputs))),
+        components=Components(**{**own["components"], "lengths": tuple(own["components"]["lengths"])}),
+        missed=missed,
+        root=_array(own["root"], len(missed) + coefficients),
+        noise=float(own["noise"]),
+        size=float(own["size"]),
+    )
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"{constant} is no number")
+
+
+def _text(values: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def _array(text: str, rows: int) -> np.ndarray:
+    values = np.frombuffer(base64.b64decode(text), dtype="<f4").astype(float)
+    if not np.all(np.isfinite(values)):
+        raise ValueError("a number is not finite")
+    return values.reshape(rows, len(values) // max(rows, 1))

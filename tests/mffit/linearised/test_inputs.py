@@ -1,0 +1,88 @@
+"""Which conditions a formula may miss a tyre over, read off a test."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.linearised.inputs import along, inputs_of, sense, settings_of, swept_of
+from mffit.points import Points, make_points
+
+UP = np.linspace(-0.1, 0.1, 21)
+LOADS = (1000.0, 2000.0, 3000.0)
+
+
+def programme(**fields: object) -> Points:
+    """Sideslip sweeps at three loads, which wander by 2 %; two cambers, each with its own sweep."""
+    random = np.random.default_rng(1)
+    sweeps = [(load, gamma) for gamma in (0.0, 0.05) for load in LOADS]
+    n = len(UP)
+    given = {
+        "p": 200e3,
+        "V": 10.0,
+        "phi_t": 0.0,
+        "sweep": np.repeat(np.arange(len(sweeps)), n),
+        "sweep_names": [f"s{k}" for k in range(len(sweeps))],
+    } | fields
+    return make_points(
+        np.tile(UP, len(sweeps)),
+        np.repeat([gamma for _, gamma in sweeps], n),
+        np.repeat([load for load, _ in sweeps], n) * (1.0 + 0.02 * random.standard_normal(n * len(sweeps))),
+        **given,
+    )
+
+
+def test_what_varies_is_an_input_with_the_distance_of_its_settings():
+    found = {one.name: one for one in inputs_of(programme())}
+    assert set(found) == {"alpha", "Fz", "gamma"}
+    assert (found["alpha"].lower, found["alpha"].upper) == (-0.1, 0.1)
+    assert found["alpha"].spacing == pytest.approx(0.2 / 12.0)  # it is swept
+    assert found["Fz"].width / found["Fz"].spacing == pytest.approx(2.0)
+    assert found["gamma"].spacing == pytest.approx(0.05)
+
+
+def test_a_setting_that_a_run_holds_does_not_wander_within_it():
+    points = programme()
+    inputs = inputs_of(points)
+    at = settings_of(points, inputs)
+    load = [one.name for one in inputs].index("Fz")
+    for k in range(6):
+        rows = points.sweep == k
+        assert np.ptp(at[rows, load]) == 0.0
+        assert at[rows, load][0] == pytest.approx(points.Fz[rows].mean())
+    assert np.array_equal(at[:, 0], points.alpha)
+
+
+def test_where_a_run_stands_along_what_it_sweeps():
+    points = programme()
+    inputs = inputs_of(points)
+    assert set(swept_of(points, inputs).values()) == {"alpha"}
+    assert along(points, inputs) == pytest.approx(np.tile(np.linspace(0.0, 1.0, 21), 6))
+
+
+def test_temperature_takes_the_place_of_the_sense():
+    back = np.tile(np.r_[np.linspace(-0.1, 0.1, 11), np.linspace(0.1, -0.1, 11)[1:]], 6)
+    moving = programme().replace(alpha=back, continuous=np.ones(126, dtype=bool))
+    last = inputs_of(moving)[-1]
+    assert (last.name, last.averaged) == ("sense", (-1.0, 1.0))
+    senses = sense(moving, dict.fromkeys(range(6), "alpha")).reshape(6, 21)
+    assert np.all(senses[:, :10] == 1.0)
+    assert np.all(senses[:, 11:] == -1.0)
+    assert "sense" not in [
+        one.name for one in inputs_of(moving.replace(continuous=np.zeros(126, dtype=bool)))
+    ]
+    warm = inputs_of(moving.replace(T=np.linspace(40.0, 60.0, 126)))[-1]
+    assert warm.name == "T"
+    assert warm.averaged == pytest.approx((42.0, 50.0, 58.0))
+
+
+def test_a_temperature_that_was_measured_in_part_is_no_input():
+    T = np.linspace(40.0, 60.0, 126)
+    T[3] = np.nan
+    assert "T" not in [one.name for one in inputs_of(programme(T=T))]
+
+
+def test_two_paths_and_both_directions_are_inputs():
+    half = np.repeat([1, -1], 63)
+    found = [one.name for one in inputs_of(programme(phi_t=0.75 * half, direction=half))]
+    assert found[-2:] == ["phi_t", "direction"]

@@ -1,0 +1,90 @@
+"""What a fit leaves of drawn readings, with known parts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from small_rigs import truth
+
+from mffit.linearised import LinearisedChannel, Uncertain, linearised
+from mffit.points import Points, make_points
+from mffit.rig import Simulation
+
+NOISE, OFFSET, MISSED = 5.0, 20.0, 60.0
+RUNS, EACH = 24, 21
+NUMBERS = (Uncertain("PDY1", 0.1), Uncertain("PKY1", 3.0))
+
+
+def simulation() -> Simulation:
+    return Simulation.of(truth(), turn_slip=False)
+
+
+def drawn(missed: float = MISSED) -> Points:
+    """Sideslip sweeps at four loads and three cambers, twice each: the tyre, a smooth miss, an offset of every run, noise."""
+    random = np.random.default_rng(8)
+    loads = np.repeat(np.tile([800.0, 1200.0, 1600.0, 2200.0], 6), EACH)
+    camber = np.repeat(np.repeat([-0.3, 0.0, 0.3], 8), EACH)
+    alpha = np.tile(np.linspace(-0.12, 0.12, EACH), RUNS)
+    sweep = np.repeat(np.arange(RUNS), EACH)
+    points = make_points(
+        alpha,
+        camber,
+        loads,
+        p=250e3,
+        V=10.0,
+        phi_t=0.0,
+        sweep=sweep,
+        sweep_names=[f"r{k}" for k in range(RUNS)],
+    )
+    smooth = missed * np.sqrt(2.0) * np.sin(40.0 * alpha + loads / 700.0)
+    scatter = OFFSET * random.standard_normal(RUNS)[sweep] + NOISE * random.standard_normal(len(alpha))
+    return points.replace(Fy=simulation().readings(points)["Fy"] + smooth + scatter)
+
+
+def left(points: Points) -> LinearisedChannel:
+    return linearised(points, simulation(), {"Fy": np.full(len(points), NOISE)}, NUMBERS).channels["Fy"]
+
+
+@pytest.fixture(scope="module")
+def found() -> LinearisedChannel:
+    return left(drawn())
+
+
+def test_each_part_is_found_in_its_size(found):
+    assert found.size == pytest.approx(MISSED, rel=0.15)
+    assert found.components.offset == pytest.approx(OFFSET, rel=0.35)
+    assert found.noise == pytest.approx(NOISE, rel=0.15)
+
+
+def test_where_the_tyre_is_of_the_formula_nothing_is_missed():
+    none = left(drawn(missed=0.0))
+    assert none.size < 0.3 * NOISE
+    assert none.components.offset == pytest.approx(OFFSET, rel=0.35)
+    assert none.noise == pytest.approx(NOISE, rel=0.15)
+
+
+def test_left_out_runs_lie_as_far_off_as_stated(found):
+    runs = found.left_out()
+    assert len(runs) == RUNS
+    squares = [one.error @ np.linalg.solve(one.covariance, one.error) / EACH for one in runs]
+    assert np.mean(squares) == pytest.approx(1.0, abs=0.2)
+    usual = np.sqrt(np.mean([np.mean(one.error**2) for one in runs]))
+    assert usual == pytest.approx(np.hypot(OFFSET, NOISE), rel=0.35)
+
+
+def test_a_sum_over_readings_is_as_uncertain_as_runs_are_few(found):
+    """A mean over all readings: offsets count by run, noise by reading."""
+    n = RUNS * EACH
+    (variance,) = found.of_readings(np.full((n, 1), 1.0 / n) / found.unit[:, None]).ravel()
+    parts, own = found.components, found.model.own * np.exp(0.5 * found.variances.own)
+    runs = sum(np.sum(own[rows].mean(axis=0) ** 2) for rows in found.model.groups) / RUNS**2
+    assert variance == pytest.approx(runs + parts.noise**2 / n)
+    assert variance > (parts.offset / NOISE) ** 2 / RUNS
+
+
+def test_a_single_reading_leaves_nothing_to_know():
+    one = drawn().select(np.array([10]))
+    channel = left(one)
+    assert channel.size == 0.0
+    assert channel.smooth.inputs == ()
+    assert np.all(np.isfinite(channel.posterior.root))

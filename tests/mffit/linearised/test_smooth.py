@@ -1,0 +1,88 @@
+"""The smooth functions against the covariance that they stand for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.linearised import constants
+from mffit.linearised.inputs import Input
+from mffit.linearised.smooth import SmoothFunctions
+
+ALPHA = Input("alpha", -0.2, 0.3, 0.1)
+LOAD = Input("Fz", 1000.0, 3000.0, 1000.0)
+
+
+def covariance(smooth: SmoothFunctions, at: np.ndarray, lengths: list[float]) -> np.ndarray:
+    """By the functions, between places (n, d); of all variance 1."""
+    columns = smooth.columns(at)
+    return (columns * np.exp(smooth.log_variance(np.array(lengths))[0])) @ columns.T
+
+
+def reflected(one: Input, at: np.ndarray, length: float) -> np.ndarray:
+    """Squared exponential (n, n) whose far images are reflected at the ends of the range with its room, as heat in a rod is."""
+    room = constants.ROOM * one.width
+    rod, x = one.width + 2.0 * room, at - one.lower + room
+    images = 2.0 * rod * np.arange(-20, 21)
+
+    def bell(distance: np.ndarray) -> np.ndarray:
+        return np.exp(-0.5 * ((distance[..., None] + images) / length) ** 2).sum(axis=-1)
+
+    kernel = bell(x[:, None] - x) + bell(x[:, None] + x)
+    mean = np.sqrt(2.0 * np.pi) * length / rod  # of the constant, which is not among the functions
+    fine = np.linspace(0.0, rod, 4001)
+    total = np.mean(bell(np.zeros(1)) + bell(2.0 * fine))
+    return (kernel - mean) / total
+
+
+@pytest.mark.parametrize("length", [0.12, 0.2, 0.5])
+def test_functions_of_one_condition_have_a_squared_exponential_covariance(length):
+    at = np.linspace(ALPHA.lower, ALPHA.upper, 9)
+    smooth = SmoothFunctions.over((ALPHA,))
+    found = covariance(smooth, at[:, None], [length])
+    assert found == pytest.approx(reflected(ALPHA, at, length), abs=0.01)
+
+
+def test_shares_of_all_functions_are_the_whole_variance():
+    """Those of products, with the constant and the smallest, which are left out."""
+    smooth = SmoothFunctions.over((ALPHA, LOAD))
+    shares = np.exp(smooth.log_variance(np.array([0.15, 1500.0]))[0])
+    left = 1.0
+    for one, length in ((ALPHA, 0.15), (LOAD, 1500.0)):
+        rod = (1.0 + 2.0 * constants.ROOM) * one.width
+        left /= np.exp(-0.5 * (np.pi * np.arange(60) * length / rod) ** 2).sum()
+    assert shares.sum() + left == pytest.approx(1.0, abs=0.01)
+    assert shares.sum() + left <= 1.0 + 1e-3
+
+
+def test_slopes_of_the_shares_are_their_differences():
+    smooth, at = SmoothFunctions.over((ALPHA, LOAD)), np.log([0.15, 1500.0])
+    slopes = smooth.log_variance(np.exp(at))[1]
+    for i, step in enumerate(1e-5 * np.eye(2)):
+        rise = smooth.log_variance(np.exp(at + step))[0] - smooth.log_variance(np.exp(at - step))[0]
+        assert slopes[:, i] == pytest.approx(rise / 2e-5, rel=1e-5, abs=1e-6)
+
+
+def test_beyond_the_tested_range_the_functions_stay_and_likeness_fades():
+    smooth = SmoothFunctions.over((ALPHA, LOAD))
+    inside, end, beyond = [0.1, 2000.0], [0.3, 3000.0], [0.4, 3500.0]
+    columns = smooth.columns(np.array([inside, end, beyond]))
+    assert np.array_equal(columns[1], columns[2])
+    assert not np.allclose(columns[0], columns[1])
+    likeness = smooth.likeness(np.array([inside, end, beyond, [-0.3, 2000.0]]), np.array([0.1, 500.0]))
+    assert likeness == pytest.approx([1.0, 1.0, np.exp(-1.0), np.exp(-0.5)])
+
+
+def test_a_tyre_at_one_condition_has_no_functions():
+    smooth = SmoothFunctions.over(())
+    assert smooth.columns(np.empty((3, 0))).shape == (3, 0)
+    assert np.array_equal(smooth.likeness(np.empty((3, 0)), np.empty(0)), np.ones(3))
+
+
+def test_many_conditions_keep_to_the_largest_functions():
+    """Ten conditions would have a billion products."""
+    smooth = SmoothFunctions.over(tuple(Input(f"x{i}", 0.0, 1.0, 0.1 if i < 3 else 1.0) for i in range(10)))
+    assert len(smooth.orders) == constants.FUNCTIONS
+    shares = smooth.log_variance(np.full(10, 1.0))[0]
+    assert np.all(smooth.orders.sum(axis=1) > 0)
+    assert shares.max() < 0.0

@@ -1,0 +1,118 @@
+"""Builds whose folders the tests ask: a tyre of the formula on a disc, and one that is not of the formula on a flat belt."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import pytest
+import tomli_w
+from small_rigs import disc, simulated
+
+import mffit
+from mffit.results import BuildResult
+
+LOADS = (800.0, 1200.0, 1800.0, 2600.0, 3400.0)
+CAMBERS = (-4.0, 0.0, 4.0)
+FY_NOISE, MZ_NOISE, OFFSET = 12.0, 0.6, 15.0
+"""Of a reading [N], [Nm]; of a run [N]."""
+
+
+class Built(NamedTuple):
+    """A build and its folder."""
+
+    result: BuildResult
+    folder: Path
+
+    def predict(self, **columns: Any) -> pd.DataFrame:
+        return mffit.predict(self.folder, pd.DataFrame(columns))
+
+
+def brush(alpha: Any, gamma: Any, Fz: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Fy [N] and Mz [Nm], ISO-W, of a brush tyre whose friction falls with the power of the load and with sliding.
+
+    Parabolic pressure; camber shifts the sideslip. The Magic Formula has grip linear in the load, and no kink where the
+    contact begins to slide everywhere.
+    """
+    length = 0.06 * np.sqrt(Fz / 2000.0)  # half of the contact [m]
+    slip = np.tan(alpha) + 0.05 * np.sin(gamma)
+    grip = 1.5 * (Fz / 2000.0) ** -0.3 * (1.0 - 0.25 * np.tanh(np.abs(slip) / 0.08) ** 2)
+    stiffness = 2.0 * 5.5e6 * length**2
+    share = np.minimum(stiffness * np.abs(slip) / (3.0 * grip * Fz), 1.0)
+    Fy = -np.sign(slip) * grip * Fz * (3.0 * share - 3.0 * share**2 + share**3)
+    Mz = np.sign(slip) * grip * Fz * length * share * (1.0 - share) ** 3
+    return Fy, Mz
+
+
+def belt(folder: Path, seed: int, offset: float = OFFSET, warm: bool = False) -> Path:
+    """Sideslip sweeps of the brush tyre on a flat belt at every load and camber, each with a zero of Fy of its own.
+
+    ``warm``: the runs are warmer and warmer, and lose 1 % of the side force per kelvin around 50 degC. Returns ``tyre.toml``.
+    """
+    random = np.random.default_rng(seed)
+    runs = []
+    for k, (load, camber) in enumerate((load, camber) for load in LOADS for camber in CAMBERS):
+        table = pd.DataFrame(
+            {"alpha_deg": np.linspace(-10.0, 10.0, 25), "gamma_deg": camber, "run": f"r{k:02d}"}
+        )
+        Fy, Mz = brush(np.radians(table.alpha_deg), np.radians(camber), load)
+        if warm:
+            table["T_degC"] = 44.0 + (4 * k) % 15 + 2.0 * np.abs(np.sin(np.arange(25)))
+            Fy = Fy * (1.0 - 0.01 * (table["T_degC"] - 50.0))
+        table["Fz_N"] = load
+        table["Fy_N"] = Fy + offset * random.standard_normal() + FY_NOISE * random.standard_normal(25)
+        table["Mz_Nm"] = Mz + MZ_NOISE * random.standard_normal(25)
+        runs.append(table)
+    folder.mkdir(parents=True)
+    pd.concat(runs).to_csv(folder / "runs.csv", index=False)
+    config = {
+        "tyre": {"name": "brush", "unloaded_radius": 0.3, "nominal_load": 2000.0, "nominal_pressure": 200.0},
+        "rig": {"type": "flat-track", "axes": "iso"},
+        "sweep": [{"file": "runs.csv"}],
+    }
+    path = folder / "tyre.toml"
+    path.write_text(tomli_w.dumps(config))
+    return path
+
+
+def build(path: Path) -> Built:
+    out = path.parent / "out"
+    return Built(mffit.build(path, out, with_report=False), out)
+
+
+@pytest.fixture(scope="session")
+def of_formula(tmp_path_factory) -> Built:
+    """The virtual rig's tyre, of the Magic Formula, on a disc."""
+    folder = tmp_path_factory.mktemp("formula") / "tyre"
+    simulated(disc(), folder)
+    return build(folder / "tyre.toml")
+
+
+@pytest.fixture(scope="session")
+def in_sae(tmp_path_factory) -> Built:
+    """The same campaign, reported in SAE axes."""
+    folder = tmp_path_factory.mktemp("sae") / "tyre"
+    simulated(disc(rig={"path_radius": 1.323, "u_path_radius": 0.0018, "axes": "sae"}), folder)
+    return build(folder / "tyre.toml")
+
+
+@pytest.fixture(scope="session")
+def foreign(tmp_path_factory) -> Built:
+    """The brush tyre on a flat belt."""
+    return build(belt(tmp_path_factory.mktemp("foreign") / "tyre", seed=6))
+
+
+@pytest.fixture(scope="session")
+def warming(tmp_path_factory) -> Built:
+    """The brush tyre, which loses side force with warmth."""
+    return build(belt(tmp_path_factory.mktemp("warm") / "tyre", seed=6, warm=True))
+
+
+@pytest.fixture(scope="session")
+def straight(tmp_path_factory) -> Built:
+    """The virtual rig's tyre, with the file for turn slip off as the plain one."""
+    folder = tmp_path_factory.mktemp("straight") / "tyre"
+    simulated(disc(spin={"exact": "normal"}), folder)
+    return build(folder / "tyre.toml")
