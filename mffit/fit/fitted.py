@@ -61,9 +61,9 @@ def left_by(fitted: Fitted) -> LinearisedFit:
             known = np.isfinite(number.spread)
             width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
             spread = number.spread if known else 0.5 * width
-            numbers.append(Uncertain(number.name, spread))
+            numbers.append(Uncertain(number.name, number.expected - number.start if known else 0.0, spread))
     held = {**fitted.held, **fitted.held_rig}
-    numbers += [Uncertain(name, u) for name, u in held.items() if u > 0.0]
+    numbers += [Uncertain(name, 0.0, u) for name, u in held.items() if u > 0.0]
     problem = fitted.problem
     return linearised(problem.points, problem.simulation, problem.sigma, numbers)
 

@@ -88,8 +88,18 @@ def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.nda
     return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
-def most_probable(model: Mixed, smooth: SmoothFunctions, first: Components, misfit: float) -> Components:
-    """The components of the largest evidence, near their first guess; ``misfit`` is the size of the residuals."""
+def with_further(given: Variances, further: np.ndarray) -> Variances:
+    """The variances with those of further common numbers, as logarithms."""
+    return given._replace(common=np.append(given.common, further))
+
+
+def most_probable(
+    model: Mixed, smooth: SmoothFunctions, first: Components, misfit: float, further: np.ndarray
+) -> Components:
+    """The components of the largest evidence, near their first guess; ``misfit`` is the size of the residuals.
+
+    ``further`` are logarithms of the variances of numbers that the common ones have behind the functions of ``smooth``.
+    """
     begin = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
     has_prior = np.ones(len(begin))
@@ -97,8 +107,8 @@ def most_probable(model: Mixed, smooth: SmoothFunctions, first: Components, misf
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
-        found = model.evidence(given)
-        slope = found.common @ by_common + found.own @ by_own
+        found = model.evidence(with_further(given, further))
+        slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
         far = has_prior * (x - begin) / usual
         return -found.value + 0.5 * float(far @ far), -slope + far / usual

@@ -11,12 +11,13 @@ import numpy as np
 
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
-from mffit.linearised.components import Components, most_probable, own_columns, variances
+from mffit.linearised.components import Components, most_probable, own_columns, variances, with_further
 from mffit.linearised.inputs import along, inputs_of, settings_of
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rig_errors import error_of
 from mffit.scatter import rms
 
 
@@ -35,7 +36,7 @@ class LinearisedChannel:
     numbers of the fit."""
     variances: Variances  #: of these
     missed: np.ndarray
-    """(m,) weights of the functions with the numbers of the fit as they are [unit of the channel]."""
+    """(m,) weights of the functions beside the errors of the rig, the coefficients as they are [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
@@ -82,10 +83,11 @@ class LinearisedChannel:
 
 
 class Uncertain(NamedTuple):
-    """A number of the fit that may change, with the standard deviation of its prior."""
+    """A number of the fit that may change, with its prior as the change from its value."""
 
     name: str
-    spread: float
+    expected: float
+    spread: float  #: standard deviation
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +138,10 @@ class _Sight(NamedTuple):
 def _channel(
     name: str, sight: _Sight, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
 ) -> LinearisedChannel:
-    """The components are found with the numbers of the fit as they are: free ones would take up what the formula misses."""
+    """The components are found with the coefficients as they are, since free ones would take up what the formula misses.
+
+    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared.
+    """
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
@@ -150,10 +155,18 @@ def _channel(
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], along(at_tyre, inputs))
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
-    alone = Mixed(residual / unit, missed, own / unit[:, None], groups)
-    misfit = max(rms(residual), 1e-12)
-    components = most_probable(alone, smooth, Components.guess(smooth, misfit), misfit)
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
+    of_rig = [i for i, number in enumerate(sight.numbers) if error_of(number.name) is not None]
+    rig = slopes[:, of_rig] / unit[:, None]
+    declared = np.log([sight.numbers[i].spread ** 2 for i in of_rig])
+    alone = Mixed(
+        residual=residual / unit - rig @ np.array([sight.numbers[i].expected for i in of_rig]),
+        common=np.hstack([missed, rig]),
+        own=own / unit[:, None],
+        groups=groups,
+    )
+    misfit = max(rms(residual), 1e-12)
+    components = most_probable(alone, smooth, Components.guess(smooth, misfit), misfit, declared)
     turn = _turn(sight.numbers, slopes / sigma[rows][:, None], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
     return LinearisedChannel(
@@ -163,9 +176,9 @@ def _channel(
         unit=unit,
         smooth=smooth,
         components=components,
-        model=Mixed(alone.residual, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
-        variances=of_functions._replace(common=np.append(of_functions.common, np.zeros(turn.shape[1]))),
-        missed=alone.posterior(of_functions).mean,
+        model=Mixed(residual / unit, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
+        variances=with_further(of_functions, np.zeros(turn.shape[1])),
+        missed=alone.posterior(with_further(of_functions, declared)).mean[: missed.shape[1]],
         turn=turn,
         sweeps=np.unique(part.sweep),
     )

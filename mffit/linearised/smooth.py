@@ -2,7 +2,7 @@
 
 Products of cosines over the tested range with a little room around it, as in a reduced-rank Gaussian process with a squared
 exponential covariance (Solin and Sarkka 2020, Statistics and Computing 30, 419), so that only variances change with size and
-lengths. There is no constant among them: that belongs to the zeros of the rig.
+lengths. A constant is one of them; how much of it belongs to the zeros of the rig is for their priors to say.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class SmoothFunctions:
             size = (size[:, None] - 0.5 * (np.pi * order * one.spacing / _length(one)) ** 2).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             orders, size = orders[size > -LEAST], size[size > -LEAST]
-        largest = np.argsort(-size[1:], kind="stable")[: constants.FUNCTIONS]
-        return cls(inputs, orders[1:][largest])
+        largest = np.argsort(-size, kind="stable")[: constants.FUNCTIONS]
+        return cls(inputs, orders[largest])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
         """Values (n, m) at conditions (n, d); beyond the tested range those at its end."""

@@ -122,7 +122,9 @@ def build(
         seconds=time.perf_counter() - began,
         trust=trust,
         remains=left,
-        prediction=predictor(reading.points, left_by_formula),
+        prediction=predictor(
+            reading.points, left_by_formula, {name: value for name, (value, _) in search.rig.items()}
+        ),
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,

@@ -18,7 +18,7 @@ from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
 from mffit.rig import Simulation
-from mffit.rig_errors import error_of
+from mffit.rig_errors import ZEROS, error_of
 from tir import Tyre
 
 
@@ -58,6 +58,9 @@ class Predictor:
     path: float  #: path curvature of most readings [1/m], taken where none is stated; 0 on a flat track
     names: tuple[str, ...]  #: (k,) of the uncertain coefficients
     channels: Mapping[str, MissedChannel]
+    zeros: Mapping[
+        str, float
+    ]  #: of the rig as the fit found them, the largest of all set-ups; a reading contains them
 
     @property
     def curved(self) -> bool:
@@ -83,11 +86,13 @@ class Predictor:
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
         simulation = Simulation.of(fitted, turn_slip=self.curved)
         forces, slopes = simulation.sensitivities(points, self.names, self.channels)
+        as_read = simulation.with_numbers(self.zeros).readings(points, self.channels)
         found = conditions.copy()
         for name, channel in self.channels.items():
             missed, variance, unstated = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
-            run = variance + unstated + channel.components.run_variance(best) + channel.noise**2
+            of_rig = (as_read[name] - forces[name]) ** 2 + channel.noise**2
+            run = variance + unstated + channel.components.run_variance(best) + of_rig
             found[column(name)] = plain[name]
             found[u_column(name)] = np.sqrt((best - plain[name]) ** 2 + run)
             found[column(name, "best")] = best
@@ -141,14 +146,20 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
         yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
 
 
-def predictor(points: Points, left: LinearisedFit) -> Predictor:
+def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> Predictor:
     """What a build knows, for its folder.
 
     Parameters
     ----------
     points : of the build
     left : what its fitted model leaves of them
+    rig : errors of the rig as fitted
     """
+    zeros: dict[str, float] = {}
+    for number, value in rig.items():
+        error = error_of(number)
+        if error in ZEROS and abs(value) >= abs(zeros.get(error.name, 0.0)):
+            zeros[error.name] = value
     of_tyre = [i for i, number in enumerate(left.numbers) if error_of(number.name) is None]
     channels = {}
     for name, own in left.channels.items():
@@ -156,4 +167,4 @@ def predictor(points: Points, left: LinearisedFit) -> Predictor:
         found = own.posterior
         root = np.vstack([found.root[:m], own.turn[of_tyre] @ found.root[m:]])
         channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
-    return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels)
+    return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels, zeros)

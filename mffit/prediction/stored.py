@@ -17,6 +17,7 @@ from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS
+from mffit.rig_errors import BY_NAME as ERROR_OF
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -32,6 +33,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "fitted": fitted,
         "phi_t_per_m": found.path,
         "coefficients": found.names,
+        "zeros": dict(found.zeros),
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
@@ -81,6 +83,7 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         path=float(content["phi_t_per_m"]),
         names=names,
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
+        zeros={ERROR_OF[name].name: float(value) for name, value in content["zeros"].items()},
     )
 
 
