@@ -86,3 +86,13 @@ def test_two_paths_and_both_directions_are_inputs():
     half = np.repeat([1, -1], 63)
     found = [one.name for one in inputs_of(programme(phi_t=0.75 * half, direction=half))]
     assert found[-2:] == ["phi_t", "direction"]
+
+
+def test_a_condition_that_runs_move_through_is_swept_however_few_its_settings():
+    """Five angles in every run are a curve; three loads of a run each are not."""
+    found = {
+        one.name: one
+        for one in inputs_of(programme().replace(alpha=np.resize([-0.1, -0.05, 0.0, 0.05, 0.1], 126)))
+    }
+    assert found["alpha"].width / found["alpha"].spacing == pytest.approx(12.0)
+    assert found["Fz"].width / found["Fz"].spacing == pytest.approx(2.0)
