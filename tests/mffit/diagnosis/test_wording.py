@@ -140,7 +140,7 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
         ),
         (
             AnotherTyre((("FNOMIN", 2100.0, 1400.0),)),
-            "for other nominal conditions than tyre.toml: nominal load 2100 instead of 1400 N (FNOMIN). A file of this tyre may be",
+            "other nominal conditions than tyre.toml: nominal load 2100 instead of 1400 N (FNOMIN). A file of this tyre may be",
         ),
         (
             WithoutNoise((("Fy", 1.23), ("Mz", 0.027))),
