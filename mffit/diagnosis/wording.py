@@ -267,6 +267,11 @@ def _another_tyre(found: AnotherTyre) -> str:
         row = BY_NAME[name]
         scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
         said.append(f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})")
+    if all(BY_NAME[name].section != "DIMENSION" for name, *_ in found.differences):
+        return (
+            f"The model is for other nominal conditions than tyre.toml: {'; '.join(said)}. A file of this tyre may be; if it is "
+            "of another tyre, give the model of this one."
+        )
     return (
         f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct "
         "[tyre]."

@@ -139,6 +139,10 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
             "another tyre than tyre.toml: free radius 0.31 instead of 0.2998 m (UNLOADED_RADIUS); nominal pressure",
         ),
         (
+            AnotherTyre((("FNOMIN", 2100.0, 1400.0),)),
+            "other nominal conditions than tyre.toml: nominal load 2100 instead of 1400 N (FNOMIN). A file of this tyre may be",
+        ),
+        (
             WithoutNoise((("Fy", 1.23), ("Mz", 0.027))),
             "1.23 N in Fy and 0.027 Nm in Mz are assumed as their noise (0.1 %",
         ),

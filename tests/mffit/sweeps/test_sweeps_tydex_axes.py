@@ -201,3 +201,15 @@ def test_a_leaning_wheel_in_c_is_recognised_by_its_letters(tmp_path):
     _, files = pipeline.init_from([path], tmp_path / "p", unloaded_radius=R0, nominal_load=3000.0)
     assert "turned with the wheel carrier" in files[0].read_text()
     assert errors(points.load(config.load(files[0]))[0], rows) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_the_radius_under_its_tydex_name_is_the_lever_of_moments_about_the_centre(tmp_path):
+    """DSTGRWHC, the distance of ground and wheel centre, is the heading of TYDEX 1.3 for what others call RL."""
+    rows = campaign()
+    path = written(tmp_path / "a.tdx", rows, "C")
+    text = path.read_text(encoding="latin-1").replace(f"{'RL':<10}", f"{'DSTGRWHC':<10}")
+    path.write_text(text, encoding="latin-1")
+    _, files = pipeline.init_from([path], tmp_path / "p", unloaded_radius=R0, nominal_load=3000.0)
+    found, warnings = points.load(config.load(files[0]))
+    assert found.Mx == pytest.approx([row["moment"][0] for row in rows], abs=1e-8)
+    assert not [sentence for sentence in warnings if "RL_m" in sentence]
