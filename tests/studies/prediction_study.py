@@ -2,10 +2,8 @@
 
 The sweeps of a project are divided at random. The tyre is built without each part, and `mffit predict` says the forces of the
 part's readings. Printed for every channel: the errors of the file and of the best estimate, the share of readings inside their
-95 % intervals, and the usual half width over the error; all of it again without the temperature of the readings. The errors
-of the rig, as each build found them, are taken off the readings. The intervals hold what these errors may be, which readings of
-the same rig cannot show: with `--truth FILE.tir` the forces of the tyre that was drawn are compared instead, with the interval
-of the tyre's mean force.
+95 % intervals, and the usual half width over the error; all of it again without the temperature of the readings. With
+`--truth FILE.tir` the forces of the tyre that was drawn are compared instead, with the interval of the tyre's mean force.
 """
 
 from __future__ import annotations
@@ -59,7 +57,7 @@ def conditions(points: Points, stated: tuple[str, ...]) -> pd.DataFrame:
 
 
 def errors(points: Points, found: pd.DataFrame, channel: str, truth: tir.Tyre | None) -> Found:
-    """The predictions of a channel against the readings at the tyre, or against the true forces."""
+    """The predictions of a channel against the readings, or against the true forces."""
     file, best = (found[name].to_numpy() for name in (column(channel), column(channel, "best")))
     if truth is None:
         run = found[f"u_{column(channel, 'run')}"].to_numpy()
@@ -103,9 +101,8 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             result = mffit.build(without(config, points, rows), folder, with_report=False)
             print(f"part {k + 1}: {len(part)} sweeps, {result.seconds:.0f} s", flush=True)
-            assert result.fit.search is not None
             assert result.prediction is not None
-            held = result.fit.search.simulation.felt(points.select(np.flatnonzero(rows)))
+            held = points.select(np.flatnonzero(rows))
             for way, stated in ways.items():
                 table = mffit.predict(folder, conditions(held, stated))
                 for channel in result.prediction.channels:
