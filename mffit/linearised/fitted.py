@@ -27,7 +27,6 @@ class LinearisedChannel:
 
     name: str
     rows: np.ndarray  #: (n,) of the points that are looked at
-    stride: int  #: readings for each of them
     unit: np.ndarray  #: (n,) their noise as stated, or usual [N], [Nm], [m]
     smooth: SmoothFunctions
     components: Components
@@ -44,19 +43,6 @@ class LinearisedChannel:
     def posterior(self) -> MixedPosterior:
         """Of the common numbers."""
         return self.model.posterior(self.variances)
-
-    def of_readings(self, columns: np.ndarray) -> np.ndarray:
-        """Covariance (k, k) of ``columns.T`` @ readings, columns (n, k), by what differs from run to run and by noise.
-
-        Readings of a run are not independent, so that runs count and not readings; what the formula misses is no chance.
-        """
-        own, stride = np.exp(0.5 * self.variances.own), self.stride
-        scaled = columns * self.unit[:, None]
-        out: np.ndarray = stride * self.components.noise**2 * scaled.T @ scaled
-        for group in self.model.groups:
-            through = stride * scaled[group].T @ (self.model.own[group] * own)
-            out += through @ through.T
-        return out
 
     @property
     def noise(self) -> float:
@@ -172,7 +158,6 @@ def _channel(
     return LinearisedChannel(
         name=name,
         rows=rows,
-        stride=stride,
         unit=unit,
         smooth=smooth,
         components=components,

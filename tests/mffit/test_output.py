@@ -357,9 +357,9 @@ def test_an_unusable_out_shows_before_any_work(command, out, tmp_path, capsys):
     """The inputs do not exist, which any work would notice first."""
     (tmp_path / "taken").write_text("a note")
     target = tmp_path / out
-    if command in (("show",), ("convert",)) and out == "taken":  # they write a file
+    if command in (("show",), ("convert",), ("predict",)) and out == "taken":  # they write a file
         target = tmp_path
-    inputs = [tmp_path / "missing.tir"] * (2 if command == ("compare",) else 1)
+    inputs = [tmp_path / "missing.tir"] * (2 if command in (("compare",), ("predict",)) else 1)
     code, said = run(capsys, *command, *inputs, "--out", target)
     assert code == 2
     assert re.search("is a file, but the output needs a folder|is a folder, but the output is a file", said)

@@ -72,16 +72,6 @@ def test_left_out_runs_lie_as_far_off_as_stated(found):
     assert usual == pytest.approx(np.hypot(OFFSET, NOISE), rel=0.35)
 
 
-def test_a_sum_over_readings_is_as_uncertain_as_runs_are_few(found):
-    """A mean over all readings: offsets count by run, noise by reading."""
-    n = RUNS * EACH
-    (variance,) = found.of_readings(np.full((n, 1), 1.0 / n) / found.unit[:, None]).ravel()
-    parts, own = found.components, found.model.own * np.exp(0.5 * found.variances.own)
-    runs = sum(np.sum(own[rows].mean(axis=0) ** 2) for rows in found.model.groups) / RUNS**2
-    assert variance == pytest.approx(runs + parts.noise**2 / n)
-    assert variance > (parts.offset / NOISE) ** 2 / RUNS
-
-
 def test_a_single_reading_shows_a_constant_at_most():
     one = drawn().select(np.array([10]))
     channel = left(one)
