@@ -23,7 +23,8 @@ def read_xlsx(path: Path) -> RawTable:
     openpyxl = needed("openpyxl", "Excel workbooks", path)
     with (
         undamaged(path, "Excel workbook"),
-        closing(openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)) as book,
+        path.open("rb") as packed,  # openpyxl leaves a file of its own open where reading ends early
+        closing(openpyxl.load_workbook(packed, read_only=True, data_only=True, keep_links=False)) as book,
     ):
         for sheet in book.worksheets:
             rows, cells = [], 0

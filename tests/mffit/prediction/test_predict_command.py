@@ -59,7 +59,7 @@ def test_conditions_come_back_with_the_columns_of_every_channel(foreign: Built, 
     said = capsys.readouterr().out
     assert "Fy: a new run lies within" in said
     assert "found.csv" in said
-    assert found.equals(mffit.predict(foreign.folder, "conditions.csv"))
+    pd.testing.assert_frame_equal(found, mffit.predict(foreign.folder, "conditions.csv"))
     assert os.listdir("new") == ["found.csv"]
 
 
