@@ -16,6 +16,7 @@ from mffit.linearised.inputs import along, inputs_of, settings_of
 from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
+from mffit.points.noise import stating
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from mffit.scatter import rms
@@ -135,7 +136,7 @@ def _channel(
     residual = part.channel(name) - model[rows]
     stated = part.u(name)
     usual = float(np.median(sigma[rows]))
-    unit = np.where(np.isfinite(stated) & (stated > 0.0), stated, usual)
+    unit = np.where(stating(stated), stated, usual)
     inputs = inputs_of(at_tyre)
     smooth = SmoothFunctions.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
