@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 import mffit.constants
 import mffit.points.constants
 from mffit.suspicion import constants
@@ -12,8 +10,9 @@ from mffit.suspicion.rules import RULES
 
 HEAD = """# Suspicions
 
-The rules that find mistakes in readings, in the order in which they are applied. This page is written from the records in
-`mffit/suspicion/rules.py`. [Broken data](broken-data.md) describes the method and its success rate.
+The rules that find mistakes in readings, in the order in which they are applied, from the records in
+`mffit/suspicion/rules.py`.
+[Broken data](broken-data.md) describes the method and its success rate.
 """
 NAMES = {
     id(value): name
@@ -30,7 +29,7 @@ def page() -> str:
 
 def _section(when: When) -> str:
     rows = [_row(rule) for rule in RULES if when in rule.when]
-    head = "| rule | applied to | looks at | limits | outcome | sentence |\n|---|---|---|---|---|---|"
+    head = "| rule | applied to | looks at | limits | outcome |\n|---|---|---|---|---|"
     return f"## {str(when).capitalize()}\n{head}\n" + "\n".join(rows) + "\n"
 
 
@@ -41,7 +40,6 @@ def _row(rule: Rule) -> str:
         rule.looks_at,
         "<br>".join(_limit(limit) for limit in rule.limits),
         rule.outcome,
-        _template(rule.sentence),
     )
     return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
 
@@ -50,9 +48,3 @@ def _limit(limit: float) -> str:
     unit = getattr(limit, "unit", "-")
     value = f"{limit:.3g}" if unit == "-" else f"{limit:.3g} {unit}"
     return f"{NAMES[id(limit)].lower().replace('_', ' ')} {value}"
-
-
-def _template(sentence: str) -> str:
-    """The sentence with the name of every fact in italics, and with the braces of TOML as they are printed."""
-    named = re.sub(r"(?<!\{)\{(\w+)(:[^}]*)?\}(?!\})", r"*\1*", sentence)
-    return named.replace("{{", "{").replace("}}", "}")

@@ -58,5 +58,5 @@ def test_freed_numbers_exist_and_can_be_started_from(effect):
 @pytest.mark.parametrize("error", RIG_ERRORS.values(), ids=lambda error: error.name)
 def test_numbers_of_the_rig_are_all_described(error):
     free = Free(error.name, 1.0)
-    row = page(Effect("mine", "mine", "rig", "A rig does this.", (free,)), CATALOG)
-    assert f"| `{error.name}` | {error.unit} | {error.meaning} |" in row
+    text = page(Effect("mine", "mine", "rig", "A rig does this.", (free,)), CATALOG)
+    assert f"- `{error.name}` [{error.unit}]: {error.meaning}" in text
