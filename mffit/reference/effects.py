@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from mffit.effects import CATALOG, NEEDS, Effect, Free
@@ -46,7 +45,8 @@ def index(catalog: Sequence[Effect] = CATALOG) -> str:
         "# The effects",
         "",
         "What [a diagnosis](../diagnosis.md) can name. These pages are written from the records in `mffit/effects`. "
-        "Each states what an effect frees, with its usual size, and with what it can be confused in a full programme.",
+        "Each states what an effect frees, with its usual size, and with what it can be confused in a full programme. "
+        "Limits are those of [the table of parameters](../parameters.md) and of [the rig errors](../rig-errors.md).",
     ]
     for kind, title in KINDS.items():
         lines += ["", f"## {title}", RESULT[kind], ""]
@@ -71,12 +71,7 @@ def _item(free: Free) -> str:
     if free.name == "turn_slip":
         return f"- `turn_slip`: {meaning}, off to on"
     scale = " × its value" if free.relative else ""
-    lower = "–∞" if math.isinf(free.lower) else f"{free.lower:g}"
-    upper = "∞" if math.isinf(free.upper) else f"{free.upper:g}"
-    starts = ", ".join(f"{start:+g}" if start else "0" for start in free.scan)
-    started = f", started from {starts}{scale}" if any(free.scan) else ""
-    size = f"usually {free.spread:g}{scale}, limits {lower} to {upper}{started}"
-    return f"- `{free.name}` [{unit}]: {meaning}; {size}"
+    return f"- `{free.name}` [{unit}]: {meaning}; usually {free.spread:g}{scale}"
 
 
 def _described(name: str) -> tuple[str, str]:

@@ -9,13 +9,10 @@ from mffit.rig_errors import AFTER, BEFORE, RIG_ERRORS, RigError
 INTRODUCTION = """\
 # Rig errors
 
-Every effect by which the readings of a rig differ from the steady forces of the tyre. The order is that of the chain:
-the angles and the load as read become those at the tyre, the tyre responds with forces, and the forces become readings.
-Everything is in ISO-W. This page is written from the records in `mffit/rig_errors`. The fit, the uncertainty budget, the
-[diagnosis](diagnosis.md), the [virtual rig](simulate.md) and `mffit plan` use the same records.
-
-"Declared by" names the key of `[rig]` that gives the standard uncertainty; such an error is a number of the fit with this
-prior. Only a diagnosis searches for the others. The limits hold for fits and for `[faults]` of the virtual rig.
+How the readings of a rig differ from the steady forces of the tyre, in the order of the chain from reading to reading, in
+ISO-W. Fit, uncertainty budget, [diagnosis](diagnosis.md), [virtual rig](simulate.md) and `mffit plan` use these records of
+`mffit/rig_errors`. "Declared by" names the key of `[rig]` that gives the standard uncertainty; such an error is a number of
+the fit with this prior. Only a diagnosis searches for the others. The limits hold for fits and for `[faults]`.
 """
 
 
