@@ -95,11 +95,11 @@ def _on_uncertainty(first: ComparedSubject, second: ComparedSubject) -> Iterator
     unknown = [side for side in (first, second) if side.covariance is None]
     bare = [side.name for side in unknown if not side.covariance_of]
     if bare:
-        yield f"The uncertainty of {' and '.join(bare)} is unknown, because no result.json of a build is beside the file."
+        yield f"The uncertainty of {' and '.join(bare)} is unknown, because no result.json of a build is in its folder."
     for side in unknown:
         if side.covariance_of:
             yield (
-                f"The uncertainty of {side.name} is unknown: the covariance in the result.json beside it belongs to "
+                f"The uncertainty of {side.name} is unknown: the covariance in the result.json of its folder belongs to "
                 f"{side.covariance_of}."
             )
     if unknown or first.name == second.name:

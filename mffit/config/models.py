@@ -154,7 +154,7 @@ class MachineTable(Table):
                 "rig.path_radius",
             )
         if self.path_radius is not None and self.path is not None:
-            raise q.wrong("is given beside [rig.path]; keep one of the two", "rig.path_radius")
+            raise q.wrong("is given together with [rig.path]; keep one of the two", "rig.path_radius")
         radius = self.radius
         assert radius is not None
         if not 0.2 <= radius <= 100.0:
@@ -430,7 +430,8 @@ class Config(Brief, Table):
     def _longitudinal_force_comes_from_one_place(self) -> Config:
         if self.sister is not None and self.campaign:
             raise q.wrong(
-                "is given beside [[campaign]], and Fx can come from one of them only; remove one", "sister.Fx"
+                "is given together with [[campaign]], and Fx can come from one of them only; remove one",
+                "sister.Fx",
             )
         return self
 

@@ -85,7 +85,7 @@ LONGITUDINAL_EFFECTS = (
     _effect(
         id="longitudinal-arm",
         name="moment arm of the longitudinal force",
-        physics="The longitudinal force acts beside the middle of the wheel and turns it, to the other side once the tyre is "
+        physics="The longitudinal force acts off the middle of the wheel and turns it, to the other side once the tyre is "
         "turned on its rim.",
         free=(Free(name="SSZ1", spread=0.006),),
         needs=("drive", "moment"),

@@ -12,7 +12,7 @@ OVERTURNING_EFFECTS = (
     _effect(
         id="overturning-offset",
         name="overturning moment of the upright tyre",
-        physics="The load acts a little beside the middle of the wheel, from conicity and plies.",
+        physics="The load acts a little off the middle of the wheel, from conicity and plies.",
         free=(Free(name="QSX1", spread=0.01),),
         needs=("overturning",),
         parity="even in alpha and gamma, proportional to load",
@@ -22,7 +22,7 @@ OVERTURNING_EFFECTS = (
     _effect(
         id="overturning-camber",
         name="overturning moment with camber",
-        physics="A leaned tyre stands on another part of its crown, so that the load acts beside the middle of the wheel.",
+        physics="A leaned tyre stands on another part of its crown, so that the load acts off the middle of the wheel.",
         free=(Free(name="QSX2", spread=0.2),),
         needs=("overturning", "camber"),
         parity="odd in gamma",
@@ -30,7 +30,7 @@ OVERTURNING_EFFECTS = (
     _effect(
         id="overturning-side-force",
         name="overturning moment with side force",
-        physics="Side force bends the carcass, and the load acts beside the middle of the wheel.",
+        physics="Side force bends the carcass, and the load acts off the middle of the wheel.",
         free=(Free(name="QSX3", spread=0.02),),
         needs=("overturning", "slip"),
         parity="as Fy, times load",
