@@ -29,14 +29,13 @@ def page() -> str:
 
 def _section(when: When) -> str:
     rows = [_row(rule) for rule in RULES if when in rule.when]
-    head = "| rule | applied to | looks at | limits | outcome |\n|---|---|---|---|---|"
+    head = "| rule | looks at | limits | outcome |\n|---|---|---|---|"
     return f"## {str(when).capitalize()}\n{head}\n" + "\n".join(rows) + "\n"
 
 
 def _row(rule: Rule) -> str:
     cells = (
         f"`{rule.id}`",
-        rule.subject,
         rule.looks_at,
         "<br>".join(_limit(limit) for limit in rule.limits),
         rule.outcome,
