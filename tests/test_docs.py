@@ -101,6 +101,15 @@ def test_every_page_is_reached_from_the_index():
     assert not missing, f"docs/index.md does not link to {', '.join(missing)}"
 
 
+def test_the_pages_together_stay_short():
+    """The list of constants and the changelog are looked up, not read."""
+    pages = [page for page in PAGES if page.name not in ("constants.md", "changelog.md")]
+    words = sum(len(text_of(page).split()) for page in pages)
+    assert words <= 60_000, (
+        f"the pages have {words} words; say each fact once, and what a study showed in a few lines"
+    )
+
+
 DISTRIBUTIONS = [ROOT / "pyproject.toml", ROOT / "tir" / "pyproject.toml"]
 
 
