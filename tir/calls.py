@@ -29,7 +29,8 @@ Function = Callable[..., Any]
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
-THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
+THREADS_FROM = 4 * BLOCK
+"""Conditions that are worth starting threads."""
 FORCES, STATE = Forces._fields, State._fields
 OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
 """States that :mod:`tir.transient` needs."""

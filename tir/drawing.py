@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Figure
 
 WIDEST = {
-    "alpha": constants.DRAWN_SIDESLIP.rad,
-    "kappa": constants.DRAWN_SLIP,
-    "gamma": constants.DRAWN_CAMBER.rad,
+    "alpha": constants.USUAL_SIDESLIP.rad,
+    "kappa": math.tan(constants.USUAL_SIDESLIP.rad),
+    "gamma": constants.LARGEST_CAMBER.rad,
 }
 KEYS = {"alpha": ("ALPMIN", "ALPMAX"), "kappa": ("KPUMIN", "KPUMAX"), "gamma": ("CAMMIN", "CAMMAX")}
 PANELS = (("alpha", "Fy"), ("alpha", "Mz"), ("kappa", "Fx"), ("gamma", "Fy"))
@@ -79,7 +79,7 @@ def notebook(tyre: Tyre) -> str:
             return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
-    figure.savefig(stream, dpi=constants.NOTEBOOK_DPI, format="png", facecolor="white")
+    figure.savefig(stream, format="png", facecolor="white")
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
 

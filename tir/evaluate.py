@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tir.constants import LOWEST_PRESSURE, SMALLEST_LOAD
+from tir.constants import PRESSURE_RANGE, SMALLEST_LOAD
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
@@ -17,7 +17,7 @@ from tir.parameters import TABLE
 
 CONICITY = tuple(row.name for row in TABLE if row.conicity)
 DIVISORS = tuple(row.name for row in TABLE if row.divisor)
-NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), float(LOWEST_PRESSURE)
+NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), PRESSURE_RANGE[0]
 
 
 def evaluate(
@@ -45,7 +45,7 @@ def evaluate(
     kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
     phi_t : turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
     Vx : speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
-    pressure : inflation pressure [Pa]; default INFLPRES; in My not below LOWEST_PRESSURE, where QSY8 < 0 leads to infinity
+    pressure : inflation pressure [Pa]; default INFLPRES; in My not below PRESSURE_RANGE, where QSY8 < 0 leads to infinity
     turn_slip : let spin act (zeta factors); otherwise phi_t is ignored
     star : tan(alpha) and sin(gamma) as inputs instead of the angles
     limits : hold the inputs to the file's ranges and the curvature factors to <= 1

@@ -30,6 +30,7 @@ from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
 from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
+from tir.constants import EFFECTIVE_RADIUS_RANGE
 
 SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
@@ -444,7 +445,7 @@ class Config(Brief, Table):
                     "has a disc revolution, but the rig is a flat track; give effective_radius instead", key
                 )
             r_e = effective_radius(row, R) if row.effective_radius is None else row.effective_radius
-            least, most = constants.ROLLING_OVER_UNLOADED_RADIUS
+            least, most = EFFECTIVE_RADIUS_RANGE
             if not least * R0 <= r_e <= most * R0:
                 raise q.wrong(_radius_sentence(r_e, R0, row.is_measured), key)
             u = row.u_effective_radius
@@ -461,7 +462,7 @@ def _radius_sentence(r_e: float, R0: float, measured: bool) -> str:
     sentence = f"gives an effective radius of {r_e:.4g} m, {ratio:.2f} times the unloaded radius of {R0:g} m"
     if not measured:
         return f"{sentence}; check both, in metres"
-    least, most = constants.RADIUS_RATIO_OF_A_DIAMETER
-    if least < ratio < most:
+    least, most = EFFECTIVE_RADIUS_RANGE
+    if least < ratio / 2.0 < most:
         return f"{sentence}; path_radius looks like a diameter, halve it"
     return f"{sentence}; check path_radius, revolutions and the angles, which are in degrees"

@@ -14,7 +14,8 @@ from typing import Any
 
 import mffit
 from mffit.errors import InputError
-from mffit.quantities import MODEL
+from mffit.quantities import MODEL, QuantityName
+from mffit.results.values import Json
 from mffit.templates import environment
 from mffit.viewer.controls import in_si, settings
 from mffit.viewer.named import Given, described, named
@@ -102,7 +103,7 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
             }
             for panel in PANELS
         ],
-        "quantities": {name: _quantity(name) for name in (*INPUTS, *OUTPUTS)},
+        "quantities": {name: on_page(MODEL[name]) for name in (*INPUTS, *OUTPUTS)},
         "tyres": [described(name, tyre, names) for name, tyre in found.items()],
     }  # fmt: skip
     page = Page(_filled(data, list(found)), tuple(found))
@@ -111,8 +112,8 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
     return page
 
 
-def _quantity(name: str) -> dict[str, Any]:
-    quantity = MODEL[name]
+def on_page(quantity: QuantityName) -> dict[str, Json]:
+    """A quantity as pages name and convert it."""
     return {
         "word": quantity.word,
         "symbol": quantity.symbol,

@@ -5,12 +5,11 @@ from __future__ import annotations
 import mffit
 from mffit.config.by_hand import as_in_the_file
 from mffit.fit.agreement import with_points
-from mffit.quantities import CHANNELS, QuantityName
+from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.results.values import Json, document
 from mffit.templates import environment
-from mffit.viewer.controls import in_si
-from mffit.viewer.page import Page
+from mffit.viewer.page import Page, on_page
 from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import axis_quantities, columns, delivered
 from tir.codegen.javascript import javascript
@@ -35,7 +34,7 @@ def project_data(result: BuildResult) -> dict[str, Json]:
             "order": INPUTS,
             "turn_slip": simulation.turn_slip,
             "star": simulation.star,
-            "quantities": {name: _quantity(quantity) for name, quantity in axis_quantities().items()},
+            "quantities": {name: on_page(quantity) for name, quantity in axis_quantities().items()},
             "channels": [
                 {
                     "name": name,
@@ -112,12 +111,3 @@ def _misfits(result: BuildResult) -> dict[str, float]:
     readings = delivered(fitted).readings(result.points, others)
     found = {**with_points(readings, result.points), **fitted.channels}
     return {name: found[name].rmse for name in measured if found[name].n}
-
-
-def _quantity(quantity: QuantityName) -> dict[str, Json]:
-    return {
-        "word": quantity.word,
-        "symbol": quantity.symbol,
-        "unit": quantity.unit_behind,
-        "si": in_si(quantity.unit),
-    }

@@ -129,11 +129,8 @@ def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, A
 
 def _reach(value: float, record: Coefficient, lower: float, upper: float) -> tuple[float, float]:
     """Ends of the slider, within the bounds."""
-    reach = max(
-        constants.SLIDER_REACH * (record.stderr or 0.0),
-        constants.SLIDER_LEAST * abs(value),
-        float(constants.SLIDER_OF_ZERO) if abs(value) < constants.SLIDER_OF_ZERO else 0.0,
-    )
+    least = constants.SLIDER_LEAST * (1.0 + abs(value))
+    reach = max(constants.SLIDER_REACH * (record.stderr or 0.0), least)
     return min(max(value - reach, lower), value), max(min(value + reach, upper), value)
 
 

@@ -148,7 +148,7 @@ def _then_and_now(pair: tuple[object, object]) -> dict[str, object]:
 
 keys(
     Conversion,
-    "file=old.path kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
+    "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
     trusted=lambda found: not converted.reasons(found),
     reasons=converted.reasons,
 )
@@ -156,7 +156,7 @@ keys(
 
 def conversion(found: Conversion, out: Path) -> dict[str, Json]:
     """The output of ``mffit convert --json``: SI units, shares of 1."""
-    return document(found) | {"written": str(out)}
+    return {"file": str(found.old.path), "written": str(out), **document(found)}
 
 
 def problems(path: Path, found: Sequence[Problem]) -> dict[str, Json]:
