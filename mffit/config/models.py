@@ -132,9 +132,8 @@ class MachineTable(Table):
         declared = BY_NAME[name].declared
         given = None if declared is None else getattr(self, declared.key)
         if given is None and self.path is not None:
-            return path_radius(
-                **{key: ufloat(x, self.u_length) for key, x in self.path.model_dump().items()}
-            ).s
+            lengths = {key: ufloat(x, self.u_length) for key, x in self.path.model_dump().items()}
+            return float(path_radius(**lengths).s)
         return given or 0.0
 
     @model_validator(mode="before")

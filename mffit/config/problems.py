@@ -132,7 +132,7 @@ def _shown(key: str, lines: dict[str, int]) -> str:
 def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
     kind, given, context = detail["type"], detail["input"], detail.get("ctx", {})
     if kind == "sentence":
-        return context["sentence"]
+        return str(context["sentence"])
     if kind == "missing":
         return _missing(key, lines)
     if kind == "literal_error":
