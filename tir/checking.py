@@ -154,7 +154,7 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
 def _clamps(tyre: Tyre) -> Iterator[Problem]:
     """Problems of ranges that vehicles exceed: simulations limit their inputs to the range."""
     Fz = float(tyre["FNOMIN"])
-    alpha = np.linspace(0.0, constants.LARGEST_SIDESLIP.rad, constants.POINTS_PER_CURVE)
+    alpha = np.linspace(0.0, 2.0 * constants.USUAL_SIDESLIP.rad, constants.POINTS_PER_CURVE)
     force = np.abs(tyre(Fz, alpha, turn_slip=False).Fy)
     peak = float(alpha[np.argmax(force)])
     if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.USUAL_SIDESLIP.rad):

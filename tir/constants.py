@@ -59,7 +59,12 @@ NARROW_CAMBER_RANGE = Real(0.15, "rad", "Motorcycles lean further than this in o
 USUAL_SIDESLIP = Real(
     15.0,
     "deg",
-    "Vehicles rarely slide further: wider limits do not matter, pictures end here, and where slip is as large.",
+    "Vehicles rarely slide further: wider limits do not matter, pictures end here, checks at twice as much.",
+)
+IN_USE = Series(
+    (0.5, 1.5),
+    "-",
+    "Loads drawn and pressures searched, over the nominal ones, even if a file allows others.",
 )
 LOADS_TO_REACH = Series((0.2, 1.5), "-", "Lowest and highest usual load of vehicles over the nominal one.")
 
@@ -89,11 +94,6 @@ LOWEST_SEARCHED_LOAD = Real(
     0.02, "-", "Lowest searched load over the nominal one; below it no force matters."
 )
 LARGEST_CAMBER = Real(60.0, "deg", "Largest camber searched and drawn, even if a file allows more.")
-LARGEST_SIDESLIP = Real(30.0, "deg", "Largest sideslip searched, even if a file allows more.")
-SEARCHED_PRESSURES = Series(
-    (0.5, 1.5), "-", "Searched pressures over the nominal one, even if a file allows others."
-)
 
 # Pictures
-DRAWN_LOADS = Series((0.5, 1.0, 1.5), "-", "Loads of a picture over the nominal one.")
 POINTS_PER_CURVE = Count(161, "-", "Points of a drawn curve: a smooth peak in a panel of a few centimetres.")

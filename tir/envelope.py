@@ -129,7 +129,7 @@ def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     reach = constants.JUST_OUTSIDE * (box[1] - box[0])
     around = np.array([box[0] - reach, box[1] + reach])
     around[0, 0] = max(around[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
-    around[0, 2] = max(around[0, 2], constants.SEARCHED_PRESSURES[0] * tyre["NOMPRES"])
+    around[0, 2] = max(around[0, 2], constants.IN_USE[0] * tyre["NOMPRES"])
     for condition in CONDITIONS:
         margin, point = worst(tyre, condition.measure, box)
         if np.isnan(margin):
@@ -180,11 +180,11 @@ def _measured(tyre: TyreRecord, measure: Measure, points: np.ndarray) -> Any:
 
 def _box(tyre: TyreRecord) -> np.ndarray:
     """The file's ranges, reduced to what tyres are used for."""
-    camber, sideslip = constants.LARGEST_CAMBER.rad, constants.LARGEST_SIDESLIP.rad
+    camber, sideslip = constants.LARGEST_CAMBER.rad, 2.0 * constants.USUAL_SIDESLIP.rad
     box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
     box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
     box[:, 1] = np.clip(box[:, 1], -camber, camber)
-    least, most = (share * tyre["NOMPRES"] for share in constants.SEARCHED_PRESSURES)
+    least, most = (share * tyre["NOMPRES"] for share in constants.IN_USE)
     pressure = np.clip(box[:, 2], least, most)
     box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
     box[:, 3] = np.clip(box[:, 3], -sideslip, sideslip)

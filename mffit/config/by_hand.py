@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 import sys
@@ -14,9 +13,8 @@ from typing import Annotated, Any
 from pydantic import PlainSerializer, PlainValidator
 from pydantic_core import PydanticCustomError
 
-from mffit import constants
 from mffit.config import quantities as q
-from mffit.errors import InputError, shortened
+from mffit.errors import InputError, meant, shortened
 from tir.parameters import BY_NAME, TABLE, Parameter
 
 BASE = "base"
@@ -162,10 +160,8 @@ def _unsettable(name: str) -> str:
     row = BY_NAME.get(name)
     if row is None:
         known = [row.name for row in TABLE if row.kind == "number" and row.name not in KEYS_OF_TYRE]
-        near = difflib.get_close_matches(
-            name.upper(), known, n=1, cutoff=float(constants.LIKENESS_OF_MISSPELT)
-        )
-        hint = f"did you mean {near[0]}?" if near else "write it as the property file does, such as PCY1"
+        near = meant(name.upper(), known)
+        hint = f"did you mean {near}?" if near else "write it as the property file does, such as PCY1"
         return f"is not a coefficient of MF 6.2; {hint}"
     if name in KEYS_OF_TYRE:
         return f"is set by {KEYS_OF_TYRE[name]} under [tyre]; write it there"
@@ -181,8 +177,8 @@ def _unreadable(given: Any) -> str:
     if isinstance(given, Mapping):
         unknown = [key for key in given if key not in KEYS]
         if unknown:
-            near = difflib.get_close_matches(unknown[0], KEYS, n=1)
-            hint = f'did you mean "{near[0]}"?' if near else f"known are {', '.join(KEYS)}"
+            near = meant(unknown[0], KEYS)
+            hint = f'did you mean "{near}"?' if near else f"known are {', '.join(KEYS)}"
             return f'has the unknown key "{unknown[0]}"; {hint}'
         return "" if given else f"is empty; {HOW}"
     return "" if given == BASE else _no_number(given)

@@ -5,7 +5,6 @@ Nothing here knows a table: the keys to suggest are read from the pydantic model
 
 from __future__ import annotations
 
-import difflib
 import re
 import sys
 from collections.abc import Mapping
@@ -14,10 +13,9 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from mffit import constants
 from mffit.config.locate import line_of
 from mffit.config.quantities import TOO_MANY_DIGITS
-from mffit.errors import InputError, shortened
+from mffit.errors import InputError, meant, shortened
 
 Keys = Mapping[str, tuple[str, ...]]
 """The keys of every table by its dotted name; "" is the top of the file, ``*`` any key."""
@@ -102,11 +100,11 @@ def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
     if detail["type"] != "extra_forbidden":
         return _Mistake(key, line, _sentence(detail, key, lines))
     table, name = _split(key, known)
-    near = difflib.get_close_matches(name, known.get(table, ()), n=1, cutoff=constants.LIKENESS_OF_MISSPELT)
+    near = meant(name, known.get(table, ()))
     if not near:
         return _Mistake(key, line, _unknown(table, name, known), is_unknown=True)
-    meant = f"{key.rpartition('.')[0]}.{near[0]}".lstrip(".")
-    return _Mistake(key, line, f'is unknown; did you mean "{near[0]}"?', is_unknown=True, meant=meant)
+    place = f"{key.rpartition('.')[0]}.{near}".lstrip(".")
+    return _Mistake(key, line, f'is unknown; did you mean "{near}"?', is_unknown=True, meant=place)
 
 
 def _key_at_fault(detail: Any) -> str:

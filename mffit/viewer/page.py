@@ -6,7 +6,6 @@ import hashlib
 import html
 import os
 import re
-import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from mffit.viewer.named import Given, described, named
 from mffit.viewer.panels import OUTPUTS, PANELS
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
+from tir.writing import replace_file
 
 SEAL = re.compile(r"<!-- written by mffit show, sha256 of the rest ([0-9a-f]{64}) -->\n\Z")
 
@@ -49,18 +49,9 @@ class Page:
         text = f"{self.html}<!-- written by mffit show, sha256 of the rest {_digest(self.html)} -->\n"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+            replace_file(path, text.encode())
         except OSError as error:
             raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(text.encode())
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except OSError as error:
-            raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
-        finally:
-            Path(temporary).unlink(missing_ok=True)
         return path
 
     def __repr__(self) -> str:
