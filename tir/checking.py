@@ -10,11 +10,12 @@ import numpy as np
 from tir import constants
 from tir.codegen.program import Switches, that_need
 from tir.consumers import target_problems
-from tir.envelope import over_the_range
+from tir.envelope import RANGES, over_the_range
 from tir.equations import normalise
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, some
 from tir.evaluate import DIVISORS
+from tir.mode import BLOCK
 from tir.parameters import TABLE, TURN_SLIP
 from tir.plausible import SHAPES, SINGLE, broken
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
@@ -25,13 +26,6 @@ KEYS_OF_52 = (
 )  # fmt: skip
 """Coefficients that only the 5.2 generation has."""
 SIDES = ("LEFT", "RIGHT", "SYMMETRIC")
-RANGES = (
-    ("PRESMIN", "PRESMAX"),
-    ("FZMIN", "FZMAX"),
-    ("KPUMIN", "KPUMAX"),
-    ("ALPMIN", "ALPMAX"),
-    ("CAMMIN", "CAMMAX"),
-)
 
 
 def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
@@ -192,14 +186,13 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
     """Contradictions between USE_MODE or FITTYP and the rest of the file."""
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
     turn_slip, road = tyre.turn_slip, mode // 100 % 10
-    block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     if tyre["USE_MODE"] != mode:
         yield _warning(
             "USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, but only whole numbers are defined; write one"
         )
     elif UNKNOWN_DIGIT in use_mode_words(mode):
         yield _warning("USE_MODE", f"USE_MODE {mode} means {use_mode_words(mode)}: see the program's manual")
-    if given and turn_slip and not any(name in tyre.present for name in block):
+    if given and turn_slip and not any(row.name in tyre.present for row in BLOCK):
         yield _warning(
             "USE_MODE",
             f"USE_MODE {mode} asks for turn slip, but the file has no [{TURN_SLIP}]: a simulation estimates it",
@@ -248,11 +241,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
             "PECP1",
             "eps_gamma comes close to 1 within the load range; at 1 the turn-slip stiffness is infinite",
         )
-    rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
-    default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
-    if default and not _known_default(tyre, rows[0].name):
+    default = all(tyre[row.name] == row.default for row in BLOCK) and BLOCK[0].name in tyre.present
+    if default and not _known_default(tyre, BLOCK[0].name):
         yield _warning(
-            rows[0].name, f"the {len(rows)} turn-slip coefficients are the common defaults, not measurements"
+            BLOCK[0].name,
+            f"the {len(BLOCK)} turn-slip coefficients are the common defaults, not measurements",
         )
     if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0) and not _known_default(tyre, "PECP1"):
         yield _warning(
