@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator
 
@@ -29,7 +29,7 @@ def _reason(text: str) -> str:
     return " ".join(text.split())
 
 
-def _as_text(given: Any) -> Any:
+def _as_text(given: object) -> object:
     """A single line as the list of it."""
     return str(given) if isinstance(given, int) and not isinstance(given, bool) else given
 

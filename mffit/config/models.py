@@ -85,7 +85,7 @@ U_RANGES = {"-": q.Fraction, "N": q.UForce, "Nm": q.UMoment, "deg": q.UAngle, "m
 """Accepted range of a standard uncertainty by its unit."""
 
 
-def _u_field(declared: Declared) -> tuple[Any, float | None]:
+def _u_field(declared: Declared) -> tuple[object, float | None]:
     """Type and default of the key that declares the uncertainty of a rig error."""
     accepted: Any = U_RANGES[declared.unit]
     return (accepted | None, None) if declared.default is None else (accepted, float(declared.default))
@@ -138,7 +138,7 @@ class MachineTable(Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _default_u(cls, given: Any) -> Any:
+    def _default_u(cls, given: object) -> object:
         if isinstance(given, dict) and "path_radius" in given and "u_path_radius" not in given:
             return {**given, "u_path_radius": float(constants.U_GIVEN_PATH_RADIUS)}
         return given
@@ -289,7 +289,7 @@ class Column(Table):
     against: Literal["free-rolling", "loaded-radius"] | None = None  #: of kappa only; None: found from Fx = 0
 
 
-def _as_column(given: Any) -> Any:
+def _as_column(given: object) -> object:
     """A heading alone as a table."""
     return {"column": given} if isinstance(given, str) else given
 
@@ -374,7 +374,7 @@ class Config(Brief, Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _load_of_radius(cls, given: Any) -> Any:
+    def _load_of_radius(cls, given: object) -> object:
         """A rolling radius without a load holds at the nominal load."""
         if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
             return given

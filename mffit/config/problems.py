@@ -9,9 +9,10 @@ import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from mffit.config.locate import line_of
 from mffit.config.quantities import TOO_MANY_DIGITS
@@ -48,7 +49,12 @@ class _Mistake(NamedTuple):
 
 
 def validated(
-    model: type[Model], content: Mapping[str, Any], *, path: Path | None, lines: dict[str, int], known: Keys
+    model: type[Model],
+    content: Mapping[str, object],
+    *,
+    path: Path | None,
+    lines: dict[str, int],
+    known: Keys,
 ) -> Model:
     """The content as a model.
 
@@ -80,7 +86,7 @@ def validated(
 
 
 def _refuse_unholdable(
-    content: Any, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
+    content: object, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
 ) -> None:
     """Refuse a whole number that no float can hold, under any key; TOML sets no limit to its digits."""
     if isinstance(content, Mapping):
@@ -94,7 +100,7 @@ def _refuse_unholdable(
         raise InputError(TOO_MANY_DIGITS, file=path, line=line_of(dotted, lines), key=_shown(dotted, lines))
 
 
-def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
+def _mistake(detail: ErrorDetails, lines: dict[str, int], known: Keys) -> _Mistake:
     key = _key_at_fault(detail)
     line = line_of(key, lines) or (1 if lines else None)
     if detail["type"] != "extra_forbidden":
@@ -107,7 +113,7 @@ def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
     return _Mistake(key, line, f'is unknown; did you mean "{near}"?', is_unknown=True, meant=place)
 
 
-def _key_at_fault(detail: Any) -> str:
+def _key_at_fault(detail: ErrorDetails) -> str:
     """Dotted key: the place that pydantic gives, and within it the key that a validator of ours names.
 
     A validator names a key from the top of the file without the numbers of entries (``rig.path``), or within its own table.
@@ -127,7 +133,7 @@ def _shown(key: str, lines: dict[str, int]) -> str:
     return re.sub(r"\.(\d+)(?=\.|$)", lambda found: f"[{int(found[1]) + 1}]", key)
 
 
-def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
+def _sentence(detail: ErrorDetails, key: str, lines: dict[str, int]) -> str:
     kind, given, context = detail["type"], detail["input"], detail.get("ctx", {})
     if kind == "sentence":
         return str(context["sentence"])
@@ -165,7 +171,7 @@ def _missing(key: str, lines: dict[str, int]) -> str:
     return f"is missing; add it to {f'[[{name}]]' if is_entry else f'[{name}]'}"
 
 
-def _quoted(given: Any) -> str:
+def _quoted(given: object) -> str:
     if isinstance(given, str):
         return f'"{shortened(given)}"'
     if isinstance(given, bool):
@@ -212,7 +218,7 @@ def known_keys(*models: type[BaseModel]) -> dict[str, tuple[str, ...]]:
     return known
 
 
-def _models(annotation: Any, below: str = "") -> list[tuple[type[BaseModel], str]]:
+def _models(annotation: object, below: str = "") -> list[tuple[type[BaseModel], str]]:
     """Models within the type of a field, with ``*`` for those that stand under keys of any name."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [(annotation, below)]

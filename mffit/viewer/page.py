@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import mffit
 from mffit.errors import InputError
@@ -113,7 +112,7 @@ def on_page(quantity: QuantityName) -> dict[str, Json]:
     }
 
 
-def _filled(data: dict[str, Any], names: list[str]) -> str:
+def _filled(data: Mapping[str, object], names: list[str]) -> str:
     return (
         environment("mffit.viewer")
         .get_template("show.html.j2")

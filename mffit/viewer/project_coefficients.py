@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +22,7 @@ FOUND = BY_THE_FIT | {"measured"}
 """Status of coefficients that the data determine."""
 
 
-def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, Any]]:
+def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, object]]:
     """The coefficients on which the page's curves depend, in the order of a property file.
 
     Parameters
@@ -103,7 +102,7 @@ def _settable(row: Parameter) -> bool:
     return row.kind == "number" and row.name not in KEYS_OF_TYRE and not row.section.endswith("_RANGE")
 
 
-def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, Any]:
+def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, object]:
     record = fitted.coefficients[row.name]
     value = float(fitted.tyre[row.name])
     lower, upper = record.bounds or row.bounds

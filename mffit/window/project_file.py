@@ -7,7 +7,7 @@ import stat
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from mffit.config import Config
 from mffit.config.loading import checked
@@ -107,7 +107,7 @@ class ProjectFile:
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror}); put it back", file=self.path) from None
 
-    def _parsed(self, content: bytes) -> tuple[str, dict[str, Any]]:
+    def _parsed(self, content: bytes) -> tuple[str, dict[str, object]]:
         """Text and tables."""
         try:
             text = content.decode("utf-8-sig")
