@@ -89,7 +89,7 @@ def read_entry(given: tuple[str, object]) -> CoefficientByHand:
     name, content = given
     if isinstance(content, CoefficientByHand):
         return content
-    if mistake := _unsettable(name):
+    if mistake := unsettable(name):
         raise q.wrong(mistake)
     row = BY_NAME[name]
     if content == BASE:
@@ -141,7 +141,7 @@ def _check_freed(row: Parameter, entry: CoefficientByHand) -> None:
             raise q.wrong(f"{given:g} is outside the bounds {lower:g} to {upper:g}; correct one of them", key)
 
 
-def _unsettable(name: str) -> str:
+def unsettable(name: str) -> str:
     """Why no coefficient of this name can be set by hand; empty if one can."""
     row = BY_NAME.get(name)
     if row is None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from mffit.config.by_hand import KEYS_OF_TYRE, may_be_free
+from mffit.config.by_hand import may_be_free, unsettable
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
 from mffit.fit.wheel.vertical import OF_WHEEL_SPEED
@@ -32,7 +32,7 @@ def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str,
     """
     moved = {**beside_the_search(result.fit), **movers(result.fit)}
     names = set(used)
-    rows = [row for row in TABLE if row.name in names and _settable(row)]
+    rows = [row for row in TABLE if row.name in names and not unsettable(row.name)]
     return [_row(row, result.fit, moved.get(row.name, [])) for row in rows]
 
 
@@ -95,11 +95,6 @@ def _channels(shares: dict[str, float]) -> list[str]:
         for c in ordered
         if shares[c] >= constants.LEAST_MOVER
     ]
-
-
-def _settable(row: Parameter) -> bool:
-    """Whether the row is a coefficient that ``[coefficients]`` may set."""
-    return row.kind == "number" and row.name not in KEYS_OF_TYRE and not row.section.endswith("_RANGE")
 
 
 def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, object]:
