@@ -22,7 +22,7 @@ from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import Replay, replay
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-from tir.evaluate import unchecked
+from tir.evaluate import OperatingCondition, unchecked
 from tir.record import TyreRecord
 
 Function = Callable[..., Any]
@@ -140,12 +140,13 @@ def _evaluated(
 ) -> tuple[Any, ...]:
     """Outputs by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
     refuse_zero_divisors(tyre.p, switches, outputs)
+    at = OperatingCondition(*inputs)
     with np.errstate(all="ignore"):
         try:
-            forces, state = unchecked(tyre.p, *inputs, **switches._asdict())
+            forces, state = unchecked(tyre.p, at, switches)
         except ArithmeticError:
             numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-            forces, state = unchecked(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+            forces, state = unchecked(SimpleNamespace(**numbers), at, switches)
     return tuple(getattr(forces if name in FORCES else state, name) for name in outputs)
 
 
