@@ -23,7 +23,7 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
-from mffit.config.by_hand import Entries, check_coefficients, named
+from mffit.config.by_hand import Entries, as_in_the_file, check_coefficients, named
 from mffit.config.exclusion import ExcludeTable, check_exclusions
 from mffit.config.laboratory import LabTable
 from mffit.config.locate import line_of
@@ -364,6 +364,11 @@ class Config(Brief, Table):
         return None if self.tyre.base is None else self._folder / self.tyre.base
 
     @property
+    def hand(self) -> dict[str, object]:
+        """The entries of [coefficients] as the file has them."""
+        return {name: as_in_the_file(entry) for name, entry in self.coefficients.items()}
+
+    @property
     def priors_path(self) -> Path | None:
         """The file with priors from a fleet; None if none is named."""
         return None if self.tyre.priors is None else self._folder / self.tyre.priors
@@ -417,17 +422,13 @@ class Config(Brief, Table):
         return self
 
     @model_validator(mode="after")
-    def _sister_is_the_base(self) -> Config:
+    def _sister_is_the_base_and_alone(self) -> Config:
         if self.sister is not None and self.tyre.base is None:
             raise q.wrong(
                 "scales the longitudinal force of a sister tyre, but [tyre] names no base file; name the sister's file there, "
                 "or remove [sister]",
                 "sister.Fx",
             )
-        return self
-
-    @model_validator(mode="after")
-    def _longitudinal_force_comes_from_one_place(self) -> Config:
         if self.sister is not None and self.campaign:
             raise q.wrong(
                 "is given beside [[campaign]], and Fx can come from one of them only; remove one", "sister.Fx"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import mffit
-from mffit.config.by_hand import as_in_the_file
 from mffit.fit.agreement import with_points
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
@@ -48,7 +47,7 @@ def project_data(result: BuildResult) -> dict[str, Json]:
             "conicity": [name for name in CONICITY if name in parameters],
             "coefficients": rows,
             "points": columns(points, result.excluded, fitted),
-            "hand": {name: as_in_the_file(entry) for name, entry in result.config.coefficients.items()},
+            "hand": result.config.hand,
             "exclude": result.config.fit.exclude,
             "trusted": result.trusted,
             "warnings": result.warnings,
