@@ -6,7 +6,8 @@ and exits with 2. Any other exception is a bug in mffit. Every module may import
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import difflib
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -78,6 +79,11 @@ def readable(
         raise InputError(folder, file=path) from None
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
+
+
+def meant(word: str, known: Iterable[str], *, likeness: float = constants.LIKENESS_OF_MISSPELT) -> str:
+    """The known word that a misspelt one probably is; empty if none is like it."""
+    return next(iter(difflib.get_close_matches(word, list(known), n=1, cutoff=likeness)), "")
 
 
 def shortened(text: object) -> str:

@@ -95,7 +95,8 @@ def covariance_without(axes: np.ndarray, least: float) -> np.ndarray:
     least : smallest share of the information about a direction that is left; less makes its prediction meaningless
     """
     share, directions = np.linalg.eigh(axes.T @ axes)
-    return (directions / np.maximum(1.0 - share, least)) @ directions.T
+    factor: np.ndarray = (directions / np.maximum(1.0 - share, least)) @ directions.T
+    return factor
 
 
 def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,17 +19,19 @@ from tir.codegen import single
 from tir.codegen.cpython import SCALARS, kernel
 from tir.codegen.cpython.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
-from tir.codegen.replay import replay
+from tir.codegen.replay import Replay, replay
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
-from tir.evaluate import unchecked
+from tir.evaluate import OperatingCondition, unchecked
 from tir.record import TyreRecord
 
 Function = Callable[..., Any]
+Made = TypeVar("Made")
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
-THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
+THREADS_FROM = 4 * BLOCK
+"""Conditions that are worth starting threads."""
 FORCES, STATE = Forces._fields, State._fields
 OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
 """States that :mod:`tir.transient` needs."""
@@ -138,12 +140,13 @@ def _evaluated(
 ) -> tuple[Any, ...]:
     """Outputs by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
     refuse_zero_divisors(tyre.p, switches, outputs)
+    at = OperatingCondition(*inputs)
     with np.errstate(all="ignore"):
         try:
-            forces, state = unchecked(tyre.p, *inputs, **switches._asdict())
+            forces, state = unchecked(tyre.p, at, switches)
         except ArithmeticError:
             numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-            forces, state = unchecked(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+            forces, state = unchecked(SimpleNamespace(**numbers), at, switches)
     return tuple(getattr(forces if name in FORCES else state, name) for name in outputs)
 
 
@@ -203,21 +206,32 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
         loaded = meter.kernel()
     if loaded is None:
         return None
-    if ("batch", switches) not in tyre.prepared:
-        values = _values(tyre, switches, FORCES)
-        tyre.prepared["batch", switches] = None if values is None else loaded.run_of(values)
-    bound = tyre.prepared["batch", switches]
-    return bound
+    return _prepared(tyre, "batch", switches, FORCES, loaded.run_of)
 
 
 def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Function, Function] | None:
     """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
-    if ("lag", switches) not in tyre.prepared:
+
+    def functions(values: dict[str, float]) -> tuple[Function, Function]:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
-        values = _values(tyre, switches, (*FORCES, *OF_CONTACT))
-        tyre.prepared["lag", switches] = None if values is None else lag_functions(values, switches)
-    found: tuple[Function, Function] | None = tyre.prepared["lag", switches]
+        return lag_functions(values, switches)
+
+    return _prepared(tyre, "lag", switches, (*FORCES, *OF_CONTACT), functions)
+
+
+def _prepared(
+    tyre: TyreRecord,
+    kind: str,
+    switches: Switches,
+    outputs: tuple[str, ...],
+    made: Callable[[dict[str, float]], Made],
+) -> Made | None:
+    """What is made of the parameters as floats, cached in the tyre; None if one is not a real number."""
+    if (kind, switches) not in tyre.prepared:
+        values = _values(tyre, switches, outputs)
+        tyre.prepared[kind, switches] = None if values is None else made(values)
+    found: Made | None = tyre.prepared[kind, switches]
     return found
 
 
@@ -235,32 +249,18 @@ def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Swit
     run = _kernel_for(tyre, n, switches)
     if run is not None:
         return _in_vectors(run, inputs, n)
-    run = _arrays_of(tyre, switches)
-    if run is None:
-        return None
+    values = _prepared(tyre, "values", switches, FORCES, dict)
+    return None if values is None else _in_numpy(replay(switches, FORCES), values, inputs, n)
+
+
+def _in_numpy(program: Replay, values: dict[str, float], inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
     out = np.empty((len(FORCES), n))
-    _in_numpy(run, inputs, out)
-    return out
-
-
-def _arrays_of(tyre: TyreRecord, switches: Switches) -> Function | None:
-    """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
-    key = ("arrays", switches)
-    if key not in tyre.prepared:
-        values = _values(tyre, switches, FORCES)
-        if values is None:
-            return None
-        program = replay(switches, FORCES)
-        tyre.prepared[key] = lambda *block: program({**values, **dict(zip(INPUTS, block, strict=True))})
-    found: Function | None = tyre.prepared[key]
-    return found
-
-
-def _in_numpy(run: Function, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
-    for start in range(0, out.shape[1], BLOCK):
-        found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in inputs))
+    for start in range(0, n, BLOCK):
+        block = (x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in inputs)
+        found = program({**values, **dict(zip(INPUTS, block, strict=True))})
         for row, force in zip(out, found, strict=True):
             row[start : start + BLOCK] = force
+    return out
 
 
 def _in_vectors(run: Function, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:

@@ -10,11 +10,12 @@ import numpy as np
 from tir import constants
 from tir.codegen.program import Switches, that_need
 from tir.consumers import target_problems
-from tir.envelope import over_the_range
+from tir.envelope import RANGES, over_the_range
 from tir.equations import normalise
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, some
 from tir.evaluate import DIVISORS
+from tir.mode import BLOCK
 from tir.parameters import TABLE, TURN_SLIP
 from tir.plausible import SHAPES, SINGLE, broken
 from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
@@ -25,13 +26,6 @@ KEYS_OF_52 = (
 )  # fmt: skip
 """Coefficients that only the 5.2 generation has."""
 SIDES = ("LEFT", "RIGHT", "SYMMETRIC")
-RANGES = (
-    ("PRESMIN", "PRESMAX"),
-    ("FZMIN", "FZMAX"),
-    ("KPUMIN", "KPUMAX"),
-    ("ALPMIN", "ALPMAX"),
-    ("CAMMIN", "CAMMAX"),
-)
 
 
 def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
@@ -88,9 +82,9 @@ def _warning(name: str, sentence: str) -> Problem:
 
 def _dimensions(tyre: Tyre) -> Iterator[Problem]:
     R0 = tyre["UNLOADED_RADIUS"]
-    smallest, largest = constants.RADIUS_RANGE
+    smallest, largest = constants.LENGTH_RANGE
     if not smallest < R0 < largest:
-        millimetres = R0 > constants.RADIUS_IN_MILLIMETRES
+        millimetres = 1e3 * smallest < R0
         hint = "it looks like millimetres" if millimetres else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
@@ -154,11 +148,10 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
 def _clamps(tyre: Tyre) -> Iterator[Problem]:
     """Problems of ranges that vehicles exceed: simulations limit their inputs to the range."""
     Fz = float(tyre["FNOMIN"])
-    first, last = constants.SIDESLIP_FOR_THE_PEAK
-    alpha = np.radians(np.linspace(first, last, constants.STEPS_FOR_THE_PEAK))
+    alpha = np.linspace(0.0, 2.0 * constants.USUAL_SIDESLIP.rad, constants.POINTS_PER_CURVE)
     force = np.abs(tyre(Fz, alpha, turn_slip=False).Fy)
     peak = float(alpha[np.argmax(force)])
-    if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.NARROW_SIDESLIP_RANGE.rad):
+    if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.USUAL_SIDESLIP.rad):
         share = abs(tyre(Fz, float(tyre["ALPMAX"]), turn_slip=False).Fy) / float(force.max())
         yield _warning(
             "ALPMAX",
@@ -193,14 +186,13 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
     """Contradictions between USE_MODE or FITTYP and the rest of the file."""
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
     turn_slip, road = tyre.turn_slip, mode // 100 % 10
-    block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     if tyre["USE_MODE"] != mode:
         yield _warning(
             "USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, but only whole numbers are defined; write one"
         )
     elif UNKNOWN_DIGIT in use_mode_words(mode):
         yield _warning("USE_MODE", f"USE_MODE {mode} means {use_mode_words(mode)}: see the program's manual")
-    if given and turn_slip and not any(name in tyre.present for name in block):
+    if given and turn_slip and not any(row.name in tyre.present for row in BLOCK):
         yield _warning(
             "USE_MODE",
             f"USE_MODE {mode} asks for turn slip, but the file has no [{TURN_SLIP}]: a simulation estimates it",
@@ -242,18 +234,18 @@ def _old_keys(tyre: Tyre) -> Iterator[Problem]:
 def _spin(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
     lowest = max(p.FZMIN, constants.LOWEST_SEARCHED_LOAD * p.FNOMIN)
-    load = np.linspace(lowest, p.FZMAX, constants.LOADS_FOR_EPS_GAMMA)
+    load = np.array([lowest, p.FZMAX])  # eps_gamma is linear between
     eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
     if np.any(np.abs(eps - 1.0) < constants.EPS_GAMMA_NEAR_ONE) or np.ptp(np.sign(eps - 1.0)) > 0:
         yield _warning(
             "PECP1",
             "eps_gamma comes close to 1 within the load range; at 1 the turn-slip stiffness is infinite",
         )
-    rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
-    default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
-    if default and not _known_default(tyre, rows[0].name):
+    default = all(tyre[row.name] == row.default for row in BLOCK) and BLOCK[0].name in tyre.present
+    if default and not _known_default(tyre, BLOCK[0].name):
         yield _warning(
-            rows[0].name, f"the {len(rows)} turn-slip coefficients are the common defaults, not measurements"
+            BLOCK[0].name,
+            f"the {len(BLOCK)} turn-slip coefficients are the common defaults, not measurements",
         )
     if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0) and not _known_default(tyre, "PECP1"):
         yield _warning(
@@ -263,8 +255,7 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
     Fz = float(p.FNOMIN)
     with_spin, without = (float(np.diff(tyre(Fz, gamma=gamma, turn_slip=on).Fy)[0]) for on in (True, False))
     expected = without * p.UNLOADED_RADIUS / tyre.state(Fz).Re
-    mismatch = abs(with_spin - expected) > constants.CAMBER_FORCE_MISMATCH * abs(expected)
-    if abs(without) > constants.NO_CAMBER_FORCE and mismatch:
+    if without and not np.isclose(with_spin, expected, rtol=constants.NEGLIGIBLE_SHARE):
         yield _warning(
             "PHYP1",
             "the camber force with turn slip on differs from the one with turn slip off times R0/Re: check PHYP1-4",

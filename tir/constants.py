@@ -32,7 +32,6 @@ COMPILE_FROM_CONDITIONS = Count(
     "A call with this many conditions waits for the compiler, if the kernel is not in the cache.",
     "docs/speed.md",
 )
-THREADS_FROM_CONDITIONS = Count(32_768, "-", "A call with this many conditions is worth starting threads.")
 
 # Text of a file
 NAMES_IN_A_SENTENCE = Count(6, "-", "Most keys that a message names; it counts the others.")
@@ -43,20 +42,31 @@ MARGIN_INSIDE_RANGE = Real(
 )
 
 # Single values that can only be in another unit
-RADIUS_RANGE = Series((0.05, 1.5), "m", "Unloaded radii of road vehicles' tyres lie well inside.")
-RADIUS_IN_MILLIMETRES = Real(50.0, "m", "A larger number for a radius can only be in millimetres.")
-WIDEST_TYRE = Real(2.0, "m", "No tyre is wider; a larger number is in millimetres or inches.")
-LOWEST_PRESSURE = Real(5e3, "Pa", "No tyre runs with less; a smaller number is in kPa or bar.")
-HIGHEST_PRESSURE = Real(1e7, "Pa", "No tyre holds more.")
-LARGEST_SIDESLIP_LIMIT = Real(1.7, "rad", "More than a right angle, so a larger limit is in degrees.")
-LARGEST_CAMBER_LIMIT = Real(1.6, "rad", "More than a wheel lying flat, so a larger limit is in degrees.")
+LENGTH_RANGE = Series(
+    (0.05, 1.5),
+    "m",
+    "Radii and widths of road vehicles' tyres lie inside; the same numbers are seen in millimetres.",
+)
+PRESSURE_RANGE = Series(
+    (5e3, 1e7), "Pa", "Tyres run within; a smaller number is in kPa or bar; My takes no less."
+)
+LARGEST_ANGLE = Real(
+    1.7, "rad", "Sideslip and camber stay below a right angle; a larger limit is in degrees."
+)
 
 # Ranges to which simulations hold their inputs
 NARROW_CAMBER_RANGE = Real(0.15, "rad", "Motorcycles lean further than this in ordinary corners.")
-NARROW_SIDESLIP_RANGE = Real(15.0, "deg", "Vehicles rarely slide further, so a wider limit does not matter.")
+USUAL_SIDESLIP = Real(
+    15.0,
+    "deg",
+    "Vehicles rarely slide further: wider limits do not matter, pictures end here, checks at twice as much.",
+)
+IN_USE = Series(
+    (0.5, 1.5),
+    "-",
+    "Loads drawn and pressures searched, over the nominal ones, even if a file allows others.",
+)
 LOADS_TO_REACH = Series((0.2, 1.5), "-", "Lowest and highest usual load of vehicles over the nominal one.")
-SIDESLIP_FOR_THE_PEAK = Series((0.1, 30.0), "deg", "Range in which the peak of the side force is searched.")
-STEPS_FOR_THE_PEAK = Count(300, "-", "Angles at which the side force is computed to find its peak.")
 
 # Physics
 EFFECTIVE_RADIUS_RANGE = Series(
@@ -65,14 +75,10 @@ EFFECTIVE_RADIUS_RANGE = Series(
 EPS_GAMMA_NEAR_ONE = Real(
     0.1, "-", "Distance of eps_gamma from 1 below which turn-slip stiffness exceeds ten times that at 0."
 )
-CAMBER_FORCE_MISMATCH = Real(
-    0.01, "-", "Relative difference of camber forces with and without turn slip due to rounded coefficients."
+NEGLIGIBLE_SHARE = Real(
+    0.01, "-", "Share of a force within the accuracy of a rig and of rounded coefficients."
 )
-NO_CAMBER_FORCE = Real(1e-9, "N", "Smaller camber forces are zero but for rounding.")
 CREDIBLE_FRICTION = Real(4.0, "-", "Larger friction coefficients are extrapolation, not a tyre.")
-REVERSED_FORCE_SHARE = Real(
-    0.01, "-", "Share by which a force may change its sign: within the accuracy of a rig."
-)
 
 # Search for the worst point of a file's ranges
 VALUES_PER_SEARCHED_RANGE = Series(
@@ -84,23 +90,10 @@ ROUNDS_OF_THE_SEARCH = Count(
 JUST_OUTSIDE = Real(
     0.1, "-", "Distance beyond a range, over its width, to which a simulation may extrapolate."
 )
-LOWEST_SHARE_OUTSIDE = Real(
-    0.2, "-", "Share of the lower end of a range down to which load and pressure are searched."
-)
 LOWEST_SEARCHED_LOAD = Real(
     0.02, "-", "Lowest searched load over the nominal one; below it no force matters."
 )
-SEARCHED_CAMBER = Real(1.05, "rad", "Largest searched camber, 60 deg, even if a file allows more.")
-SEARCHED_SIDESLIP = Real(0.5, "rad", "Largest searched sideslip, even if a file allows more.")
-SEARCHED_PRESSURES = Series(
-    (0.5, 1.5), "-", "Searched pressures over the nominal one, even if a file allows others."
-)
-LOADS_FOR_EPS_GAMMA = Count(21, "-", "Loads over the range at which eps_gamma is checked.")
+LARGEST_CAMBER = Real(60.0, "deg", "Largest camber searched and drawn, even if a file allows more.")
 
 # Pictures
-DRAWN_LOADS = Series((0.5, 1.0, 1.5), "-", "Loads of a picture over the nominal one.")
-DRAWN_SIDESLIP = Real(15.0, "deg", "End of a picture even if the file's range is wider.")
-DRAWN_CAMBER = Real(50.0, "deg", "End of a picture even if the file's range is wider.")
-DRAWN_SLIP = Real(0.3, "-", "End of a picture even if the file's range is wider.")
 POINTS_PER_CURVE = Count(161, "-", "Points of a drawn curve: a smooth peak in a panel of a few centimetres.")
-NOTEBOOK_DPI = Count(80, "-", "Resolution of a notebook's picture: small in the file, readable on a screen.")

@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Figure
 
 WIDEST = {
-    "alpha": constants.DRAWN_SIDESLIP.rad,
-    "kappa": constants.DRAWN_SLIP,
-    "gamma": constants.DRAWN_CAMBER.rad,
+    "alpha": constants.USUAL_SIDESLIP.rad,
+    "kappa": math.tan(constants.USUAL_SIDESLIP.rad),
+    "gamma": constants.LARGEST_CAMBER.rad,
 }
+LOADS = (constants.IN_USE[0], 1.0, constants.IN_USE[1])
+"""Loads of the curves over the nominal one."""
 KEYS = {"alpha": ("ALPMIN", "ALPMAX"), "kappa": ("KPUMIN", "KPUMAX"), "gamma": ("CAMMIN", "CAMMAX")}
 PANELS = (("alpha", "Fy"), ("alpha", "Mz"), ("kappa", "Fx"), ("gamma", "Fy"))
 LABELS = {
@@ -44,11 +46,7 @@ def plot(
         from matplotlib.figure import Figure
     except ImportError:
         raise TirError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
-    at = (
-        [share * float(tyre["FNOMIN"]) for share in constants.DRAWN_LOADS]
-        if loads is None
-        else [float(x) for x in loads]
-    )
+    at = [share * float(tyre["FNOMIN"]) for share in LOADS] if loads is None else [float(x) for x in loads]
     rows = math.ceil(len(panels) / 2)
     figure = Figure(figsize=(8.4, 2.7 * rows), layout="constrained")
     for ax, (x, y) in zip(figure.subplots(rows, 2, squeeze=False).flat, panels, strict=True):
@@ -79,7 +77,7 @@ def notebook(tyre: Tyre) -> str:
             return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
-    figure.savefig(stream, dpi=constants.NOTEBOOK_DPI, format="png", facecolor="white")
+    figure.savefig(stream, format="png", facecolor="white")
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
 
@@ -89,7 +87,7 @@ def _table(tyre: Tyre) -> str:
     angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
     head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
     lines = []
-    for share in constants.DRAWN_LOADS:
+    for share in LOADS:
         Fz = share * float(tyre["FNOMIN"])
         found = tyre(Fz, np.radians(angles)).Fy
         lines.append(f"<tr><th>{Fz:.0f} N</th>{''.join(f'<td>{Fy:.0f} N</td>' for Fy in found)}</tr>")

@@ -21,7 +21,7 @@ RANGES = (
     ("KPUMIN", "KPUMAX"),
 )
 """The ranges searched, in the order of :data:`tir.constants.VALUES_PER_SEARCHED_RANGE`."""
-SLIGHT, FRICTION = constants.REVERSED_FORCE_SHARE, constants.CREDIBLE_FRICTION
+SLIGHT, FRICTION = constants.NEGLIGIBLE_SHARE, constants.CREDIBLE_FRICTION
 
 Measure = Callable[[Any, normalise.Inputs], Any]
 
@@ -126,11 +126,10 @@ CONDITIONS = (
 def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     """Problems for the conditions that the tyre violates within its ranges or just outside."""
     box = _box(tyre)
-    width = box[1] - box[0]
-    reach = constants.JUST_OUTSIDE * width
+    reach = constants.JUST_OUTSIDE * (box[1] - box[0])
     around = np.array([box[0] - reach, box[1] + reach])
-    for k in (0, 2):  # load and pressure stay positive
-        around[0, k] = max(around[0, k], constants.LOWEST_SHARE_OUTSIDE * box[0, k])
+    around[0, 0] = max(around[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
+    around[0, 2] = max(around[0, 2], constants.IN_USE[0] * tyre["NOMPRES"])
     for condition in CONDITIONS:
         margin, point = worst(tyre, condition.measure, box)
         if np.isnan(margin):
@@ -181,13 +180,14 @@ def _measured(tyre: TyreRecord, measure: Measure, points: np.ndarray) -> Any:
 
 def _box(tyre: TyreRecord) -> np.ndarray:
     """The file's ranges, reduced to what tyres are used for."""
+    camber, sideslip = constants.LARGEST_CAMBER.rad, 2.0 * constants.USUAL_SIDESLIP.rad
     box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
     box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
-    box[:, 1] = np.clip(box[:, 1], -constants.SEARCHED_CAMBER, constants.SEARCHED_CAMBER)
-    least, most = (share * tyre["NOMPRES"] for share in constants.SEARCHED_PRESSURES)
+    box[:, 1] = np.clip(box[:, 1], -camber, camber)
+    least, most = (share * tyre["NOMPRES"] for share in constants.IN_USE)
     pressure = np.clip(box[:, 2], least, most)
     box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
-    box[:, 3] = np.clip(box[:, 3], -constants.SEARCHED_SIDESLIP, constants.SEARCHED_SIDESLIP)
+    box[:, 3] = np.clip(box[:, 3], -sideslip, sideslip)
     return box
 
 

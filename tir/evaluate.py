@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from numbers import Real
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tir.constants import LOWEST_PRESSURE, SMALLEST_LOAD
+from tir.constants import PRESSURE_RANGE, SMALLEST_LOAD
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
@@ -17,7 +17,27 @@ from tir.parameters import TABLE
 
 CONICITY = tuple(row.name for row in TABLE if row.conicity)
 DIVISORS = tuple(row.name for row in TABLE if row.divisor)
-NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), float(LOWEST_PRESSURE)
+NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), PRESSURE_RANGE[0]
+
+
+class OperatingCondition(NamedTuple):
+    """The inputs of the model, SI and radians, as :func:`evaluate` explains them; scalars or arrays that broadcast."""
+
+    Fz: Any
+    alpha: Any
+    gamma: Any
+    kappa: Any
+    phi_t: Any
+    Vx: Any
+    pressure: Any
+
+
+class Switches(NamedTuple):
+    """Options of the model; each combination has a program of its own."""
+
+    turn_slip: bool = False
+    star: bool = False
+    limits: bool = False
 
 
 def evaluate(
@@ -45,7 +65,7 @@ def evaluate(
     kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
     phi_t : turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
     Vx : speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
-    pressure : inflation pressure [Pa]; default INFLPRES; in My not below LOWEST_PRESSURE, where QSY8 < 0 leads to infinity
+    pressure : inflation pressure [Pa]; default INFLPRES; in My not below PRESSURE_RANGE, where QSY8 < 0 leads to infinity
     turn_slip : let spin act (zeta factors); otherwise phi_t is ignored
     star : tan(alpha) and sin(gamma) as inputs instead of the angles
     limits : hold the inputs to the file's ranges and the curvature factors to <= 1
@@ -64,46 +84,22 @@ def evaluate(
         raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
     Vx = p.LONGVL if Vx is None else Vx
     pressure = p.INFLPRES if pressure is None else pressure
-    return unchecked(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits)
+    at = OperatingCondition(Fz, alpha, gamma, kappa, phi_t, Vx, pressure)
+    return unchecked(p, at, Switches(turn_slip, star, limits))
 
 
-def unchecked(
-    p: Any,
-    Fz: Any,
-    alpha: Any,
-    gamma: Any,
-    kappa: Any,
-    phi_t: Any,
-    Vx: Any,
-    pressure: Any,
-    turn_slip: bool,
-    star: bool,
-    limits: bool,
-) -> tuple[Forces, State]:
+def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
     """As :func:`evaluate`, all given; what divides by a parameter that is 0 is infinite, NaN or an ArithmeticError."""
-    if isinstance(pressure, float | int):
-        pressure = np.float64(pressure)  # Python's own numbers raise at 0 ** -0.4, numpy's do not
-    inputs, switches = (Fz, alpha, gamma, kappa, phi_t, Vx, pressure), (turn_slip, star, limits)
-    backwards = np.real(Vx) < 0.0
-    if np.any(backwards):
-        return either_way(p, backwards, *inputs, *switches)
-    return forwards(p, *inputs, *switches)
+    if isinstance(at.pressure, float | int):  # Python's own numbers raise at 0 ** -0.4, numpy's do not
+        at = at._replace(pressure=np.float64(at.pressure))
+    backwards = np.real(at.Vx) < 0.0
+    return either_way(p, backwards, at, switches) if np.any(backwards) else forwards(p, at, switches)
 
 
-def forwards(
-    p: Any,
-    Fz: Any,
-    alpha: Any,
-    gamma: Any,
-    kappa: Any,
-    phi_t: Any,
-    Vx: Any,
-    pressure: Any,
-    turn_slip: bool,
-    star: bool,
-    limits: bool,
-) -> tuple[Forces, State]:
-    """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, all given."""
+def forwards(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
+    """The model of a wheel that rolls forwards, ``Vx`` >= 0."""
+    Fz, alpha, gamma, kappa, phi_t, Vx, pressure = at
+    turn_slip, star, limits = switches
     unloaded = np.real(Fz) <= 0.0
     Fz_given, kappa_given = select(unloaded, NEARLY_UNLOADED, Fz), kappa
     Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
@@ -121,30 +117,14 @@ def forwards(
     return Forces(*(select(unloaded, 0.0, f) for f in out)), state
 
 
-def either_way(
-    p: Any,
-    backwards: Any,
-    Fz: Any,
-    alpha: Any,
-    gamma: Any,
-    kappa: Any,
-    phi_t: Any,
-    Vx: Any,
-    pressure: Any,
-    turn_slip: bool,
-    star: bool,
-    limits: bool,
-) -> tuple[Forces, State]:
+def either_way(p: Any, backwards: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
     """The model for either direction: where ``backwards`` holds, in a frame turned by half a revolution about z.
 
     In that frame the wheel rolls forwards and is turned on its rim.
     """
     turned = select(backwards, -1.0, 1.0)
-    out, state = forwards(
-        turned_on_rim(p, turned),
-        Fz, alpha, turned * gamma, kappa, turned * phi_t, np.abs(Vx), pressure,
-        turn_slip, star, limits,
-    )  # fmt: skip
+    ahead = at._replace(gamma=turned * at.gamma, phi_t=turned * at.phi_t, Vx=np.abs(at.Vx))
+    out, state = forwards(turned_on_rim(p, turned), ahead, switches)
     out = out._replace(Fx=turned * out.Fx, Fy=turned * out.Fy, Mx=turned * out.Mx, My=turned * out.My)
     return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)
 

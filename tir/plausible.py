@@ -25,27 +25,22 @@ class PlausibleRule:
 SINGLE = (
     PlausibleRule(
         ("NOMPRES", "INFLPRES"),
-        lambda x: 0.0 < x < constants.LOWEST_PRESSURE,
+        lambda x: 0.0 < x < constants.PRESSURE_RANGE[0],
         "it looks like kPa or bar; write Pa",
     ),
     PlausibleRule(
         ("NOMPRES", "INFLPRES"),
-        lambda x: x > constants.HIGHEST_PRESSURE,
+        lambda x: x > constants.PRESSURE_RANGE[1],
         "no tyre holds that pressure; write Pa",
     ),
     PlausibleRule(
-        ("ALPMIN", "ALPMAX"),
-        lambda x: abs(x) > constants.LARGEST_SIDESLIP_LIMIT,
-        "it looks like degrees; write radians",
-    ),
-    PlausibleRule(
-        ("CAMMIN", "CAMMAX"),
-        lambda x: abs(x) > constants.LARGEST_CAMBER_LIMIT,
+        ("ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX"),
+        lambda x: abs(x) > constants.LARGEST_ANGLE,
         "it looks like degrees; write radians",
     ),
     PlausibleRule(
         ("WIDTH", "RIM_WIDTH"),
-        lambda x: x > constants.WIDEST_TYRE,
+        lambda x: x > constants.LENGTH_RANGE[1],
         "it looks like millimetres or inches; write metres",
     ),
     PlausibleRule(

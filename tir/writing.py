@@ -28,12 +28,17 @@ def content(tyre: TyreRecord, target: str | None = None) -> tuple[str, str]:
 
 def write(tyre: TyreRecord, path: str | Path, target: str | None = None) -> None:
     """Write :func:`content`; the file at ``path`` is replaced only once the new one is complete."""
-    path, (text, encoding) = Path(path), content(tyre, target)
+    text, encoding = content(tyre, target)
+    replace_file(Path(path), text.encode(encoding))
+
+
+def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
+    """Write a file in one step: the one at ``path`` is replaced only once the new one is complete."""
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(text.encode(encoding))
-        os.chmod(temporary, 0o644)
+            stream.write(content)
+        os.chmod(temporary, mode)
         os.replace(temporary, path)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)

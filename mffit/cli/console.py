@@ -108,7 +108,7 @@ class PipeTolerant:
 
     def write(self, text: str) -> int:
         try:
-            return self._stream.write(text)
+            return int(self._stream.write(text))
         except BrokenPipeError:
             self._discard_the_rest()
             return len(text)

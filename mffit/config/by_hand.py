@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import PlainSerializer, PlainValidator
 from pydantic_core import PydanticCustomError
 
-from mffit import constants
 from mffit.config import quantities as q
-from mffit.errors import InputError, shortened
+from mffit.errors import InputError, meant, shortened
 from tir.parameters import BY_NAME, TABLE, Parameter
 
 BASE = "base"
@@ -70,7 +68,7 @@ class CoefficientByHand:
         return lower if self.min is None else self.min, upper if self.max is None else self.max
 
 
-def as_in_the_file(entry: CoefficientByHand) -> Any:
+def as_in_the_file(entry: CoefficientByHand) -> object:
     """The entry as ``tyre.toml`` writes it."""
     if entry.from_base:
         return BASE
@@ -79,33 +77,33 @@ def as_in_the_file(entry: CoefficientByHand) -> Any:
     return {key: getattr(entry, key) for key in KEYS if getattr(entry, key) is not None}
 
 
-def named(given: Any) -> Any:
+def named(given: object) -> object:
     """The content of ``[coefficients]`` with the name beside every entry, as :func:`read_entry` needs it."""
     if not isinstance(given, Mapping):
         return given
     return {name: (name, content) for name, content in given.items()}
 
 
-def read_entry(given: tuple[str, Any]) -> CoefficientByHand:
+def read_entry(given: tuple[str, object]) -> CoefficientByHand:
     """The entry of a name and what the file gives for it; refused with a sentence if it is not possible."""
     name, content = given
     if isinstance(content, CoefficientByHand):
         return content
-    mistake = _unsettable(name) or _unreadable(content)
-    if mistake:
+    if mistake := unsettable(name):
         raise q.wrong(mistake)
     row = BY_NAME[name]
     if content == BASE:
         return CoefficientByHand(from_base=True)
     if not isinstance(content, Mapping):
-        _require_plausible(row, float(content), "")
-        return CoefficientByHand(held=float(content))
-    for key, number in content.items():
-        if mistake := _no_number(number):
-            raise q.wrong(mistake, key)
-        if key != "u":
-            _require_plausible(row, number, key)
-    numbers = {key: float(number) for key, number in content.items()}
+        return CoefficientByHand(held=_number(content, row))
+    if not content:
+        raise q.wrong(f"is empty; {HOW}")
+    for key in content:
+        if key not in KEYS:
+            near = meant(key, KEYS)
+            hint = f'did you mean "{near}"?' if near else f"known are {', '.join(KEYS)}"
+            raise q.wrong(f'has the unknown key "{key}"; {hint}')
+    numbers = {key: _number(given, row, key) for key, given in content.items()}
     value, u, start, least, most = (numbers.get(key) for key in KEYS)
     entry = CoefficientByHand(value=value, u=u, start=start, min=least, max=most)
     _check_freed(row, entry)
@@ -143,29 +141,13 @@ def _check_freed(row: Parameter, entry: CoefficientByHand) -> None:
             raise q.wrong(f"{given:g} is outside the bounds {lower:g} to {upper:g}; correct one of them", key)
 
 
-def _require_plausible(row: Parameter, given: float | None, key: str) -> None:
-    """Refuse a value beyond the limits within which the parameter table allows the coefficient."""
-    if given is None:
-        return
-    lower, upper = row.bounds
-    if not lower <= given <= upper:
-        raise q.wrong(
-            f"{given:g} is outside {lower:g} to {upper:g}, the physically plausible range of {row.name}; correct it",
-            key,
-        )
-    if row.divisor and given == 0.0 and not key:
-        raise q.wrong(f"0 is not possible, because the equations divide by {row.name}; correct it", key)
-
-
-def _unsettable(name: str) -> str:
+def unsettable(name: str) -> str:
     """Why no coefficient of this name can be set by hand; empty if one can."""
     row = BY_NAME.get(name)
     if row is None:
         known = [row.name for row in TABLE if row.kind == "number" and row.name not in KEYS_OF_TYRE]
-        near = difflib.get_close_matches(
-            name.upper(), known, n=1, cutoff=float(constants.LIKENESS_OF_MISSPELT)
-        )
-        hint = f"did you mean {near[0]}?" if near else "write it as the property file does, such as PCY1"
+        near = meant(name.upper(), known)
+        hint = f"did you mean {near}?" if near else "write it as the property file does, such as PCY1"
         return f"is not a coefficient of MF 6.2; {hint}"
     if name in KEYS_OF_TYRE:
         return f"is set by {KEYS_OF_TYRE[name]} under [tyre]; write it there"
@@ -176,28 +158,30 @@ def _unsettable(name: str) -> str:
     return ""
 
 
-def _unreadable(given: Any) -> str:
-    """What is wrong with the form of an entry; empty if it is right."""
-    if isinstance(given, Mapping):
-        unknown = [key for key in given if key not in KEYS]
-        if unknown:
-            near = difflib.get_close_matches(unknown[0], KEYS, n=1)
-            hint = f'did you mean "{near[0]}"?' if near else f"known are {', '.join(KEYS)}"
-            return f'has the unknown key "{unknown[0]}"; {hint}'
-        return "" if given else f"is empty; {HOW}"
-    return "" if given == BASE else _no_number(given)
+def _number(given: object, row: Parameter, key: str = "") -> float:
+    """The number under a key of the coefficient's table; without a key, the value at which it is held.
 
-
-def _no_number(given: Any) -> str:
-    """Why this is not a finite number; empty if it is one."""
+    Refuses what is no finite number, and a value beyond the limits that the parameter table has for the coefficient.
+    """
     if isinstance(given, str):
         quoted = NUMBER_IN_QUOTES.fullmatch(given)
-        return f'"{shortened(given)}" is a text, not a number; {"remove the quotes" if quoted else HOW}'
+        remedy = "remove the quotes" if quoted else HOW
+        raise q.wrong(f'"{shortened(given)}" is a text, not a number; {remedy}', key)
     if isinstance(given, bool) or not isinstance(given, int | float):
-        return f"is not a number; {HOW}"
-    if isinstance(given, int):
-        return "" if abs(given) <= sys.float_info.max else q.TOO_MANY_DIGITS
-    return "" if math.isfinite(given) else f"{given:g} is not a finite number; write one"
+        raise q.wrong(f"is not a number; {HOW}", key)
+    if isinstance(given, int) and abs(given) > sys.float_info.max:
+        raise q.wrong(q.TOO_MANY_DIGITS, key)
+    if not math.isfinite(given):
+        raise q.wrong(f"{given:g} is not a finite number; write one", key)
+    lower, upper = row.bounds
+    if key != "u" and not lower <= given <= upper:
+        raise q.wrong(
+            f"{given:g} is outside {lower:g} to {upper:g}, the physically plausible range of {row.name}; correct it",
+            key,
+        )
+    if row.divisor and given == 0.0 and not key:
+        raise q.wrong(f"0 is not possible, because the equations divide by {row.name}; correct it", key)
+    return float(given)
 
 
 def check_coefficients(
@@ -228,7 +212,7 @@ def check_coefficients(
             )
 
 
-def of_command_line(words: Iterable[str]) -> dict[str, Any]:
+def of_command_line(words: Iterable[str]) -> dict[str, object]:
     """The entries that ``--set NAME=VALUE`` gives, as ``[coefficients]`` has them.
 
     Raises
@@ -236,7 +220,7 @@ def of_command_line(words: Iterable[str]) -> dict[str, Any]:
     InputError
         A word is not ``NAME=VALUE`` or the entry is not possible.
     """
-    out: dict[str, Any] = {}
+    out: dict[str, object] = {}
     for word in words:
         name, equals, text = (part.strip() for part in word.partition("="))
         key = f"--set {name}"
@@ -253,7 +237,7 @@ def of_command_line(words: Iterable[str]) -> dict[str, Any]:
     return out
 
 
-def _parsed(text: str, key: str) -> Any:
+def _parsed(text: str, key: str) -> object:
     """A value as TOML reads it; ``base`` needs no quotes."""
     if text == BASE:
         return BASE

@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-from tir.constant import Real, Series
+from tir.constant import Real
 
-ROLLING_OVER_UNLOADED_RADIUS = Series(
-    (0.85, 1.05), "-", "Range of effective over unloaded radius; a wrong path radius leaves it."
-)
-RADIUS_RATIO_OF_A_DIAMETER = Series(
-    (1.8, 2.2), "-", "Effective over unloaded radius between these means that path_radius is a diameter."
-)
 LARGEST_U_OF_A_RADIUS = Real(
     0.1, "-", "Standard uncertainty over radius above which it was written in another unit."
 )

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection, Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator
 
-from mffit import constants
 from mffit.config import quantities as q
 from mffit.config.lines import LineListError, LineRange, line_ranges
 from mffit.config.table import Table
+from mffit.errors import meant
 
 
 def _checked_lines(text: str) -> str:
@@ -30,7 +29,7 @@ def _reason(text: str) -> str:
     return " ".join(text.split())
 
 
-def _as_text(given: Any) -> Any:
+def _as_text(given: object) -> object:
     """A single line as the list of it."""
     return str(given) if isinstance(given, int) and not isinstance(given, bool) else given
 
@@ -65,8 +64,8 @@ def check_exclusions(entries: Sequence[ExcludeTable], files: Collection[str]) ->
 
 
 def _not_a_sweep(file: str, files: Collection[str]) -> str:
-    near = difflib.get_close_matches(file, files, n=1, cutoff=constants.LIKENESS_OF_MISSPELT)
-    hint = f'did you mean "{near[0]}"?' if near else "write the name as [[sweep]] gives it"
+    near = meant(file, files)
+    hint = f'did you mean "{near}"?' if near else "write the name as [[sweep]] gives it"
     return f'"{file}" is not the file of a [[sweep]]; {hint}'
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from mffit.errors import InputError
 
@@ -12,8 +11,8 @@ WILD = frozenset("*?[")
 
 
 def with_globs_expanded(
-    content: Mapping[str, Any], path: Path | None, folder: Path, lines: dict[str, int]
-) -> tuple[Mapping[str, Any], dict[str, int]]:
+    content: Mapping[str, object], path: Path | None, folder: Path, lines: dict[str, int]
+) -> tuple[Mapping[str, object], dict[str, int]]:
     """The content with one entry per file in place of every pattern, sorted by name, and the lines of its keys.
 
     The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``.
@@ -28,7 +27,7 @@ def with_globs_expanded(
         sweeps = [sweeps]
     if not isinstance(sweeps, list) or not any(_is_pattern(entry, folder) for entry in sweeps):
         return content, lines
-    expanded: list[Any] = []
+    expanded: list[object] = []
     found_lines = {key: line for key, line in lines.items() if not key.startswith("sweep.")}
     for index, entry in enumerate(sweeps):
         own = {key: line for key, line in lines.items() if f"{key}.".startswith(f"sweep.{index}.")}
@@ -47,7 +46,7 @@ def with_globs_expanded(
     return {**content, "sweep": expanded}, found_lines
 
 
-def _is_pattern(entry: Any, folder: Path) -> bool:
+def _is_pattern(entry: object, folder: Path) -> bool:
     file = entry.get("file") if isinstance(entry, Mapping) else None
     return isinstance(file, str) and is_pattern(file, folder)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from mffit.config.by_hand import of_command_line
 from mffit.config.globs import with_globs_expanded
@@ -28,7 +27,7 @@ TYRE_TOML = TomlKind(
 
 
 def load(
-    source: str | Path | Mapping[str, Any] | Config,
+    source: str | Path | Mapping[str, object] | Config,
     *,
     folder: str | Path | None = None,
     coefficients: Iterable[str] = (),
@@ -62,7 +61,7 @@ def load(
     return checked(content, path=path, folder=Path(folder or path.parent), lines=lines)
 
 
-def _tables(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
+def _tables(path: Path) -> tuple[dict[str, object], dict[str, int]]:
     """Content of a ``tyre.toml`` and the line of every key."""
     content, lines = read_toml(path, TYRE_TOML)
     if plan := content.keys() & RIG_TOML_TABLES:
@@ -75,7 +74,7 @@ def _tables(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
 
 
 def _with(
-    source: str | Path | Mapping[str, Any], given: Mapping[str, Any], folder: str | Path | None
+    source: str | Path | Mapping[str, object], given: Mapping[str, object], folder: str | Path | None
 ) -> Config:
     """The configuration with some entries of [coefficients] replaced; a mistake in one of these has no line."""
     path = None if isinstance(source, Mapping) else Path(source)
@@ -94,7 +93,7 @@ def _with(
 
 
 def checked(
-    content: Mapping[str, Any],
+    content: Mapping[str, object],
     *,
     path: Path | None,
     folder: Path,

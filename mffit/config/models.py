@@ -23,13 +23,14 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
-from mffit.config.by_hand import Entries, check_coefficients, named
+from mffit.config.by_hand import Entries, as_in_the_file, check_coefficients, named
 from mffit.config.exclusion import ExcludeTable, check_exclusions
 from mffit.config.laboratory import LabTable
 from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
 from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
+from tir.constants import EFFECTIVE_RADIUS_RANGE
 
 SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
@@ -84,7 +85,7 @@ U_RANGES = {"-": q.Fraction, "N": q.UForce, "Nm": q.UMoment, "deg": q.UAngle, "m
 """Accepted range of a standard uncertainty by its unit."""
 
 
-def _u_field(declared: Declared) -> tuple[Any, float | None]:
+def _u_field(declared: Declared) -> tuple[object, float | None]:
     """Type and default of the key that declares the uncertainty of a rig error."""
     accepted: Any = U_RANGES[declared.unit]
     return (accepted | None, None) if declared.default is None else (accepted, float(declared.default))
@@ -131,14 +132,13 @@ class MachineTable(Table):
         declared = BY_NAME[name].declared
         given = None if declared is None else getattr(self, declared.key)
         if given is None and self.path is not None:
-            return path_radius(
-                **{key: ufloat(x, self.u_length) for key, x in self.path.model_dump().items()}
-            ).s
+            lengths = {key: ufloat(x, self.u_length) for key, x in self.path.model_dump().items()}
+            return float(path_radius(**lengths).s)
         return given or 0.0
 
     @model_validator(mode="before")
     @classmethod
-    def _default_u(cls, given: Any) -> Any:
+    def _default_u(cls, given: object) -> object:
         if isinstance(given, dict) and "path_radius" in given and "u_path_radius" not in given:
             return {**given, "u_path_radius": float(constants.U_GIVEN_PATH_RADIUS)}
         return given
@@ -289,7 +289,7 @@ class Column(Table):
     against: Literal["free-rolling", "loaded-radius"] | None = None  #: of kappa only; None: found from Fx = 0
 
 
-def _as_column(given: Any) -> Any:
+def _as_column(given: object) -> object:
     """A heading alone as a table."""
     return {"column": given} if isinstance(given, str) else given
 
@@ -364,6 +364,11 @@ class Config(Brief, Table):
         return None if self.tyre.base is None else self._folder / self.tyre.base
 
     @property
+    def hand(self) -> dict[str, object]:
+        """The entries of [coefficients] as the file has them."""
+        return {name: as_in_the_file(entry) for name, entry in self.coefficients.items()}
+
+    @property
     def priors_path(self) -> Path | None:
         """The file with priors from a fleet; None if none is named."""
         return None if self.tyre.priors is None else self._folder / self.tyre.priors
@@ -374,7 +379,7 @@ class Config(Brief, Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _load_of_radius(cls, given: Any) -> Any:
+    def _load_of_radius(cls, given: object) -> object:
         """A rolling radius without a load holds at the nominal load."""
         if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
             return given
@@ -417,17 +422,13 @@ class Config(Brief, Table):
         return self
 
     @model_validator(mode="after")
-    def _sister_is_the_base(self) -> Config:
+    def _sister_is_the_base_and_alone(self) -> Config:
         if self.sister is not None and self.tyre.base is None:
             raise q.wrong(
                 "scales the longitudinal force of a sister tyre, but [tyre] names no base file; name the sister's file there, "
                 "or remove [sister]",
                 "sister.Fx",
             )
-        return self
-
-    @model_validator(mode="after")
-    def _longitudinal_force_comes_from_one_place(self) -> Config:
         if self.sister is not None and self.campaign:
             raise q.wrong(
                 "is given together with [[campaign]], and Fx can come from one of them only; remove one",
@@ -445,7 +446,7 @@ class Config(Brief, Table):
                     "has a disc revolution, but the rig is a flat track; give effective_radius instead", key
                 )
             r_e = effective_radius(row, R) if row.effective_radius is None else row.effective_radius
-            least, most = constants.ROLLING_OVER_UNLOADED_RADIUS
+            least, most = EFFECTIVE_RADIUS_RANGE
             if not least * R0 <= r_e <= most * R0:
                 raise q.wrong(_radius_sentence(r_e, R0, row.is_measured), key)
             u = row.u_effective_radius
@@ -462,7 +463,7 @@ def _radius_sentence(r_e: float, R0: float, measured: bool) -> str:
     sentence = f"gives an effective radius of {r_e:.4g} m, {ratio:.2f} times the unloaded radius of {R0:g} m"
     if not measured:
         return f"{sentence}; check both, in metres"
-    least, most = constants.RADIUS_RATIO_OF_A_DIAMETER
-    if least < ratio < most:
+    least, most = EFFECTIVE_RADIUS_RANGE
+    if least < ratio / 2.0 < most:
         return f"{sentence}; path_radius looks like a diameter, halve it"
     return f"{sentence}; check path_radius, revolutions and the angles, which are in degrees"

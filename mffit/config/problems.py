@@ -5,19 +5,18 @@ Nothing here knows a table: the keys to suggest are read from the pydantic model
 
 from __future__ import annotations
 
-import difflib
 import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
-from mffit import constants
 from mffit.config.locate import line_of
 from mffit.config.quantities import TOO_MANY_DIGITS
-from mffit.errors import InputError, shortened
+from mffit.errors import InputError, meant, shortened
 
 Keys = Mapping[str, tuple[str, ...]]
 """The keys of every table by its dotted name; "" is the top of the file, ``*`` any key."""
@@ -50,7 +49,12 @@ class _Mistake(NamedTuple):
 
 
 def validated(
-    model: type[Model], content: Mapping[str, Any], *, path: Path | None, lines: dict[str, int], known: Keys
+    model: type[Model],
+    content: Mapping[str, object],
+    *,
+    path: Path | None,
+    lines: dict[str, int],
+    known: Keys,
 ) -> Model:
     """The content as a model.
 
@@ -82,7 +86,7 @@ def validated(
 
 
 def _refuse_unholdable(
-    content: Any, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
+    content: object, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
 ) -> None:
     """Refuse a whole number that no float can hold, under any key; TOML sets no limit to its digits."""
     if isinstance(content, Mapping):
@@ -96,20 +100,20 @@ def _refuse_unholdable(
         raise InputError(TOO_MANY_DIGITS, file=path, line=line_of(dotted, lines), key=_shown(dotted, lines))
 
 
-def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
+def _mistake(detail: ErrorDetails, lines: dict[str, int], known: Keys) -> _Mistake:
     key = _key_at_fault(detail)
     line = line_of(key, lines) or (1 if lines else None)
     if detail["type"] != "extra_forbidden":
         return _Mistake(key, line, _sentence(detail, key, lines))
     table, name = _split(key, known)
-    near = difflib.get_close_matches(name, known.get(table, ()), n=1, cutoff=constants.LIKENESS_OF_MISSPELT)
+    near = meant(name, known.get(table, ()))
     if not near:
         return _Mistake(key, line, _unknown(table, name, known), is_unknown=True)
-    meant = f"{key.rpartition('.')[0]}.{near[0]}".lstrip(".")
-    return _Mistake(key, line, f'is unknown; did you mean "{near[0]}"?', is_unknown=True, meant=meant)
+    place = f"{key.rpartition('.')[0]}.{near}".lstrip(".")
+    return _Mistake(key, line, f'is unknown; did you mean "{near}"?', is_unknown=True, meant=place)
 
 
-def _key_at_fault(detail: Any) -> str:
+def _key_at_fault(detail: ErrorDetails) -> str:
     """Dotted key: the place that pydantic gives, and within it the key that a validator of ours names.
 
     A validator names a key from the top of the file without the numbers of entries (``rig.path``), or within its own table.
@@ -129,10 +133,10 @@ def _shown(key: str, lines: dict[str, int]) -> str:
     return re.sub(r"\.(\d+)(?=\.|$)", lambda found: f"[{int(found[1]) + 1}]", key)
 
 
-def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
+def _sentence(detail: ErrorDetails, key: str, lines: dict[str, int]) -> str:
     kind, given, context = detail["type"], detail["input"], detail.get("ctx", {})
     if kind == "sentence":
-        return context["sentence"]
+        return str(context["sentence"])
     if kind == "missing":
         return _missing(key, lines)
     if kind == "literal_error":
@@ -167,7 +171,7 @@ def _missing(key: str, lines: dict[str, int]) -> str:
     return f"is missing; add it to {f'[[{name}]]' if is_entry else f'[{name}]'}"
 
 
-def _quoted(given: Any) -> str:
+def _quoted(given: object) -> str:
     if isinstance(given, str):
         return f'"{shortened(given)}"'
     if isinstance(given, bool):
@@ -214,7 +218,7 @@ def known_keys(*models: type[BaseModel]) -> dict[str, tuple[str, ...]]:
     return known
 
 
-def _models(annotation: Any, below: str = "") -> list[tuple[type[BaseModel], str]]:
+def _models(annotation: object, below: str = "") -> list[tuple[type[BaseModel], str]]:
     """Models within the type of a field, with ``*`` for those that stand under keys of any name."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [(annotation, below)]

@@ -28,7 +28,8 @@ def path_radius(shaft_diameter: Any, L_B: Any, L_C: Any, L_D: Any) -> Any:
 
 def wheel_turn(row: Any) -> float:
     """Angle [rad] by which the wheel turned during one disc revolution: whole turns plus the remaining angle."""
-    return 2.0 * math.pi * row.revolutions + math.radians(row.angle_end_deg - row.angle_start_deg)
+    turns: float = row.revolutions
+    return 2.0 * math.pi * turns + math.radians(row.angle_end_deg - row.angle_start_deg)
 
 
 def effective_radius(row: Any, R: Any) -> Any:

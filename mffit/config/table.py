@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import BaseModel, ConfigDict
 
 
@@ -13,6 +11,6 @@ class Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
-def list_of_tables(given: Any) -> Any:
+def list_of_tables(given: object) -> object:
     """One table or a list of tables, as TOML gives them, as a tuple."""
     return (given,) if isinstance(given, dict) else tuple(given) if isinstance(given, list) else given

@@ -7,7 +7,7 @@ import sys
 import tomllib
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from mffit.config.locate import lines_of_keys
 from mffit.config.quantities import TOO_MANY_DIGITS
@@ -29,7 +29,7 @@ class TomlKind(NamedTuple):
     otherwise: Callable[[Path], str]  #: what to do with a file that is neither TOML nor a property file
 
 
-def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, Any], dict[str, int]]:
+def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, int]]:
     """Content of a TOML file, and the line of every key (see :func:`lines_of_keys`).
 
     Raises

@@ -30,7 +30,8 @@ class Conditions(NamedTuple):
     @property
     def small_camber(self) -> np.ndarray:
         """Whether each condition is within the camber up to which cars use their tyres."""
-        return np.abs(self.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
+        small: np.ndarray = np.abs(self.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
+        return small
 
     @property
     def weight(self) -> np.ndarray:

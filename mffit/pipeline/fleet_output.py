@@ -32,7 +32,7 @@ def write_fleet(found: Fleet, out: Path) -> None:
         report.write_fleet(found, folder, priors=known is not None)
 
 
-def priors_of_fleet(found: Fleet) -> dict | None:
+def priors_of_fleet(found: Fleet) -> dict[str, object] | None:
     """The content of ``priors.json``; None with too few tyres, several rigs or several nominal conditions."""
     if len(found.rigs) > 1 or len({nominal_conditions(row.specimen.tyre) for row in found.rows}) > 1:
         return None
@@ -40,7 +40,7 @@ def priors_of_fleet(found: Fleet) -> dict | None:
     return None if rig is None else priors_of_rig(rig, found.rows[0].specimen.tyre, len(found.rows))
 
 
-def priors_of_rig(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict | None:
+def priors_of_rig(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict[str, object] | None:
     """The content of ``priors.json`` from ``tyres`` tyres of the kind of ``tyre``; None if there are too few."""
     known = {
         name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))

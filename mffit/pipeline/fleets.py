@@ -71,7 +71,7 @@ def fleet(
 
 def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
     """The rig of each build, counted from 0; builds with the same [rig] table share a rig, but not its set-ups."""
-    seen: list[Mapping] = []
+    seen: list[Mapping[str, object]] = []
     out = []
     for specimen in specimens:
         if specimen.rig not in seen:

@@ -70,7 +70,7 @@ def _stored(out: Path) -> dict[str, Any]:
     with readable(path, missing="there is no such file; name a folder that mffit build wrote"):
         text = path.read_bytes()
     try:
-        found = json.loads(text)
+        found: dict[str, Any] = json.loads(text)
         if old := "made" not in found:
             found["made"] = {"inputs": {}, "method": 0, "version": ""}
         tables = (found["files"], found["fit"]["coefficients"], found["made"]["inputs"])

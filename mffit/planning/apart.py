@@ -143,8 +143,9 @@ class _OfSteps:
         """Information (4, 4) about the logarithm of the carcass stiffness, with its prior, after further runs."""
         loads, pressures, u = self.readings(runs).T
         weighted = self.by_terms(loads, pressures) / u[:, None]
-        prior: np.ndarray = np.diag(np.array([constants.PLAN_UNKNOWN_CARCASS, *CARCASS_TERM_SPREAD]) ** -2.0)
-        return prior + weighted.T @ weighted
+        prior = np.diag(np.array([constants.PLAN_UNKNOWN_CARCASS, *CARCASS_TERM_SPREAD]) ** -2.0)
+        information: np.ndarray = prior + weighted.T @ weighted
+        return information
 
     def u_of(self, name: str, runs: Sequence[PlannedRun], posterior: Posterior) -> float:
         """Standard uncertainty of a coefficient after further runs, in its unit."""

@@ -190,7 +190,7 @@ class Knowledge:
         }
 
     def _information_of(self, runs: Sequence[PlannedRun]) -> np.ndarray:
-        return self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
+        return sum((self._added(run) for run in runs), self._base)
 
     def _added(self, run: PlannedRun) -> np.ndarray:
         if run.points is None:
@@ -209,7 +209,8 @@ class Knowledge:
     @staticmethod
     def _information(slope: np.ndarray) -> np.ndarray:
         slope = np.nan_to_num(slope)
-        return slope.T @ slope
+        information: np.ndarray = slope.T @ slope
+        return information
 
     def _solved(
         self, information: np.ndarray, free: Sequence[str], spread: Mapping[str, float], held: Sequence[str]

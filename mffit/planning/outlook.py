@@ -153,7 +153,8 @@ class Outlook:
         near = np.abs(points.Fz / self.nominal - 1.0) < constants.PLAN_NOMINAL_LOAD_TOLERANCE
         pressure = np.median(self.points.p[main_pressure(self.points)])
         main = np.abs(points.p - pressure) < constants.PLAN_PRESSURE_TOLERANCE
-        return near & main & (points.mount > 0) & ~points.continuous
+        deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
+        return deciding
 
     def _every_band(self) -> tuple[list[str], list[np.ndarray]]:
         """Slopes of all forces over their largest values, those of Fx also where none was measured."""

@@ -190,7 +190,7 @@ def setup_on(config: Config, points: Points, phi_t: float) -> str:
     """Name of the set-up in which a run on a path would be: that of the points there, else a new one, as a build calls it."""
     there = np.flatnonzero(np.isclose(points.phi_t, phi_t))
     if len(there):
-        return points.setups[points.setup[there[-1]]]
+        return str(points.setups[points.setup[there[-1]]])
     centre: Any = "left" if phi_t < 0.0 else "right"
     usual, other = (
         SweepTable(file="a"),

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
+from typing import TypeGuard
 
 from mffit.brief import Brief
 from mffit.results import constants
+from mffit.results.values import Json
 from tir.errors import counted
 
-Number = float | int | bool | None
 MISSING = "missing"
 """In place of a number that one of the two results lacks."""
 PASSING = ("made", "lab", "warnings", "fit.seconds")
@@ -26,8 +24,8 @@ class NumberChange:
 
     file: str  #: "result.json" or a property file
     key: str  #: dotted, or the name of a coefficient
-    old: Number | str
-    new: Number | str
+    old: Json
+    new: Json
     size: float  #: in units of the tolerance; infinite for a number that is missing or of another kind
 
 
@@ -89,12 +87,12 @@ class ComparedNumbers:
     changes: tuple[NumberChange, ...]
 
 
-def compared(file: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> ComparedNumbers:
+def compared(file: str, old: Json, new: Json) -> ComparedNumbers:
     """The numbers of a JSON document, true, false and null included, against those of a new one.
 
     Keys that only the new one has, and texts, are not compared.
     """
-    pairs = [pair for pair in _pairs(old, new, "") if not _passing(pair[0])]
+    pairs = list(_pairs(old, new))
     changes = [
         NumberChange(file, key, a, b, size) for key, a, b, u in pairs if (size := _size(a, b, u)) > 1.0
     ]
@@ -106,60 +104,54 @@ def largest_first(changes: Iterator[NumberChange]) -> tuple[NumberChange, ...]:
     return tuple(sorted(changes, key=lambda change: -change.size))
 
 
-def _passing(key: str) -> bool:
-    return any(key == one or key.startswith(f"{one}.") for one in PASSING)
-
-
-Pair = tuple[str, Any, Any, float]
-"""Key, old and new number, and the scale in which the change is judged as an uncertainty; NaN if none is stated."""
-
-
-def _pairs(old: Any, new: Any, key: str, u: float = math.nan) -> Iterator[Pair]:
-    """Every number of a document with its partner."""
-    if isinstance(old, Mapping):
+def _pairs(
+    old: Json, new: Json, key: str = "", u: float = math.nan
+) -> Iterator[tuple[str, Json, Json, float]]:
+    """Key, old and new number, and the scale on which a change is judged as an uncertainty; NaN if none is stated."""
+    if key in PASSING or isinstance(old, str):
+        return
+    if isinstance(old, dict):
+        others = new if isinstance(new, dict) else {}
         for name, value in old.items():
-            other = new.get(name, MISSING) if isinstance(new, Mapping) else MISSING
-            yield from _pairs(value, other, f"{key}.{name}".lstrip("."), _uncertainty(old, name))
+            inner = f"{key}.{name}".lstrip(".")
+            yield from _pairs(value, others.get(name, MISSING), inner, _uncertainty(old, name))
     elif isinstance(old, list):
-        others = new if isinstance(new, list) else []
-        if len(others) != len(old):
-            yield f"{key}, length", len(old), len(others) if isinstance(new, list) else MISSING, math.nan
+        if not isinstance(new, list) or len(new) != len(old):
+            yield f"{key}, length", len(old), len(new) if isinstance(new, list) else MISSING, math.nan
             return
-        scale = _scale_of_matrix(old)
-        for k, (value, other) in enumerate(zip(old, others, strict=True)):
-            if scale is None:
-                yield from _pairs(value, other, f"{key}[{k}]")
-            else:
+        spread = _spread(old)
+        for k, (value, other) in enumerate(zip(old, new, strict=True)):
+            if spread and isinstance(value, list) and isinstance(other, list):
                 for j, (a, b) in enumerate(zip(value, other, strict=False)):
-                    yield f"{key}[{k}][{j}]", a, b, scale[k] * scale[j]
-    elif not isinstance(old, str):
+                    yield f"{key}[{k}][{j}]", a, b, spread[k] * spread[j]
+            else:
+                yield from _pairs(value, other, f"{key}[{k}]")
+    else:
         yield key, old, new, u
 
 
-def _uncertainty(table: Mapping[str, Any], name: str) -> float:
+def _uncertainty(table: dict[str, Json], name: str) -> float:
     """Standard uncertainty that a table states for one of its numbers; NaN without one."""
     keys = (f"u_{name}", *(("stderr", "u") if name == "value" else ()))
-    found = next((table[key] for key in keys if isinstance(table.get(key), float)), math.nan)
-    return abs(found)
+    return next((abs(u) for key in keys if isinstance(u := table.get(key), float)), math.nan)
 
 
-def _scale_of_matrix(rows: list[Any]) -> np.ndarray | None:
-    """Square roots of the diagonal of a covariance matrix, by which its elements are judged; None for other lists."""
-    n = len(rows)
-    square = all(isinstance(row, list) and len(row) == n for row in rows)
-    if not square or not all(isinstance(x, int | float) for row in rows for x in row):
-        return None
-    return np.sqrt(np.abs(np.diag(np.array(rows, dtype=float))))
+def _spread(rows: list[Json]) -> list[float]:
+    """Square roots of the diagonal of a covariance matrix, by which its elements are judged; empty for other lists."""
+    square = [row for row in rows if isinstance(row, list) and len(row) == len(rows)]
+    diagonal = [x for k, row in enumerate(square) if _is_number(x := row[k])]
+    return [math.sqrt(abs(x)) for x in diagonal] if len(diagonal) == len(rows) else []
 
 
-def _size(old: Any, new: Any, u: float) -> float:
+def _is_number(x: Json) -> TypeGuard[float]:
+    return isinstance(x, int | float) and not isinstance(x, bool)
+
+
+def _size(old: Json, new: Json, u: float) -> float:
     """Change of a number in units of the tolerance; infinite if one is missing or of another kind."""
     if old == new and isinstance(old, bool) == isinstance(new, bool):
         return 0.0
-    kinds = [isinstance(x, int | float) and not isinstance(x, bool) for x in (old, new)]
-    if not all(kinds):
+    if not _is_number(old) or not _is_number(new):
         return math.inf
-    tolerance = float(constants.SAME_NUMBER) * max(abs(old), abs(new))
-    if u > 0.0:
-        tolerance = max(tolerance, float(constants.SAME_IN_U) * u)
-    return abs(new - old) / tolerance
+    tolerance = constants.SAME_NUMBER * max(abs(old), abs(new))
+    return abs(new - old) / max(tolerance, constants.SAME_IN_U * u if u > 0.0 else 0.0)

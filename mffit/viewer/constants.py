@@ -10,9 +10,10 @@ SLIDER_REACH = Real(
     "Reach of a coefficient's slider to either side, in standard uncertainties: beyond what the data allow.",
 )
 SLIDER_LEAST = Real(
-    0.2, "-", "Least reach of a coefficient's slider, over the size of its value: a change that the eye sees."
+    0.2,
+    "-",
+    "Least reach of a coefficient's slider, over 1 plus the size of its value: a change that the eye sees.",
 )
-SLIDER_OF_ZERO = Real(0.1, "-", "Least reach of the slider of a coefficient that is about 0.")
 MOVERS_SHOWN = Count(2, "-", "Sweeps that are named for a coefficient as those that determine it most.")
 LEAST_MOVER = Real(0.1, "-", "Share of the information on a coefficient below which a sweep is not named.")
 MOST_CHIPS = Count(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from mffit.quantities import MODEL
 from tir import Tyre
@@ -63,12 +62,12 @@ def written_range(tyre: Tyre, control: Control) -> tuple[float, float] | None:
     return low, high
 
 
-def settings(tyres: Sequence[Tyre]) -> list[dict[str, Any]]:
+def settings(tyres: Sequence[Tyre]) -> list[dict[str, object]]:
     """The settings of each slider in the units of the page; ends and steps are round numbers."""
     return [_setting(control, tyres) for control in CONTROLS]
 
 
-def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, Any]:
+def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, object]:
     quantity = MODEL[control.name]
     si = in_si(quantity.unit)
     ranges = [control.range_of(tyre) for tyre in tyres]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import tir
 from mffit.errors import InputError
@@ -56,7 +55,7 @@ def tell_apart(paths: list[Path]) -> list[str]:
     return names
 
 
-def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any]:
+def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, object]:
     """The data of a tyre for the page: parameters, ranges in SI, and whether its file is for turn slip."""
     return {
         "name": name,
@@ -67,7 +66,7 @@ def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any
     }
 
 
-def _ranges(tyre: Tyre, control: Control) -> dict[str, Any]:
+def _ranges(tyre: Tyre, control: Control) -> dict[str, object]:
     assert control.limits is not None
     ends = [end_tested(tyre.status.get(key, "")) for key in control.limits]
     return {"written": written_range(tyre, control), "tested": None if None in ends else ends}

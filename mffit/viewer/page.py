@@ -6,21 +6,21 @@ import hashlib
 import html
 import os
 import re
-import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import mffit
 from mffit.errors import InputError
-from mffit.quantities import MODEL
+from mffit.quantities import MODEL, QuantityName
+from mffit.results.values import Json
 from mffit.templates import environment
 from mffit.viewer.controls import in_si, settings
 from mffit.viewer.named import Given, described, named
 from mffit.viewer.panels import OUTPUTS, PANELS
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
+from tir.writing import replace_file
 
 SEAL = re.compile(r"<!-- written by mffit show, sha256 of the rest ([0-9a-f]{64}) -->\n\Z")
 
@@ -48,18 +48,9 @@ class Page:
         text = f"{self.html}<!-- written by mffit show, sha256 of the rest {_digest(self.html)} -->\n"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+            replace_file(path, text.encode())
         except OSError as error:
             raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(text.encode())
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except OSError as error:
-            raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
-        finally:
-            Path(temporary).unlink(missing_ok=True)
         return path
 
     def __repr__(self) -> str:
@@ -102,7 +93,7 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
             }
             for panel in PANELS
         ],
-        "quantities": {name: _quantity(name) for name in (*INPUTS, *OUTPUTS)},
+        "quantities": {name: on_page(MODEL[name]) for name in (*INPUTS, *OUTPUTS)},
         "tyres": [described(name, tyre, names) for name, tyre in found.items()],
     }  # fmt: skip
     page = Page(_filled(data, list(found)), tuple(found))
@@ -111,8 +102,8 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
     return page
 
 
-def _quantity(name: str) -> dict[str, Any]:
-    quantity = MODEL[name]
+def on_page(quantity: QuantityName) -> dict[str, Json]:
+    """A quantity as pages name and convert it."""
     return {
         "word": quantity.word,
         "symbol": quantity.symbol,
@@ -121,7 +112,7 @@ def _quantity(name: str) -> dict[str, Any]:
     }
 
 
-def _filled(data: dict[str, Any], names: list[str]) -> str:
+def _filled(data: Mapping[str, object], names: list[str]) -> str:
     return (
         environment("mffit.viewer")
         .get_template("show.html.j2")

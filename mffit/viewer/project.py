@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import mffit
-from mffit.config.by_hand import as_in_the_file
 from mffit.fit.agreement import with_points
-from mffit.quantities import CHANNELS, QuantityName
+from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
-from mffit.results.as_json.values import plain
+from mffit.results.values import Json, document
 from mffit.templates import environment
-from mffit.viewer.controls import in_si
-from mffit.viewer.page import Page
+from mffit.viewer.page import Page, on_page
 from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import axis_quantities, columns, delivered
 from tir.codegen.javascript import javascript
@@ -24,44 +20,41 @@ MODELLED = tuple(name for name in CHANNELS if name in Forces._fields + State._fi
 """The outputs that the page computes."""
 
 
-def project_data(result: BuildResult) -> dict[str, Any]:
+def project_data(result: BuildResult) -> dict[str, Json]:
     """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite."""
-    found: dict[str, Any] = plain(_data(result))
-    return found
-
-
-def _data(result: BuildResult) -> dict[str, Any]:
     fitted, points = result.fit, result.points
     simulation = fitted.simulation
     parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
     rows = coefficient_rows(result, parameters)
     values = {name: float(simulation.values[name]) for name in parameters}
-    return {
-        "name": result.config.tyre.name,
-        "order": list(INPUTS),
-        "turn_slip": simulation.turn_slip,
-        "star": simulation.star,
-        "quantities": {name: _quantity(quantity) for name, quantity in axis_quantities().items()},
-        "channels": [
-            {
-                "name": name,
-                "rmse": rmse,
-                "over_noise": result.trust.over_noise.get(name),
-                "of_fit": name in fitted.channels,
-            }
-            for name, rmse in _misfits(result).items()
-        ],
-        "values": values | {row["name"]: row["value"] for row in rows},
-        "conicity": [name for name in CONICITY if name in parameters],
-        "coefficients": rows,
-        "points": columns(points, result.excluded, fitted),
-        "hand": {name: as_in_the_file(entry) for name, entry in result.config.coefficients.items()},
-        "exclude": [entry.model_dump() for entry in result.config.fit.exclude],
-        "trusted": result.trusted,
-        "warnings": list(result.warnings),
-        "rig": [{"name": name, "value": value, "stderr": u} for name, (value, u) in fitted.rig.items()],
-        "seconds": result.seconds,
-    }
+    return document(
+        {
+            "name": result.config.tyre.name,
+            "order": INPUTS,
+            "turn_slip": simulation.turn_slip,
+            "star": simulation.star,
+            "quantities": {name: on_page(quantity) for name, quantity in axis_quantities().items()},
+            "channels": [
+                {
+                    "name": name,
+                    "rmse": rmse,
+                    "over_noise": result.trust.over_noise.get(name),
+                    "of_fit": name in fitted.channels,
+                }
+                for name, rmse in _misfits(result).items()
+            ],
+            "values": values | {row["name"]: row["value"] for row in rows},
+            "conicity": [name for name in CONICITY if name in parameters],
+            "coefficients": rows,
+            "points": columns(points, result.excluded, fitted),
+            "hand": result.config.hand,
+            "exclude": result.config.fit.exclude,
+            "trusted": result.trusted,
+            "warnings": result.warnings,
+            "rig": [{"name": name, "value": value, "stderr": u} for name, (value, u) in fitted.rig.items()],
+            "seconds": result.seconds,
+        }
+    )
 
 
 def model_code(turn_slip: bool, star: bool) -> str:
@@ -71,11 +64,11 @@ def model_code(turn_slip: bool, star: bool) -> str:
 
 def project_html(
     name: str,
-    data: dict[str, Any] | None,
+    data: dict[str, Json] | None,
     *,
     turn_slip: bool,
     star: bool,
-    window: dict[str, Any] | None = None,
+    window: dict[str, Json] | None = None,
 ) -> str:
     """The page of a project.
 
@@ -102,9 +95,9 @@ def project_html(
 
 def project_page(result: BuildResult) -> Page:
     """The page of a build without a server: one file with the points in it."""
-    data = project_data(result)
-    html = project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"])
-    return Page(html, (data["name"],))
+    name, simulation = result.config.tyre.name, result.fit.simulation
+    html = project_html(name, project_data(result), turn_slip=simulation.turn_slip, star=simulation.star)
+    return Page(html, (name,))
 
 
 def _misfits(result: BuildResult) -> dict[str, float]:
@@ -117,12 +110,3 @@ def _misfits(result: BuildResult) -> dict[str, float]:
     readings = delivered(fitted).readings(result.points, others)
     found = {**with_points(readings, result.points), **fitted.channels}
     return {name: found[name].rmse for name in measured if found[name].n}
-
-
-def _quantity(quantity: QuantityName) -> dict[str, Any]:
-    return {
-        "word": quantity.word,
-        "symbol": quantity.symbol,
-        "unit": quantity.unit_behind,
-        "si": in_si(quantity.unit),
-    }

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 
-from mffit.config.by_hand import KEYS_OF_TYRE, may_be_free
+from mffit.config.by_hand import may_be_free, unsettable
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
 from mffit.fit.wheel.vertical import OF_WHEEL_SPEED
@@ -23,7 +22,7 @@ FOUND = BY_THE_FIT | {"measured"}
 """Status of coefficients that the data determine."""
 
 
-def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, Any]]:
+def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, object]]:
     """The coefficients on which the page's curves depend, in the order of a property file.
 
     Parameters
@@ -33,7 +32,7 @@ def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str,
     """
     moved = {**beside_the_search(result.fit), **movers(result.fit)}
     names = set(used)
-    rows = [row for row in TABLE if row.name in names and _settable(row)]
+    rows = [row for row in TABLE if row.name in names and not unsettable(row.name)]
     return [_row(row, result.fit, moved.get(row.name, [])) for row in rows]
 
 
@@ -98,12 +97,7 @@ def _channels(shares: dict[str, float]) -> list[str]:
     ]
 
 
-def _settable(row: Parameter) -> bool:
-    """Whether the row is a coefficient that ``[coefficients]`` may set."""
-    return row.kind == "number" and row.name not in KEYS_OF_TYRE and not row.section.endswith("_RANGE")
-
-
-def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, Any]:
+def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, object]:
     record = fitted.coefficients[row.name]
     value = float(fitted.tyre[row.name])
     lower, upper = record.bounds or row.bounds
@@ -129,11 +123,8 @@ def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, A
 
 def _reach(value: float, record: Coefficient, lower: float, upper: float) -> tuple[float, float]:
     """Ends of the slider, within the bounds."""
-    reach = max(
-        constants.SLIDER_REACH * (record.stderr or 0.0),
-        constants.SLIDER_LEAST * abs(value),
-        float(constants.SLIDER_OF_ZERO) if abs(value) < constants.SLIDER_OF_ZERO else 0.0,
-    )
+    least = constants.SLIDER_LEAST * (1.0 + abs(value))
+    reach = max(constants.SLIDER_REACH * (record.stderr or 0.0), least)
     return min(max(value - reach, lower), value), max(min(value + reach, upper), value)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -35,7 +34,7 @@ def delivered(fitted: FitResult) -> Simulation:
     return replace(fitted.simulation, values=dict(fitted.tyre.values))
 
 
-def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, Any]:
+def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, object]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
     Conditions and readings are in SI; missing readings are null, and channels without a reading are left out. ``read`` has only
@@ -63,7 +62,7 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
     }
 
 
-def facets(points: Points) -> list[dict[str, Any]]:
+def facets(points: Points) -> list[dict[str, object]]:
     """Groups of points by their set-points: name, words of the groups, and the group (n,) of each point; -1 for none.
 
     ``inputs`` are those of the model that the groups share; points of a curve over another input are in the same groups.
@@ -122,7 +121,7 @@ def _arrays(points: Points) -> dict[str, np.ndarray]:
 
 def _facet(
     name: str, word: str, of: np.ndarray, words: Sequence[str], inputs: Sequence[str]
-) -> dict[str, Any]:
+) -> dict[str, object]:
     return {
         "name": name,
         "word": word,

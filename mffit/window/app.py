@@ -16,7 +16,7 @@ from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Respon
 from starlette.routing import Route
 
 from mffit.errors import InputError
-from mffit.results.as_json.values import plain
+from mffit.results.values import plain
 from mffit.sweeps.formats import ENDINGS
 from mffit.templates import environment
 from mffit.viewer import project_html

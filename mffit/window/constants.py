@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from tir.constant import Count, Real
 
-TOKEN_BYTES = Count(24, "-", "Random bytes in the address: nobody guesses 192 bits.")
-FIRST_PORT = Count(49_152, "-", "First of the ports that no service has by convention (RFC 6335).")
-PORTS = Count(16_384, "-", "Ports among which a project has its usual one: all that no service has.")
 LOOK_AGAIN = Real(0.2, "s", "Time between looks at tyre.toml and at the progress: faster than one notices.")
 TIME_TO_STOP = Real(
     3.0, "s", "Time in which a stopped run may remove its temporary files before it is killed."

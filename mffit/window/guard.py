@@ -6,8 +6,6 @@ import secrets
 from collections.abc import Awaitable, Callable, Mapping, MutableMapping
 from typing import Any
 
-from mffit.window import constants
-
 HOSTS = ("127.0.0.1", "localhost")
 HEADERS = {
     b"cache-control": b"no-store",
@@ -23,7 +21,7 @@ App = Callable[[Scope, Callable[[], Awaitable[Any]], Callable[[Any], Awaitable[N
 
 def new_token() -> str:
     """A random word for an address."""
-    return secrets.token_urlsafe(constants.TOKEN_BYTES)
+    return secrets.token_urlsafe()
 
 
 class Guard:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import shutil
-import tempfile
+import stat
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from mffit.config import Config
 from mffit.config.loading import checked
 from mffit.config.locate import lines_of_keys
 from mffit.errors import InputError
 from mffit.window import constants
+from tir.writing import replace_file
 
 BOM = b"\xef\xbb\xbf"
 
@@ -108,7 +107,7 @@ class ProjectFile:
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror}); put it back", file=self.path) from None
 
-    def _parsed(self, content: bytes) -> tuple[str, dict[str, Any]]:
+    def _parsed(self, content: bytes) -> tuple[str, dict[str, object]]:
         """Text and tables."""
         try:
             text = content.decode("utf-8-sig")
@@ -122,18 +121,12 @@ class ProjectFile:
 
     def _write(self, content: bytes) -> None:
         """Replace the file only when the new one is complete."""
-        handle, name = tempfile.mkstemp(prefix=f".{self.path.name}-", dir=self.path.parent)
         try:
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(content)
-            shutil.copymode(self.path, name)
-            os.replace(name, self.path)
+            replace_file(self.path, content, stat.S_IMODE(self.path.stat().st_mode))
         except OSError as error:
             raise InputError(
                 f"cannot be written ({error.strerror}); check the folder's permissions", file=self.path
             ) from None
-        finally:
-            Path(name).unlink(missing_ok=True)
 
 
 def digest_of(content: bytes) -> str:

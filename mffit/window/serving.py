@@ -11,9 +11,10 @@ from pathlib import Path
 
 from mffit import viewer
 from mffit.errors import InputError
-from mffit.window import constants
 
 ADDRESS = "127.0.0.1"
+FREE_PORTS = range(49_152, 65_536)
+"""Ports that no service has by convention (RFC 6335); a project has its usual one among them."""
 
 
 def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], None]) -> None:
@@ -74,9 +75,8 @@ def _usual(path: Path) -> socket.socket:
 
     The port is the same after a restart, so that a page that is still open can follow to the new address.
     """
-    first, count = constants.FIRST_PORT, constants.PORTS
     try:
-        return _listening(int(first) + zlib.crc32(bytes(path.resolve())) % int(count))
+        return _listening(FREE_PORTS[zlib.crc32(bytes(path.resolve())) % len(FREE_PORTS)])
     except InputError:
         return _listening(0)
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from mffit.config import Config
-from mffit.config.by_hand import as_in_the_file
 from mffit.errors import InputError
 from mffit.window.edits import EDITS
 from mffit.window.project_file import ProjectFile, digest_of
@@ -39,7 +38,7 @@ class Session:
                 "is_fitted": self._fitted == digest,
                 "fits": self.fits,
                 "problem": problem,
-                "hand": _hand(config),
+                "hand": {} if config is None else config.hand,
                 "exclude": [] if config is None else [entry.model_dump() for entry in config.fit.exclude],
                 "can_undo": self.file.can_undo,
                 "run": None
@@ -131,12 +130,6 @@ class Session:
             for kind, (title, place) in PAGES.items()
             if kind != "compare" or has_base
         ]
-
-
-def _hand(config: Config | None) -> dict[str, Any]:
-    """The entries of [coefficients] as the file has them."""
-    entries = {} if config is None else config.coefficients
-    return {name: as_in_the_file(entry) for name, entry in entries.items()}
 
 
 def _before(data: dict[str, Any] | None) -> dict[str, Any] | None:

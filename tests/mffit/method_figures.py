@@ -12,7 +12,7 @@ from typing import Any
 import mffit
 from mffit.made import METHOD
 from mffit.results import as_json
-from mffit.results.as_json.values import plain
+from mffit.results.values import plain
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 PROJECTS = ("front-120-70", "flat-track")

@@ -31,11 +31,11 @@ LIMITS = [
         {"VERTICAL_STIFFNESS": 0.99 * FNOMIN / R0},
         {"VERTICAL_STIFFNESS": 1.01 * FNOMIN / R0},
     ),
-    ("it looks like millimetres or inches", {"WIDTH": 2.01}, {"WIDTH": 1.99}),
+    ("it looks like millimetres or inches", {"WIDTH": 1.51}, {"WIDTH": 1.49}),
     ("it looks like kPa or bar", {"NOMPRES": 4.9e3}, {"NOMPRES": 5.1e3}),
     ("no tyre holds that pressure", {"NOMPRES": 1.01e7}, {"NOMPRES": 0.99e7}),
     ("ALPMAX is 1.71 rad: it looks like degrees", {"ALPMAX": 1.71}, {"ALPMAX": 1.69}),
-    ("CAMMIN is -1.61 rad: it looks like degrees", {"CAMMIN": -1.61}, {"CAMMIN": -1.59}),
+    ("CAMMIN is -1.71 rad: it looks like degrees", {"CAMMIN": -1.71}, {"CAMMIN": -1.69}),
     ("MASS is -0.1 kg: it must not be negative", {"MASS": -0.1}, {"MASS": 0.0}),
     ("the relaxation length is divided by it", {"LATERAL_STIFFNESS": 0.0}, {"LATERAL_STIFFNESS": 1.0}),
     (

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from tir.constant import Count
 
-VECTOR_LANES = Count(8, "-", "Conditions computed together: doubles of the widest common vector (AVX-512).")
-NARROW_LANES = Count(
-    4,
+VECTOR_LANES = Count(
+    8,
     "-",
-    "The same on processors with narrower vectors; more would fill their registers.",
+    "Conditions computed together: doubles of the widest common vector (AVX-512). Half on processors with narrower vectors, "
+    "whose registers more would fill.",
     "tests/benchmarks/speed.py",
 )
 LONGEST_INLINED_EXPRESSION = Count(

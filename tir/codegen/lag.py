@@ -12,7 +12,7 @@ from tir.codegen.program import NUMBERS, Program, Switches, program_of
 from tir.codegen.single import MATH, Run, constants, with_defaults
 from tir.codegen.source import conditions, preparation
 from tir.equations import contact
-from tir.evaluate import either_way
+from tir.evaluate import OperatingCondition, either_way
 from tir.record import TyreRecord
 from tir.tuning import tunables, warm
 
@@ -73,9 +73,11 @@ def _programs(
     Fz, Vx, Vsx, Vsy, gamma, phi_t, pressure, damping = (given[name] for name in LAG_INPUTS)
     deflection = contact.Deflection(*(given[name] for name in LAGGING))
     backwards = Vx < 0.0
-    _, state = either_way(parameters, backwards, Fz, 0.0, gamma, 0.0, phi_t, Vx, pressure, *switches)
+    rolling = OperatingCondition(Fz, 0.0, gamma, 0.0, phi_t, Vx, pressure)
+    _, state = either_way(parameters, backwards, rolling, switches)
     moved = contact.after(parameters, state, deflection, given["dt"], Fz, Vx, Vsx, Vsy)
     kappa, alpha = contact.slips(parameters, state, deflection, Vx, Vsx, Vsy, damping)
-    forces, here = either_way(parameters, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, *switches)
+    slipping = rolling._replace(alpha=alpha, kappa=kappa)
+    forces, here = either_way(parameters, backwards, slipping, switches)
     outputs = {**forces._asdict(), **{name: getattr(here, name) for name in states}}
     return program_of(moved._asdict()), program_of({**outputs, "kappa": kappa, "alpha": alpha})

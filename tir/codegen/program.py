@@ -6,14 +6,15 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
 from tir.errors import TirError, some
-from tir.evaluate import either_way, zero_divisors
+from tir.evaluate import OperatingCondition, either_way, zero_divisors
+from tir.evaluate import Switches as Switches
 from tir.parameters import TABLE
 
-INPUTS = ("Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "pressure")
+INPUTS = OperatingCondition._fields
 CALLED = {"pressure": "p"}
 """Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
 NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
@@ -22,14 +23,6 @@ NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
 def called(name: str) -> str:
     """The name of an input in a call of the tyre and in exported code."""
     return CALLED.get(name, name)
-
-
-class Switches(NamedTuple):
-    """Options of the model; each combination has a program of its own."""
-
-    turn_slip: bool = False
-    star: bool = False
-    limits: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,10 +80,9 @@ def run_on_symbols(
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
     if changed is not None:
         changed(p, graph)
-    inputs: dict[str, Any] = {
-        name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS
-    }
-    forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
+    inputs: list[Any] = [given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS]
+    at = OperatingCondition(*inputs)
+    forces, state = either_way(SimpleNamespace(**p), at.Vx < 0.0, at, switches)
     return {**state._asdict(), **forces._asdict()}
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import constants
-from mffit.results.verification import Number, Verification
+from mffit.results.values import Json
+from mffit.results.verification import Verification
 
 
 def verification_summary(found: Verification) -> str:
@@ -19,7 +20,7 @@ def verification_summary(found: Verification) -> str:
     return blocks(parts)
 
 
-def _written(value: Number | str) -> str:
+def _written(value: Json) -> str:
     if value is None:
         return "null"
     return f"{value:.10g}" if isinstance(value, float) else str(value).lower()

@@ -1,13 +1,12 @@
 """The JSON of all records, made only here, with the keys that users' scripts rely on."""
 
-from mffit.results.as_json.of_build import build, fit, spin, write_information
-from mffit.results.as_json.of_conversion import conversion
-from mffit.results.as_json.of_diagnosis import diagnosis
-from mffit.results.as_json.of_fleet import fleet, outcome
-from mffit.results.as_json.of_input import alignment, problems, sniffed
-from mffit.results.as_json.of_plan import comparison, plan
-from mffit.results.as_json.of_verification import verification
-from mffit.results.as_json.values import text, write
+from mffit.results.as_json import of_measured  # noqa: F401  states keys
+from mffit.results.as_json.of_build import fit, write_information
+from mffit.results.as_json.of_questions import conversion, problems
+from mffit.results.values import document, text, write
+
+alignment = build = comparison = diagnosis = fleet = outcome = plan = sniffed = spin = verification = document
+"""What is written of each answer: the JSON of its record."""
 
 __all__ = [
     "alignment",
@@ -15,6 +14,7 @@ __all__ = [
     "comparison",
     "conversion",
     "diagnosis",
+    "document",
     "fit",
     "fleet",
     "outcome",

@@ -292,3 +292,12 @@ def test_a_corrected_sweep_is_as_good_as_others():
     assert not found_with(label=1.8, left=0.151 / NORMAL)
     assert found_with(label=1.8, others=0.2, left=1.49 * 0.2)
     assert not found_with(label=1.8, others=0.2, left=1.51 * 0.2)
+
+
+def test_two_sweeps_that_look_misread_are_no_mistake_of_one():
+    """One is far off in the side force, the other in the moment: then the model or the rig is at fault."""
+    in_kilonewtons, in_millimetres = times(Fy=1e-3), times(Mz=1e3)
+    sweeps = campaign()
+    one = [*sweeps[:1], in_kilonewtons(sweeps[1]), *sweeps[2:]]
+    assert seen(one).sweep == "b"
+    assert seen([*one[:4], in_millimetres(one[4]), *one[5:]]) is None

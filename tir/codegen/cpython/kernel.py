@@ -17,7 +17,7 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tir.codegen.constants import NARROW_LANES, VECTOR_LANES
+from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.cpython import SCALARS
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
@@ -159,7 +159,7 @@ def _machine() -> Any:
 def _lanes() -> int:
     from llvmlite import binding
 
-    return int(VECTOR_LANES if binding.get_host_cpu_features().get("avx512f") else NARROW_LANES)
+    return int(VECTOR_LANES if binding.get_host_cpu_features().get("avx512f") else VECTOR_LANES // 2)
 
 
 def _compiled(text: str, machine: Any) -> bytes:

@@ -1,0 +1,164 @@
+"""Keys of the answers of the other commands: ``diagnosis.json``, ``plan.json``, ``compare.json``, ``fleet.json`` and the rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from mffit.comparison import Comparison, Difference
+from mffit.comparison import wording as compared
+from mffit.comparison.record import CurveGap
+from mffit.conversion import Conversion
+from mffit.conversion import wording as converted
+from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
+from mffit.diagnosis.limits import Limit
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.validation import Gap, Validation
+from mffit.fleet import EPSILON, Fleet
+from mffit.fleet.hierarchy import Hierarchy, Population
+from mffit.fleet.record import FleetScatter, Row, WithinTyre
+from mffit.planning import Plan, PlannedRun
+from mffit.planning import wording as planned
+from mffit.planning.goals import Goal
+from mffit.planning.record import PlanStep, Tie, Trial
+from mffit.quantities import column
+from mffit.recordings import Sniffed
+from mffit.recordings.guess import Guess
+from mffit.recordings.sniffed import SniffedRecording
+from mffit.recordings.stretch_table import stretch_table
+from mffit.recordings.summary import BadRun
+from mffit.results.as_json.of_build import estimates, of_rig
+from mffit.results.values import Json, document, keys, plain
+from mffit.results.verification import Verification
+from tir.errors import Problem
+
+keys(
+    Diagnosis,
+    "trusted reasons headline gap_before gap_after validation where effects alternatives limits unexplained unexplained_where "
+    "noise_floor=noise outliers coefficients model_after model_with_terms notes lab left_out [made]",
+    effects=lambda found: [
+        document(one) | {"to_do": wording.remedy(one, found.signs_of(one.effect))} for one in found.effects
+    ],
+    alternatives=lambda found: [
+        {"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()
+    ],
+    coefficients=lambda found: estimates(found.coefficients),
+    notes=wording.notes,
+)
+keys(Gap, "**rmse chi2_per_dof", rmse=lambda gap: {column(name, "rmse"): x for name, x in gap.rmse.items()})
+keys(Validation, "method gap_before gap_after gap_file", method=wording.method)
+keys(Limit, "id=effect.id of_usual_size=share ruled_out")
+keys(
+    Noise,
+    "**typical source **stated scatter",
+    typical=lambda noise: {column(name): noise.typical(name) for name in noise.channels},
+    source=wording.source,
+    stated=lambda noise: {f"stated_{column(name)}": noise.typically_stated(name) for name in noise.channels},
+)
+keys(
+    AcceptedEffect,
+    "id=effect.id name=effect.name kind=effect.kind physics=effect.physics [campaign] confidence repaired parameters to_do "
+    "gap_after tied_with separate_by [T_ref_degC]",
+    campaign=lambda found: found.effect.campaign or None,
+    parameters=lambda found: {
+        name: {"was": found.before[name], "value": value, "stderr": u}
+        for name, (value, u) in found.parameters.items()
+    },
+    to_do=lambda _: None,  # by the signs of the rig, which the diagnosis has
+    separate_by=lambda found: wording.separation(found.separation),
+)
+
+# Uncertainties of a plan are in the goal's unit, k = 1 except for bands; null if not measured.
+keys(
+    Plan,
+    "goal headline promise identified ties=identified.ties u_now=now u_then=then told_below "
+    "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps order alone=trials",
+    headline=planned.headline,
+    promise=planned.promise,
+    identified=lambda found: planned.identified(found.identified),
+)
+keys(Goal, "kind name label unit")
+keys(Tie, "* told")
+keys(
+    PlanStep,
+    "**run u_before=before u_after=after u_epsilon_gamma_direct=direct u_epsilon_gamma_joint=joint",
+)
+keys(Trial, "**run u_after=u")
+keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost rig", title=planned.title)
+
+keys(Comparison, "first second headline numbers coefficients curves sweeps notes", headline=compared.headline)
+keys(Difference, "* change u_change=u in_u=z")
+keys(
+    CurveGap,
+    "channel over load_N rms largest=largest.0 **at",
+    at=lambda gap: (
+        {"at_kappa": gap.largest[1]} if gap.over == "kappa" else {"at_deg": math.degrees(gap.largest[1])}
+    ),
+)
+
+keys(Fleet, "tyres=rows scatter within_tyre=within rigs notes", scatter=lambda found: _scatters(found))
+keys(
+    Row,
+    "name=specimen.name folder=specimen.folder rig epsilon_gamma **numbers rmse=specimen.misfit strain "
+    "warnings=specimen.warnings",
+    rig=lambda row: row.rig + 1,
+    epsilon_gamma=lambda row: {key: getattr(row, key) for key in EPSILON},
+)
+keys(FleetScatter, "* beyond")
+keys(WithinTyre, "* counts", counts=lambda within: within.inflation > 1.0)
+keys(Hierarchy, "errors population", errors=lambda rig: of_rig(rig.rig))
+keys(Population, "* assumed")
+
+
+def _scatters(found: Fleet) -> dict[str, object]:
+    """Scatter of every number that at least two tyres have."""
+    names = {key: f"epsilon_gamma_{key}" for key in EPSILON} | {key: key for key in found.rows[0].numbers}
+    return {name: scatter for key, name in names.items() if (scatter := found.scatter(key)) is not None}
+
+
+# Conditions of recordings are in SI.
+keys(
+    Sniffed,
+    "recordings axes conditions points bad_runs stretches warnings",
+    points=lambda found: len(found.points),
+    stretches=lambda found: stretch_table(found.reading.stretches).to_dict("records"),
+    warnings=lambda found: [*found.reading.notes, *found.reading.warnings],
+)
+keys(
+    SniffedRecording,
+    "file=path format=kind samples rate_Hz seconds gaps units channels=guesses remarks",
+    units=lambda row: dict(zip(row.headings, row.units, strict=True)),
+)
+keys(Guess, "* channel=channel.name")
+keys(BadRun, "file=recording lines why")
+
+keys(
+    Verification,
+    "folder same headline numbers exact method version libraries changes notes",
+    method=lambda found: _then_and_now(found.method),
+    version=lambda found: _then_and_now(found.version),
+    libraries=lambda found: _then_and_now(found.libraries),
+)
+
+
+def _then_and_now(pair: tuple[object, object]) -> dict[str, object]:
+    return dict(zip(("stored", "now"), pair, strict=True))
+
+
+keys(
+    Conversion,
+    "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
+    trusted=lambda found: not converted.reasons(found),
+    reasons=converted.reasons,
+)
+
+
+def conversion(found: Conversion, out: Path) -> dict[str, Json]:
+    """The output of ``mffit convert --json``: SI units, shares of 1."""
+    return {"file": str(found.old.path), "written": str(out), **document(found)}
+
+
+def problems(path: Path, found: Sequence[Problem]) -> dict[str, Json]:
+    """The output of ``mffit check --json``."""
+    return {"file": str(path), "problems": plain(list(found))}
