@@ -37,7 +37,6 @@ def plan(found: Plan) -> dict[str, Any]:
             }
             for step in found.steps
         ],
-        "order": None if found.order is None else picked(found.order, "sweeps", "now", "then"),
         "alone": [_run(trial.run) | {"u_after": trial.u} for trial in found.trials],
     }
 

@@ -358,7 +358,7 @@ Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+0
 Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
 Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
 p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
-V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h, less likely mph
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h (11 m/s), less likely mph (18 m/s)
 
 [[sweep]]
 file = "../a b.csv"
