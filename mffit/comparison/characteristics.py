@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mffit.comparison import constants
+from mffit.constants import SLIP_BEYOND_THE_PEAK
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -40,7 +41,7 @@ def characteristics(
     by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, **p)
     curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
     step = 2e-3
-    end = min(float(tyre["KPUMAX"]), constants.COMPARED_SLIP) if slip_reach is None else slip_reach
+    end = min(float(tyre["KPUMAX"]), SLIP_BEYOND_THE_PEAK) if slip_reach is None else slip_reach
     driven = tyre(load, kappa=np.linspace(0.0, end, 101), turn_slip=turn_slip, **p)
     C_alpha = float(np.diff(by_slip.Fy)[0] / step)
     C_moment = float(np.diff(by_slip.Mz)[0] / step)

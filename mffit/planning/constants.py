@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real, Series
+from tir.constant import Real, Series
 
 # Set-points of the runs that are tried
 SWEEP_SHARES = Series(
@@ -33,4 +33,3 @@ WORTHWHILE_FALL = Real(0.05, "-", "Share by which a run must lower the uncertain
 EQUALLY_GOOD = Real(
     0.02, "-", "Runs whose uncertainties differ by less count as equal; the one with fewer points is taken."
 )
-BAND_ANGLES = Count(21, "-", "Angles per curve of a 95 % band.")

@@ -9,14 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
 from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult, Posterior
 from mffit.fit.posterior import spread_through
 from mffit.fit.ranges import tested_ranges
 from mffit.measured import Measured
-from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
@@ -156,7 +155,7 @@ class Outlook:
     def _conditions_of_curves(self) -> Points:
         tyre, tested = self.found.tyre, tested_ranges(swept(self.points))
         loads = [tested["FZMIN"], float(tyre["FNOMIN"]), tested["FZMAX"]]
-        n = int(constants.BAND_ANGLES)
+        n = int(ANGLES_OF_A_CURVE)
         steer, camber = (np.linspace(-tested[end], tested[end], n) for end in ("ALPMAX", "CAMMAX"))
         none = np.zeros(n)
         lines = [(steer, none, none), (none, camber, none)]

@@ -67,12 +67,13 @@ class Kind(NamedTuple):
     american: str = ""
 
 
+RADII = BY_NAME["RL_m"].lower, BY_NAME["RL_m"].upper
 KINDS: Mapping[str, Kind] = {
-    "deg": Kind(("rad", "deg"), (0.0, math.degrees(constants.LARGEST_ANGLE_IN_RADIANS))),
-    "N": Kind(("kN", "N"), (0.0, 1e3 * constants.LARGEST_FORCE_IN_KILONEWTONS), "lbf"),
+    "deg": Kind(("rad", "deg"), (0.0, BY_NAME["alpha_deg"].upper)),
+    "N": Kind(("kN", "N"), (0.0, BY_NAME["Fz_N"].upper), "lbf"),
     "N m": Kind(("kN m", "N m"), (0.0, 1.0), "in-lb"),  # over the load
-    "kPa": Kind(("bar", "psi", "kPa", "MPa", "Pa"), constants.ANY_TYRE_PRESSURES, "psi"),
-    "m": Kind(("m", "mm", "cm", "in"), constants.ANY_LOADED_RADII, "in"),
+    "kPa": Kind(("bar", "psi", "kPa", "MPa", "Pa"), constants.TYRE_PRESSURES, "psi"),
+    "m": Kind(("m", "mm", "cm", "in"), RADII, "in"),
     "m/s": Kind(("m/s", "km/h", "mph"), (0.0, constants.FASTEST_SPEED_IN_METRES), "mph"),
     "degC": Kind(("degC", "degF"), (BY_NAME["T_degC"].lower, HOTTEST_TREAD), "degF"),
     "s": Kind(("s", "ms", "us"), tuple(1.0 / rate for rate in reversed(constants.STEERING_RATES))),  # per deg
@@ -219,7 +220,7 @@ def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
     if np.sum(forwards) < 4 or np.radians(np.ptp(alpha_deg)) < levels.SIDESLIP.tolerance:
         return None
     rates = np.abs(alpha_deg[width:] - alpha_deg[:-width])[forwards] / elapsed[forwards]
-    rate = float(np.percentile(rates, constants.STEERING_PERCENTILE))
+    rate = float(np.percentile(rates, constants.PERCENTILE_OF_SIZE))
     return 1.0 / rate if rate > 0.0 else None
 
 
@@ -275,7 +276,7 @@ def _turning(known: _Known) -> dict[str, Choice] | str:
         why = "is left out: without a speed it cannot be checked that it is the wheel's"
         return f"{column.heading} {why}" if doubtful else {}
     size = known.radius or _measured_radius(known)
-    limits: tuple[float, ...] = (BY_NAME["RL_m"].lower, BY_NAME["RL_m"].upper)
+    limits: tuple[float, ...] = RADII
     if size is not None:
         limits = tuple(share * size for share in constants.ROLLING_RADIUS_RANGE)
     of_speed = KINDS["m/s"].units if size is not None and not speed.unit else (known.unit("V_mps"),)
@@ -307,8 +308,7 @@ def _measured_radius(known: _Known) -> float | None:
     """The loaded radius [m], if it was recorded in a known unit."""
     unit = known.unit("RL_m")
     middle = _in(known.found["RL_m"].middle, unit, "m") if unit else 0.0
-    lower, upper = constants.ANY_LOADED_RADII
-    return middle if lower <= middle <= upper else None
+    return middle if RADII[0] <= middle <= RADII[1] else None
 
 
 def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str) -> float:
