@@ -7,7 +7,6 @@ from tir.constant import Count, Real, Series
 COMPARED_LOADS = Series(
     (0.6, 1.0, 1.4), "-", "Compared loads over the nominal one, within the ranges of both files."
 )
-SIGNIFICANT_DIFFERENCE = Real(2.0, "-", "Standard uncertainties above which a difference is significant.")
 STEPS_OF_COMPARED_CURVE = Count(61, "-", "Points of a compared curve.")
 ROUNDING_OF_NUMBERS = Real(
     1e-12,

@@ -167,7 +167,7 @@ class _Model:
                 tyres=int(self.informing[k]),
             )
             for k, name in enumerate(self.own)
-            if self.informing[k] >= constants.FEWEST_TYRES_OF_A_POPULATION
+            if self.informing[k] >= 2
         }
         tyres = tuple(
             TyreEstimate(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mffit import fleet as combining
+from scipy.special import ndtri
+
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet import Hierarchy, Row, Specimen, WithinTyre
 from mffit.pipeline.fleet_output import nominal_conditions
 from mffit.rig_errors import words_of
@@ -13,9 +15,10 @@ from mffit.rig_errors import words_of
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
     """The sentences, in the order in which the page shows them."""
     far = _far_from_declared(rigs)
+    limit = _surprising(sum(len(row.strain) for row in rows))
     return [
         *_several_rigs(rigs),
-        *(note for row in rows for note in _outlying(row, far)),
+        *(note for row in rows for note in _outlying(row, far, limit)),
         *(
             f"All tyres together put an error of the rig, {words_of(name)}, {ratio:.0f} standard deviations from the "
             "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
@@ -70,13 +73,19 @@ def _on_scatter(within: WithinTyre | None) -> list[str]:
 
 def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:
     """Rig errors far from their declaration: distance in declared standard deviations by name."""
-    far = {}
-    for rig in filter(None, rigs):
-        for name, (value, _) in rig.rig.items():
-            expected, u = rig.declared[name]
-            if abs(value - expected) > combining.constants.RIG_FAR_FROM_DECLARED * u:
-                far[name] = abs(value - expected) / u
-    return far
+    found = {
+        (k, name): (value - rig.declared[name][0]) / rig.declared[name][1]
+        for k, rig in enumerate(rigs)
+        if rig is not None
+        for name, (value, _) in rig.rig.items()
+    }
+    limit = _surprising(len(found))
+    return {name: abs(z) for (_, name), z in found.items() if abs(z) > limit}
+
+
+def _surprising(numbers: int) -> float:
+    """Standard deviations beyond which chance hardly puts any of so many numbers."""
+    return float(-ndtri(0.5 * PREDICTION_FALSE_ALARM / max(numbers, 1)))
 
 
 def _several_rigs(rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -88,11 +97,11 @@ def _several_rigs(rigs: Sequence[Hierarchy | None]) -> list[str]:
     ]
 
 
-def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
+def _outlying(row: Row, far: Mapping[str, float], limit: float) -> list[str]:
     """A tyre whose rig error disagrees with the other tyres."""
     # If all tyres are far from the declaration, every single tyre, which follows it, seems to disagree with the others.
     worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
-    if not worst or abs(row.strain[worst]) <= combining.constants.STRAINED_RIG:
+    if not worst or abs(row.strain[worst]) <= limit:
         return []
     return [
         f"{row.specimen.name}: its own error of the rig, {words_of(worst)}, lies {abs(row.strain[worst]):.0f} standard "
