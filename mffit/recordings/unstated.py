@@ -174,7 +174,7 @@ def _shared_unit(kind: str, group: Mapping[str, FoundChannel], known: _Known) ->
     if value is None:
         why = "assumed to be in s; without a moving angle the unit is not known"
         return {name: Choice(kind, f"{column.range} {why}") for name, column in open_ones.items()}
-    fits = known.possible(kind, value)
+    fits = known.possible(kind, value) if value else {}
     if not fits or (kind == "m" and len(fits) > 1):  # in metres an implausible radius is left out
         why = ": in no unit the angle moves as rigs steer, so that the unit is not known" * (kind == "s")
         return {

@@ -65,6 +65,12 @@ def test_angles_forces_and_moments_share_their_units():
     assert {in_kN["Mx_Nm"], in_kN["Mz_Nm"]} == {"kN m"}
 
 
+def test_readings_of_zero_are_in_the_units_of_the_contract():
+    """They would be plausible in any unit."""
+    found = units(MX=np.zeros(N), MZ=np.zeros(N), SA=np.zeros(N), IA=np.zeros(N))
+    assert (found["Mz_Nm"], found["alpha_deg"]) == ("N m", "deg")
+
+
 def test_a_load_in_kN_beside_forces_in_N_is_recognised_by_the_grip():
     found = units(FZ=np.full(N, 2.5))
     assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
