@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from scipy.special import ndtri
 
 from mffit.constants import PREDICTION_FALSE_ALARM
-from mffit.fleet import Hierarchy, Row, Specimen, WithinTyre
+from mffit.fleet import Hierarchy, Row, Specimen
 from mffit.pipeline.fleet_output import nominal_conditions
 from mffit.rig_errors import words_of
 
@@ -29,14 +29,7 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
     ]
 
 
-def notes_on_setups(
-    specimens: Sequence[Specimen], rig_of: Sequence[int], within: WithinTyre | None
-) -> list[str]:
-    """Whether builds share set-ups, and the scatter of one tyre from set-up to set-up."""
-    return [*_on_sharing(specimens, rig_of), *_on_scatter(within)]
-
-
-def _on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[str]:
+def note_on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[str]:
     """A sentence if tyres of one rig are not declared to share a set-up."""
     on_disc = [(rig, s) for rig, s in zip(rig_of, specimens, strict=True) if s.on_disc]
     apart = [
@@ -57,18 +50,6 @@ def _on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[st
 def _shared_setups(one: Specimen, others: Sequence[Specimen]) -> set[str]:
     """Names of the set-ups of a build that others of the same named rig have too."""
     return {name for other in others for name in other.setups if one.rig.get("name") and name in one.setups}
-
-
-def _on_scatter(within: WithinTyre | None) -> list[str]:
-    if within is None:
-        return []
-    n = within.degrees_of_freedom
-    counts = "the scatter" if within.inflation > 1.0 else "the stated uncertainty"
-    return [
-        f"From set-up to set-up of one tyre the directly measured eps_gamma scatters by {within.sd:.3f} (standard deviation, "
-        f"{n} degree{'s' * (n > 1)} of freedom, {within.tyres} tyre{'s' * (within.tyres > 1)}); the stated uncertainties give "
-        f"{within.u:.3f}. The larger one, {counts}, counts for the scatter between tyres."
-    ]
 
 
 def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:

@@ -56,9 +56,6 @@ def fleet(found: Fleet) -> dict[str, Any]:
             }.items()
             if (s := found.scatter(key)) is not None
         },
-        "within_tyre": None
-        if found.within is None
-        else {**asdict(found.within), "counts": found.within.inflation > 1.0},
         "rigs": [
             None
             if rig is None
