@@ -81,7 +81,7 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
     known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
     near = difflib.get_close_matches(text, known, n=1)
     hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
-    raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that is fitted{hint}')
+    raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that its runs inform{hint}')
 
 
 def effect_named(text: str) -> Effect:
