@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
+from mffit.fit.relaxation import DIRECTIONS
 from mffit.quantities import CHANNELS, DIRECT
 from mffit.rig import SIMULATED
 from mffit.rig_errors import UNITS
@@ -59,6 +60,10 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
             f"[coefficients] holds {text}, so that no run makes it more certain; choose another goal, or free it"
         )
     kind, _, rest = text.partition(":")
+    if any(text in direction.names for direction in DIRECTIONS):
+        raise InputError(
+            f"{text} follows from recordings of steps, which a plan does not propose; `mffit build` says which one is missing"
+        )
     if text == FILE:
         return Goal(FILE)
     if kind == EPSILON and rest in ("", "direct", "joint"):

@@ -292,6 +292,7 @@ def test_a_band_is_not_called_a_standard_uncertainty(plan):
     ("goal", "said"),
     [
         ("PKY66", "did you mean PKY6"),
+        ("PCFY3", "recordings of steps, which a plan does not propose"),
         ("tie:rain", "not an effect that can be tied"),
         ("bands:RL", "neither a goal of a plan nor a coefficient"),
     ],
