@@ -72,10 +72,17 @@ class Outlook:
         outliers = np.isin(np.arange(len(points)), [o.row for o in found.outliers])
         self._near = points.select(self._decides_epsilon(points) & ~outliers)
         self._direct, self._cache = direct, dict[tuple[str, ...], DirectU | None]()
+        self._known = dict[tuple[str, ...], float]()
         self._curves = self._curves_of_goal() if goal.kind in (BANDS, FILE) else None
 
     def u(self, runs: Sequence[PlannedRun]) -> float:
         """Uncertainty of the goal in its unit; infinite if the goal is not measured at all."""
+        key = tuple(sorted(run.name for run in runs))
+        if key not in self._known:
+            self._known[key] = self._u(runs)
+        return self._known[key]
+
+    def _u(self, runs: Sequence[PlannedRun]) -> float:
         if self.effect is not None:
             return self.knowledge.u_of_effect(runs, self.effect, _rivals(self.effect))
         if self.goal.kind in (EPSILON, JOINT):
