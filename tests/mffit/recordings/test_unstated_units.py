@@ -460,3 +460,19 @@ def test_the_heading_of_a_section_is_no_title(tmp_path):
     found = sniff([tmp_path / "a.csv"])
     assert "DATA" not in project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "DATA" not in text.sniff_summary(found)
+
+
+def test_a_radius_that_fits_only_in_inches_shows_american_units_and_a_gauge_in_psi_does_not():
+    found = units(**AMERICAN | {"TSTC": None}, radius=0.285)
+    assert (found["RL_m"], found["Fz_N"], found["V_mps"]) == ("in", "lbf", "mph")
+    gauge = guessed({"P": "psi"}, P=np.full(N, 12.0)).found
+    assert (gauge["Fz_N"].unit, gauge["V_mps"].unit) == ("N", "m/s")
+
+
+def test_a_rotation_under_the_name_of_the_contract_is_never_left_out():
+    assert "omega_radps" in guessed(omega_radps=0.4 * WAVE).found
+
+
+@pytest.mark.parametrize("silent", [{"SA": None}, {"ET": np.zeros(N)}])
+def test_the_unit_of_a_time_that_shows_no_steering_is_called_unknown(silent):
+    assert "not known" in guessed(**silent).found["time_s"].why
