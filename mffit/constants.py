@@ -38,6 +38,10 @@ ZERO_SIDESLIP = Real(
     0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."
 )
 ZERO_CAMBER = Real(0.5, "deg", "Camber as read within which points count as upright: zeros, sideslip sweeps.")
+SLIP_BEYOND_THE_PEAK = Real(
+    0.3, "-", "Longest slip at which files are compared or converted: well beyond the peak of every tyre."
+)
+ANGLES_OF_A_CURVE = Count(21, "-", "Angles of a curve over which a misfit or a band is averaged.")
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from mffit.comparison import constants
+from mffit.constants import SLIP_BEYOND_THE_PEAK
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -33,15 +33,15 @@ def characteristics(
     reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
     slip_reach : longitudinal slip up to which the peak of Fx is sought; default the file's KPUMAX, at most 0.3
     """
-    p: Any = {} if pressure is None else {"p": pressure}
+    p = float(tyre["INFLPRES"]) if pressure is None else pressure
     slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, 101)
     angles = np.array([-1e-3, 1e-3])
-    by_slip = tyre(load, alpha=angles, turn_slip=turn_slip, **p)
-    by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, **p)
-    curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
+    by_slip = tyre(load, alpha=angles, turn_slip=turn_slip, p=p)
+    by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, p=p)
+    curve = tyre(load, alpha=slip, turn_slip=turn_slip, p=p)
     step = 2e-3
-    end = min(float(tyre["KPUMAX"]), constants.COMPARED_SLIP) if slip_reach is None else slip_reach
-    driven = tyre(load, kappa=np.linspace(0.0, end, 101), turn_slip=turn_slip, **p)
+    end = min(float(tyre["KPUMAX"]), SLIP_BEYOND_THE_PEAK) if slip_reach is None else slip_reach
+    driven = tyre(load, kappa=np.linspace(0.0, end, 101), turn_slip=turn_slip, p=p)
     C_alpha = float(np.diff(by_slip.Fy)[0] / step)
     C_moment = float(np.diff(by_slip.Mz)[0] / step)
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
@@ -50,15 +50,15 @@ def characteristics(
         "C_alpha_N_per_rad": C_alpha,
         "C_gamma_N_per_rad": float(np.diff(by_camber.Fy)[0] / step),
         "C_Mz_alpha_Nm_per_rad": C_moment,
-        "K_xk_N": float(np.diff(tyre(load, kappa=angles, turn_slip=turn_slip, **p).Fx)[0] / step),
+        "K_xk_N": float(np.diff(tyre(load, kappa=angles, turn_slip=turn_slip, p=p).Fx)[0] / step),
         "mu_x": float(np.max(np.abs(driven.Fx)) / load),
         "mu_y": float(np.max(np.abs(curve.Fy)) / load),
         "Mz_peak_Nm": float(np.max(np.abs(curve.Mz))),
         "trail_m": -C_moment / C_alpha if C_alpha else float("nan"),
-        "r_e_m": float(tyre.state(load, **p).Re),
+        "r_e_m": float(tyre.state(load, p=p).Re),
     }
     if turn_slip:
-        curved = tyre(load, phi_t=np.array([-1e-3, 1e-3]), turn_slip=True, **p)
+        curved = tyre(load, phi_t=np.array([-1e-3, 1e-3]), turn_slip=True, p=p)
         out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / 2e-3)
     return out
 

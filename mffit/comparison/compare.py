@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
@@ -10,10 +11,11 @@ import numpy as np
 from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
+from mffit.constants import SLIP_BEYOND_THE_PEAK
 from mffit.fit import Posterior
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
-from mffit.points import Points, make_points
+from mffit.points import Points, levels, make_points
 from mffit.points.noise import over_noise
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation
@@ -43,7 +45,7 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
     reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX", "KPUMAX")}
-    reach["KPUMAX"] = min(reach["KPUMAX"], constants.COMPARED_SLIP)
+    reach["KPUMAX"] = min(reach["KPUMAX"], SLIP_BEYOND_THE_PEAK)
     numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach)]
     curves = [gap for load in loads for gap in _curves(first, second, load, pressure, reach)]
     return Comparison(
@@ -179,7 +181,7 @@ def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> 
         Difference(key=KEYS[key], load=data.load, first=a.value, second=b.value, u_second=b.u)
         for data in measured
         for file in simulated
-        if abs(file.load / data.load - 1.0) < constants.COMPARED_SAME_LOAD
+        if abs(math.log(file.load / data.load)) < levels.LOAD.tolerance
         for key in DIRECT_ROWS
         if (a := getattr(file, key)) is not None and (b := getattr(data, key)) is not None
     ]

@@ -7,14 +7,7 @@ from tir.constant import Count, Real, Series
 COMPARED_LOADS = Series(
     (0.6, 1.0, 1.4), "-", "Compared loads over the nominal one, within the ranges of both files."
 )
-COMPARED_SAME_LOAD = Real(0.02, "-", "Relative difference up to which two loads count as one.")
-SIGNIFICANT_DIFFERENCE = Real(2.0, "-", "Standard uncertainties above which a difference is significant.")
 STEPS_OF_COMPARED_CURVE = Count(61, "-", "Points of a compared curve.")
-COMPARED_SLIP = Real(
-    0.3,
-    "-",
-    "Longest slip at which Fx is compared if the files allow more: well beyond the peak of every tyre.",
-)
 ROUNDING_OF_NUMBERS = Real(
     1e-12,
     "-",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mffit.comparison import constants
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
@@ -49,13 +49,13 @@ def _differences(found: Comparison) -> str:
 
 def _significant(found: Comparison) -> str:
     """The numbers that differ beyond their uncertainty, or else the largest relative difference."""
-    limit = constants.SIGNIFICANT_DIFFERENCE
+    limit = COVERAGE_FACTOR_95
     rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
         names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"numbers that differ by more than {limit:g} standard uncertainties: {', '.join(names)}"
+        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {', '.join(names)}"
     if any(row.z is not None for row in found.numbers):
-        return f"no number differs by more than {limit:g} standard uncertainties"
+        return f"no number differs by more than {limit:.2g} standard uncertainties"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
     if largest is None or not largest.relative:
         return "all numbers are equal"

@@ -17,7 +17,6 @@ CONVERTED_CAMBER = Real(
     "deg",
     "Largest camber, even if the old file allows more: MF 5.2 is for cars, its camber force is linear in the angle.",
 )
-CONVERTED_SLIP = Real(0.3, "-", "Largest longitudinal slip in the fit: well beyond the peak.")
 SMALL_CAMBER = Real(
     5.0, "deg", "Camber up to which cars use their tyres; the misfit is stated on both sides of it."
 )
@@ -27,29 +26,21 @@ WEIGHT_OF_LARGE_CAMBER = Real(
     "Weight of conditions beyond the small camber: they are kept in sight, but do not cost the others.",
 )
 LOADS_OF_THE_GRID = Count(6, "-", "Loads of the grid: the load terms are parabolas.")
-SIDESLIPS_OF_THE_GRID = Count(21, "-", "Angles of sideslip of the grid, closer together around zero.")
 CAMBERS_OF_THE_GRID = Count(
     3, "-", "Angles of camber of the grid to either side, within the small camber and beyond."
 )
 SLIPS_OF_THE_GRID = Series(
     (0.0, 0.08, 0.3, 1.0), "-", "Longitudinal slips of the grid to either side, over the largest."
 )
-MISFIT_UNIT_OF_CONVERSION = Real(
-    0.01,
-    "-",
-    "Unit of the residuals over the largest old force of the same load and region: a hundredth, what the aim is stated in.",
-)
-STEPS_OF_THE_CONVERSION = Count(60, "-", "Most steps of the search for the new coefficients.")
-END_OF_THE_CONVERSION = Real(1e-5, "-", "Relative decrease of the sum of squares at which the search ends.")
 GOOD_SHARE = Real(
     0.02,
     "-",
     "Misfit over the largest force of the same load and region up to which a condition, or the rms of a moment, is reproduced.",
 )
 WEIGHT_OF_CURVATURE_LIMIT = Real(
-    300.0,
+    150.0,
     "-",
-    "Residual per unit by which a curvature factor exceeds 1 (1 % of the largest force is 1): holds the limit.",
+    "Residual per unit by which a curvature factor exceeds 1, where a good share of the largest force is 1: holds the limit.",
 )
 CURVATURE_MARGIN = Real(
     0.005, "-", "Distance of a fitted curvature factor from 1, so that none exceeds it between the loads."

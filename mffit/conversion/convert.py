@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -72,7 +72,7 @@ def convert(
     return Conversion(tyre, old, reach, misfit, tuple(found), held(p, reach))
 
 
-def _camber_stiffness(p: Any, reach: Reach) -> dict[str, float]:
+def _camber_stiffness(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """PKY6 and PKY7 nearest to the old camber stiffness of the upright wheel over load."""
     Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
@@ -84,7 +84,7 @@ def _camber_stiffness(p: Any, reach: Reach) -> dict[str, float]:
     return {"PKY6": float(PKY6), "PKY7": float(PKY7)}
 
 
-def _carcass(p: Any, reach: Reach) -> dict[str, float]:
+def _carcass(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """Carcass stiffnesses over load that give the old relaxation lengths; the table's defaults where the file has none."""
     Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)

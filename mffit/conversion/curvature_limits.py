@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +20,9 @@ class CurvatureFactor(NamedTuple):
 
     channel: str  #: the force or moment that it bends
     names: tuple[str, ...]  #: its coefficients without those of camber
-    at_loads: Callable[[Any, normalise.Inputs, float], list[Any]]  #: E before limits, to the largest sideslip
+    at_loads: Callable[
+        [SimpleNamespace, normalise.Inputs, float], list[Any]
+    ]  #: E before limits, to the largest sideslip
 
 
 FACTORS = (
@@ -46,7 +49,7 @@ FACTORS = (
 
 
 def excess(
-    p: Any,
+    p: SimpleNamespace,
     factors: Sequence[CurvatureFactor],
     reach: Reach,
     by: Sequence[Traced] = (),
@@ -65,12 +68,12 @@ def excess(
     return value, np.concatenate([np.broadcast_to(gradient(row, by), (Fz.size, len(by))) for row in rows])
 
 
-def exceeding(p: Any, reach: Reach) -> list[CurvatureFactor]:
+def exceeding(p: SimpleNamespace, reach: Reach) -> list[CurvatureFactor]:
     """The curvature factors of the upright wheel that exceed 1 somewhere in the range."""
     return [factor for factor in FACTORS if np.max(excess(p, [factor], reach)[0]) > 0.0]
 
 
-def held(p: Any, reach: Reach) -> dict[str, float]:
+def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """The curvature factors that exceed 1 somewhere in the range, with camber or without: largest E, by key without number."""
     largest = {
         factor.names[0][:-1]: 1.0 + float(np.max(excess(p, [factor], reach, camber=cambers(reach))[0]))

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.constants import ANGLES_OF_A_CURVE, SLIP_BEYOND_THE_PEAK
 from mffit.conversion import constants
 
 
@@ -61,7 +62,7 @@ def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
         (low, high if high > low else most),
         side("ALPMAX", constants.CONVERTED_SIDESLIP.rad),
         side("CAMMAX", constants.CONVERTED_CAMBER.rad),
-        side("KPUMAX", float(constants.CONVERTED_SLIP)),
+        side("KPUMAX", float(SLIP_BEYOND_THE_PEAK)),
     )
 
 
@@ -70,7 +71,7 @@ def conditions(reach: Reach) -> Conditions:
     slips = float(reach.kappa) * np.array(constants.SLIPS_OF_THE_GRID)
     axes = np.meshgrid(
         loads(reach),
-        _towards_zero(reach.alpha, int(constants.SIDESLIPS_OF_THE_GRID)),
+        _towards_zero(reach.alpha, int(ANGLES_OF_A_CURVE)),
         cambers(reach),
         np.unique(np.concatenate([-slips, slips])),
         indexing="ij",

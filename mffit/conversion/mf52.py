@@ -55,7 +55,7 @@ def in_terms_of_62(values: Mapping[str, Any]) -> SimpleNamespace:
     return p
 
 
-def forces(p: Any, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kappa: Any = 0.0) -> OldForces:
+def forces(p: SimpleNamespace, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kappa: Any = 0.0) -> OldForces:
     """MF 5.2 in steady state at the pressure of the file (ISO-W, SI, radians), the curvature factors held to 1 as it demands.
 
     Parameters
@@ -85,7 +85,7 @@ def forces(p: Any, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kappa: Any = 0.0
     return OldForces(Fx, Fy, overturning.moment(p, q, Fz, Fy), Mz)
 
 
-def relaxation_lengths(p: Any, Fz: Any) -> tuple[np.ndarray, np.ndarray]:
+def relaxation_lengths(p: SimpleNamespace, Fz: Any) -> tuple[np.ndarray, np.ndarray]:
     """Longitudinal and lateral relaxation length [m] of the upright wheel at loads [N]; 0 where the file has none."""
     Fz0, R0 = normalise.nominal_load(p), p.UNLOADED_RADIUS
     dfz = normalise.relative_load(p, Fz)

@@ -58,7 +58,7 @@ class _ChannelFit(NamedTuple):
 def _of_channel(
     fit: _ChannelFit, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
 ) -> Mapping[str, float]:
-    unit = float(constants.MISFIT_UNIT_OF_CONVERSION) * at.largest_alike(goal)
+    unit = float(constants.GOOD_SHARE) * at.largest_alike(goal)
     u = unit / np.sqrt(at.weight / at.weight.sum())
     inputs = at._asdict()
 
@@ -69,8 +69,7 @@ def _of_channel(
     if fit.limited:
         problem = _held_to_one(problem, fit, values)
     numbers = [FreeNumber(name, float(values[name]), *UNBOUNDED) for name in fit.names]
-    steps, tolerance = int(constants.STEPS_OF_THE_CONVERSION), float(constants.END_OF_THE_CONVERSION)
-    return solve(problem, numbers, max_steps=steps, tolerance=tolerance).values
+    return solve(problem, numbers).values
 
 
 def _held_to_one(

@@ -2,7 +2,7 @@
 
 from mffit.fleet.hierarchy import Hierarchy, TyreEstimate, estimate
 from mffit.fleet.information import Information, information, to_json
-from mffit.fleet.record import EPSILON, Fleet, Row, WithinTyre, within_tyres
+from mffit.fleet.record import EPSILON, Fleet, Row
 from mffit.fleet.specimen import INFORMATION, Specimen, read
 
 __all__ = [
@@ -14,10 +14,8 @@ __all__ = [
     "Row",
     "Specimen",
     "TyreEstimate",
-    "WithinTyre",
     "estimate",
     "information",
     "read",
     "to_json",
-    "within_tyres",
 ]

@@ -41,7 +41,8 @@ class TyreEstimate:
     names: tuple[str, ...]
     values: np.ndarray  #: (k,)
     covariance: np.ndarray  #: (k, k)
-    strain: Mapping[str, float]  #: by rig error: estimate of this tyre minus that of the others, over u
+    strain: Mapping[str, float]
+    """By rig error: how far this tyre moves it from where the others put it, over the expected standard deviation."""
 
     def number(self, name: str) -> tuple[float, float] | None:
         """Value and standard uncertainty; None if the number was not free in the tyre's build."""
@@ -166,10 +167,12 @@ class _Model:
                 tyres=int(self.informing[k]),
             )
             for k, name in enumerate(self.own)
-            if self.informing[k] >= constants.FEWEST_TYRES_OF_A_POPULATION
+            if self.informing[k] >= 2
         }
         tyres = tuple(
-            TyreEstimate(tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(part, found))
+            TyreEstimate(
+                tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(one, part, found)
+            )
             for one, part, (x, C) in zip(self.found, found.parts, found.tyres, strict=True)
         )
         known = zip(self.rig_centre.tolist(), self.rig_spread.tolist(), strict=True)
@@ -180,27 +183,19 @@ class _Model:
         """Whether an error of the rig is common to two or more tyres, or there is only one tyre."""
         return len(self.found) == 1 or sum(name in one.names for one in self.found) > 1
 
-    def _strain(self, part: _Part, found: _Solved) -> dict[str, float]:
-        """Rig errors of one tyre alone minus those of all others, over the uncertainty of the difference.
-
-        Both estimates share a prior; the error that it causes in both is treated as common.
-        """
+    def _strain(self, one: Information, part: _Part, found: _Solved) -> dict[str, float]:
+        """How one tyre moves the errors of the rig. The covariances without and with it differ by that of the move."""
         if len(found.parts) < 2:
             return {}
         precision, vector = self.prior()
-        rest = sum(other.precision for other in found.parts if other is not part)
-        C_one, C_rest = inverse(precision + part.precision), inverse(precision + rest)
-        others = C_rest @ (vector + sum(other.vector for other in found.parts if other is not part))
-        difference = C_one @ (vector + part.vector) - others
-        by_prior = C_one @ part.precision - C_rest @ rest
-        covariance = by_prior @ np.diag(1.0 / np.diag(precision)) @ by_prior.T
-        covariance += C_one @ part.precision @ C_one + C_rest @ rest @ C_rest
-        u = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        informed = np.diag(C_one) * np.diag(precision) < constants.INFORMED_VARIANCE_SHARE
+        others = [other for other in found.parts if other is not part]
+        covariance = inverse(precision + sum(other.precision for other in others))
+        moved = found.common - covariance @ (vector + sum(other.vector for other in others))
+        variance = np.diag(covariance - found.covariance)
         return {
-            name: float(difference[k] / u[k])
+            name: float(moved[k] / np.sqrt(variance[k]))
             for k, name in enumerate(self.shared)
-            if informed[k] and self.is_common(name)
+            if self.is_common(name) and _informs(one, name, float(self.rig_spread[k]))
         }
 
 

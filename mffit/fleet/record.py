@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -47,28 +47,12 @@ class FleetScatter:
 
 
 @dataclass(frozen=True, slots=True)
-class WithinTyre:
-    """Scatter of eps_gamma of one tyre from set-up to set-up, pooled over tyres: one-way analysis of variance."""
-
-    sd: float  #: standard deviation within a tyre
-    degrees_of_freedom: int
-    u: float  #: rms of the stated standard uncertainties
-    tyres: int  #: that were measured in several set-ups or built several times
-
-    @property
-    def inflation(self) -> float:
-        """Factor on the stated uncertainties: the larger of scatter and statement counts."""
-        return max(self.sd / self.u, 1.0) if self.u else 1.0
-
-
-@dataclass(frozen=True, slots=True)
 class Fleet:
     """All specimens, rig by rig."""
 
     rows: tuple[Row, ...]
     rigs: tuple[Hierarchy | None, ...]  #: None if no build of the rig has free numbers
     notes: tuple[str, ...]
-    within: WithinTyre | None = None  #: None if every tyre was measured in one set-up
 
     def numbers(self, key: str) -> list[Quantity | None]:
         """One number of every specimen; ``direct``, ``alone`` and ``together`` are eps_gamma."""
@@ -81,9 +65,7 @@ class Fleet:
         found = [q for q in self.numbers(key) if q is not None]
         if len(found) < 2:
             return None
-        scatter = scatter_of(found)
-        larger = self.within.inflation if key == "direct" and self.within else 1.0
-        return replace(scatter, u=scatter.u * larger)
+        return scatter_of(found)
 
 
 EPSILON = {
@@ -92,21 +74,6 @@ EPSILON = {
     "together": "joint estimate of all tyres",
 }
 """The three estimates of eps_gamma in words."""
-
-
-def within_tyres(specimens: Sequence[Specimen]) -> WithinTyre | None:
-    """Scatter of eps_gamma within the tyres that have several set-ups or several builds, known by the tyre's name."""
-    by_tyre: dict[str, list[Quantity]] = {}
-    for specimen in specimens:
-        alone = [] if specimen.epsilon_gamma is None else [specimen.epsilon_gamma]
-        by_tyre.setdefault(specimen.name, []).extend(specimen.epsilon_of_setups or alone)
-    groups = [found for found in by_tyre.values() if len(found) > 1]
-    if not groups:
-        return None
-    freedom = sum(len(found) - 1 for found in groups)
-    squares = sum(float(np.var([q.value for q in found])) * len(found) for found in groups)
-    stated = rms(np.array([q.u for found in groups for q in found]))
-    return WithinTyre(math.sqrt(squares / freedom), freedom, stated, len(groups))
 
 
 def scatter_of(found: Sequence[Quantity]) -> FleetScatter:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 import tir
 from mffit.errors import InputError
@@ -37,9 +35,6 @@ class Specimen:
     reasons: tuple[str, ...] = ()  #: why the build is not to be trusted; empty for a sound one
     in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
-    epsilon_of_setups: tuple[
-        Quantity, ...
-    ] = ()  #: eps_gamma by the zeros of every set-up alone, if there are several
 
     @property
     def information_of_setups(self) -> Information | None:
@@ -104,24 +99,11 @@ def read(folder: str | Path) -> Specimen:
             reasons=tuple(result.get("reasons", ())),
             in_doubt=tuple(result.get("in_doubt", ())),
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
-            epsilon_of_setups=_of_setups(spin.get("setups", [])),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
         raise InputError(
             "is incomplete, or not written by `mffit build`; build this tyre again", file=folder
         ) from None
-
-
-def _of_setups(rows: Sequence[Mapping[str, Any]]) -> tuple[Quantity, ...]:
-    """eps_gamma of every set-up, the mean over its paths; empty for one set-up."""
-    values: dict[str, list[tuple[float, float]]] = {}
-    for row in rows:
-        number = (float(row["epsilon_gamma"]), float(row["u_epsilon_gamma"]))
-        values.setdefault(str(row["setup"]), []).append(number)
-    if len(values) < 2:
-        return ()
-    means = (np.mean(found, axis=0).tolist() for found in values.values())
-    return tuple(Quantity(value, u, "-") for value, u in means)
 
 
 def _information(path: Path) -> Information | None:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import tir
 from mffit import config as configuration
+from mffit import fleet
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
-from mffit.fleet.specimen import RESOLVED
+from mffit.fleet import Specimen
 from mffit.measured import LoadResult
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
@@ -26,8 +24,7 @@ from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from tir import Tyre
-
-RESULT = "result.json"
+from tir.errors import TirError
 
 
 def compare(
@@ -97,34 +94,32 @@ def _subject(path: Path) -> ComparedSubject:
         path = path / _file_of_build(path)
     tyre = tir.read(path)
     built = _build_beside(path)
-    subject = ComparedSubject(
-        path.name, tyre, _turn_slip(tyre), rig=built.get("rig"), setups=built.get("setups", ())
-    )
+    subject = ComparedSubject(path.name, tyre, _turn_slip(tyre))
+    if built is not None:
+        subject = replace(subject, rig=built.rig, setups=built.setups)
     posterior = posterior_of(tyre, path)
     if posterior is not None:
         return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
-    main = str(built.get("tir", ""))
-    return replace(subject, covariance_of="" if main == path.name else main)
+    if built is None or built.file == path.name:
+        return subject
+    return replace(subject, covariance_of=built.file)
 
 
-def _build_beside(path: Path) -> dict[str, Any]:
-    """Of the build in the same folder: ``tir``, the file of its covariance, its ``rig`` and ``setups``; else empty."""
+def _build_beside(path: Path) -> Specimen | None:
+    """The build in the same folder; None without one."""
     try:
-        result = json.loads((path.parent / RESULT).read_text(encoding="utf-8"))
-        resolved = tomllib.loads((path.parent / RESOLVED).read_text(encoding="utf-8"))
-        setups = tuple(dict.fromkeys(sweep["setup"] for sweep in resolved["sweep"] if "setup" in sweep))
-        return {"tir": result["tir"], "rig": resolved["rig"], "setups": setups}
-    except (OSError, ValueError, KeyError, TypeError):
-        return {}
+        return fleet.read(path.parent)
+    except (InputError, TirError):
+        return None
 
 
 def _file_of_build(folder: Path) -> str:
     """Name of the property file with the plain name in the folder of a build."""
     try:
-        return str(json.loads((folder / RESULT).read_text(encoding="utf-8"))["tir"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return fleet.read(folder).file
+    except InputError:
         raise InputError(
-            f"{folder} is not the folder of a build: it has no {RESULT} that names a property file; give the .tir itself"
+            f"{folder} is not the folder of a build: it has no result.json that names a property file; give the .tir itself"
         ) from None
 
 

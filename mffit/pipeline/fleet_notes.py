@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mffit import fleet as combining
-from mffit.fleet import Hierarchy, Row, Specimen, WithinTyre
+from scipy.special import ndtri
+
+from mffit.constants import PREDICTION_FALSE_ALARM
+from mffit.fleet import Hierarchy, Row, Specimen
 from mffit.pipeline.fleet_output import nominal_conditions
 from mffit.rig_errors import words_of
 
@@ -13,9 +15,10 @@ from mffit.rig_errors import words_of
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
     """The sentences, in the order in which the page shows them."""
     far = _far_from_declared(rigs)
+    limit = _surprising(sum(len(row.strain) for row in rows))
     return [
         *_several_rigs(rigs),
-        *(note for row in rows for note in _outlying(row, far)),
+        *(note for row in rows for note in _outlying(row, far, limit)),
         *(
             f"All tyres together put an error of the rig, {words_of(name)}, {ratio:.0f} standard deviations from the "
             "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
@@ -26,14 +29,7 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
     ]
 
 
-def notes_on_setups(
-    specimens: Sequence[Specimen], rig_of: Sequence[int], within: WithinTyre | None
-) -> list[str]:
-    """Whether builds share set-ups, and the scatter of one tyre from set-up to set-up."""
-    return [*_on_sharing(specimens, rig_of), *_on_scatter(within)]
-
-
-def _on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[str]:
+def note_on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[str]:
     """A sentence if tyres of one rig are not declared to share a set-up."""
     on_disc = [(rig, s) for rig, s in zip(rig_of, specimens, strict=True) if s.on_disc]
     apart = [
@@ -56,27 +52,21 @@ def _shared_setups(one: Specimen, others: Sequence[Specimen]) -> set[str]:
     return {name for other in others for name in other.setups if one.rig.get("name") and name in one.setups}
 
 
-def _on_scatter(within: WithinTyre | None) -> list[str]:
-    if within is None:
-        return []
-    n = within.degrees_of_freedom
-    counts = "the scatter" if within.inflation > 1.0 else "the stated uncertainty"
-    return [
-        f"From set-up to set-up of one tyre the directly measured eps_gamma scatters by {within.sd:.3f} (standard deviation, "
-        f"{n} degree{'s' * (n > 1)} of freedom, {within.tyres} tyre{'s' * (within.tyres > 1)}); the stated uncertainties give "
-        f"{within.u:.3f}. The larger one, {counts}, counts for the scatter between tyres."
-    ]
-
-
 def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:
     """Rig errors far from their declaration: distance in declared standard deviations by name."""
-    far = {}
-    for rig in filter(None, rigs):
-        for name, (value, _) in rig.rig.items():
-            expected, u = rig.declared[name]
-            if abs(value - expected) > combining.constants.RIG_FAR_FROM_DECLARED * u:
-                far[name] = abs(value - expected) / u
-    return far
+    found = {
+        (k, name): (value - rig.declared[name][0]) / rig.declared[name][1]
+        for k, rig in enumerate(rigs)
+        if rig is not None
+        for name, (value, _) in rig.rig.items()
+    }
+    limit = _surprising(len(found))
+    return {name: abs(z) for (_, name), z in found.items() if abs(z) > limit}
+
+
+def _surprising(numbers: int) -> float:
+    """Standard deviations beyond which chance hardly puts any of so many numbers."""
+    return float(-ndtri(0.5 * PREDICTION_FALSE_ALARM / max(numbers, 1)))
 
 
 def _several_rigs(rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -88,11 +78,11 @@ def _several_rigs(rigs: Sequence[Hierarchy | None]) -> list[str]:
     ]
 
 
-def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
+def _outlying(row: Row, far: Mapping[str, float], limit: float) -> list[str]:
     """A tyre whose rig error disagrees with the other tyres."""
     # If all tyres are far from the declaration, every single tyre, which follows it, seems to disagree with the others.
     worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
-    if not worst or abs(row.strain[worst]) <= combining.constants.STRAINED_RIG:
+    if not worst or abs(row.strain[worst]) <= limit:
         return []
     return [
         f"{row.specimen.name}: its own error of the rig, {words_of(worst)}, lies {abs(row.strain[worst]):.0f} standard "

@@ -16,7 +16,7 @@ from mffit.errors import InputError
 from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
 from mffit.output import refuse_early
-from mffit.pipeline.fleet_notes import fleet_notes, notes_on_setups
+from mffit.pipeline.fleet_notes import fleet_notes, note_on_sharing
 from mffit.pipeline.fleet_output import WRITTEN, write_fleet
 from mffit.pipeline.members import numbers
 from mffit.progress import Progress, silent
@@ -60,9 +60,7 @@ def fleet(
             progress(f"comparing {specimen.name}")
             rows.append(_row(specimen, rig))
     shown = _with_estimates(rows, rigs)
-    within = combining.within_tyres(specimens)
-    notes = (*fleet_notes(shown, rigs), *notes_on_setups(specimens, rig_of, within))
-    found = Fleet(shown, rigs, notes, within)
+    found = Fleet(shown, rigs, (*fleet_notes(shown, rigs), *note_on_sharing(specimens, rig_of)))
     if out is not None:
         progress("writing the page")
         write_fleet(found, Path(out))

@@ -21,12 +21,11 @@ from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.refining import finite_spin_bias, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
-from mffit.planning.apart import sample_noise
 from mffit.planning.goals import BANDS, EPSILON, JOINT
 from mffit.planning.outlook import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.quantities import CHANNELS, column
+from mffit.quantities import column
 from mffit.results import BuildResult, as_json
 
 WRITTEN = ("plan.json", "plan.html")
@@ -145,9 +144,8 @@ def write_plan(found: Plan, out: Path) -> None:
         runs = [step.run for step in found.steps]
         if runs:
             (folder / SHEETS).mkdir()
-            texts = {"tyre-additions.toml": additions, "rig-additions.toml": simulated}
-            for name, text in texts.items():
-                (folder / SHEETS / name).write_text(text(found.config, runs), encoding="utf-8")
+            text = additions(found.config, runs)
+            (folder / SHEETS / "tyre-additions.toml").write_text(text, encoding="utf-8")
         for run in runs:
             if run.points is not None:
                 table = sheet(found.config, run.points, run.addition.measures)
@@ -182,81 +180,8 @@ def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
     for run in runs:
         lines += ["", f"# {wording.title(run)}", *wording.instructions(run)]
         if run.points is not None:
-            lines += _sweep_table(f"{run.name}.csv", run.points, usual)
+            lines += ["[[sweep]]", f'file = "{run.name}.csv"', *_place(run.points, usual)]
     return "\n".join(lines) + "\n"
-
-
-def simulated(config: Config, runs: Sequence[PlannedRun]) -> str:
-    """TOML to append to the rig.toml of `mffit simulate`, which then makes these runs."""
-    signs = configuration.axis_signs(config)
-    lines = ["# Append to rig.toml: mffit simulate makes these runs."]
-    for run in runs:
-        if run.points is None:
-            continue
-        for number, part in enumerate(_grids(run.points), 1):
-            several, steps = f"-{number}" if number > 1 else "", run.addition.steps
-            lines += ["", "[[sweep]]", f'file = "{run.name}{several}.csv"']
-            lines += [f"load_N = {_listed(part.Fz)}", f"p_kPa = {_listed(part.p / 1e3)}"]
-            lines += [
-                f"alpha_deg = {_listed(signs['alpha'] * np.degrees(part.alpha), ordered=steps == 'alpha')}"
-            ]
-            lines += [f"gamma_deg = {_listed(signs['gamma'] * np.degrees(part.gamma))}"]
-            lines += [
-                f"kappa = {_listed(part.kappa, ordered=steps == 'kappa')}",
-                f"V_mps = {_listed(part.V)}",
-            ]
-            lines += ['direction = "backward"'] if part.direction[0] < 0 else []
-            lines += _place(part, configuration.path_curvature(config.rig))
-            lines += ["free_rolling = true"] if run.addition.rolling else []
-            lines += [_recorded(part)] if steps else []
-    return "\n".join(lines) + "\n"
-
-
-def _recorded(points: Points) -> str:
-    """How a simulated run of steps is recorded; samples scatter more than the points of the project, which are means."""
-    rate, hold, correlation = (
-        search.constants.PLAN_STEP_RATE, search.constants.PLAN_STEP_HOLD, search.constants.PLAN_STEP_CORRELATION
-    )  # fmt: skip
-    keys = {
-        "rate_Hz": rate, "hold_s": hold, "correlation_s": correlation, "steering_deg_per_s": 50.0, "slip_per_s": 0.5
-    }  # fmt: skip
-    for channel in CHANNELS:
-        u = float(points.u(channel)[0])
-        if channel == "Fx" and not np.isfinite(u):  # not measured yet: as the side force
-            u = float(points.u_Fy[0])
-        if np.isfinite(u):
-            keys[f"noise_{column(channel)}"] = sample_noise(u)
-    return f"recording = {{ {', '.join(f'{key} = {x:.3g}' for key, x in keys.items())} }}"
-
-
-def _grids(points: Points) -> list[Points]:
-    """The points in parts that vary one condition, or all combinations of load and pressure."""
-    held = np.column_stack(
-        [
-            points.direction,
-            points.gamma != 0.0,
-            np.sign(points.gamma),
-            np.where(points.kappa.any(), np.sign(points.alpha), 0),
-        ]
-    )
-    if np.ptp(points.gamma) and not np.ptp(points.alpha):
-        held = held[:, :1]  # a camber sweep
-    _, part = np.unique(held, axis=0, return_inverse=True)
-    part = part.ravel()
-    return [points.select(part == k) for k in dict.fromkeys(part.tolist())]
-
-
-def _listed(values: np.ndarray, *, ordered: bool = False) -> str:
-    """Different values of a condition as a TOML list, in ascending order or as they are."""
-    rounded = np.round(values, 6) + 0.0
-    kept = rounded if ordered else np.unique(rounded)
-    return f"[{', '.join(f'{x:g}' for x in kept.tolist())}]"
-
-
-def _sweep_table(file: str, points: Points, usual: float) -> list[str]:
-    """Lines of the [[sweep]] table of a run, with the path where it is not the ``usual`` curvature [1/m]."""
-    lines = ["[[sweep]]", f'file = "{file}"']
-    return lines + _place(points, usual)
 
 
 def _place(points: Points, usual: float) -> list[str]:

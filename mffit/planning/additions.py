@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Literal, NamedTuple
 
 from mffit.errors import InputError
+from mffit.measured.constants import CUBIC_CAMBER
 from mffit.planning import constants
 from mffit.quantities import CHANNELS, DIRECT
 from mffit.rig_errors import DECLARED
-from tir.constant import Series
 
 _EPSILON = DIRECT["epsilon_gamma"].ascii
 
@@ -19,11 +19,10 @@ class LineOfPoints(NamedTuple):
     """Set-points along one angle or slip; everything not given here is as in most of the programme."""
 
     over: Literal["alpha", "gamma", "kappa"]
-    angles: Series  #: in degrees, or without unit: over the largest angle or slip that was run
+    shares: Sequence[float]  #: of the largest angle or slip
+    largest_deg: float | None = None  #: None: the largest that was run
     direction: Literal[1, -1] = 1  #: 1 forward, -1 backward
-    camber_side: Literal[-1, 0, 1] = 0  #: of a coupled sweep
-    absolute: bool = False  #: slips as they are
-    steer_side: Literal[-1, 0, 1] = 0  #: of a sweep of combined slip
+    side: Literal[-1, 0, 1] = 0  #: of the addition's ``held_deg``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,16 +34,13 @@ class Addition:
     reason: str  #: what it measures and why that helps
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
     lines: tuple[LineOfPoints, ...] = ()  #: none for a measurement of the rig
-    disc_only: bool = False
-    belt_only: bool = False
-    measures: tuple[str, ...] = ()  #: channels beside those of the programme
-    steps: Literal["", "alpha", "kappa"] = ""  #: setting that a recording steps, at walking speed
-    rolling: bool = False  #: rolling freely straight on, at all loads and several pressures
+    rig: Literal["any", "disc", "belt"] = "any"
+    measures: tuple[str, ...] = ()  #: channels, added to those of the programme
     mount: Literal[1, -1] = 1
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
-    cambers: Series | None = None  #: of coupled sweeps, one run per camber
-    sideslips: Series | None = None  #: of combined sweeps, one run per sideslip
-    pressures: Series | None = None  #: over the programme's pressure, one run per pressure
+    held: Literal["alpha", "gamma"] = "gamma"  #: angle to which ``side`` of a line belongs
+    held_deg: Sequence[float] = (0.0,)  #: its values, one run each
+    pressures: Sequence[float] = (1.0,)  #: over the programme's pressure, one run each
     declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
     declares_unit: str = ""
     revolution: bool = False  #: adds a [rolling_radius] table
@@ -54,20 +50,21 @@ _NEW_SETUP = (
     "It is a new set-up of the rig, and counted so: the load cell and the axes have other zeros there, as uncertain as before. "
     "If nothing is set up anew in between, give these sweeps the setup of the others; their zeros cancel then."
 )
-_ZEROS = (
-    LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES),
-    LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
+_SHARES = constants.SWEEP_SHARES
+_ZEROS = tuple(
+    LineOfPoints("alpha", (-1.0, -0.5, 0.0, 0.5, 1.0), constants.ZERO_ANGLE, way) for way in (1, -1)
 )
-_SMALL_CAMBERS = (LineOfPoints("gamma", constants.PLAN_SMALL_CAMBERS),)
-_SIDESLIP = (LineOfPoints("alpha", constants.PLAN_SWEEP_SHARES),)
-_CAMBER = (LineOfPoints("gamma", constants.PLAN_SWEEP_SHARES),)
-_DRIVE = (LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES),)
+_SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CUBIC_CAMBER),)
+_SIDESLIP = (LineOfPoints("alpha", _SHARES),)
+_CAMBER = (LineOfPoints("gamma", _SHARES),)
+_DRIVE = (LineOfPoints("kappa", _SHARES),)
+_DRIVE_TO_BOTH_SIDES = tuple(LineOfPoints("kappa", _SHARES, side=side) for side in (-1, 1))
 
 _RIG_MEASUREMENTS = tuple(
     Addition(
         **asdict(declared.measurement),
         loads="nominal",
-        disc_only=True,
+        rig="disc",
         declares=declared.key,
         declares_unit=error.unit
         if declared.unit == error.unit
@@ -77,53 +74,13 @@ _RIG_MEASUREMENTS = tuple(
     if declared.measurement is not None
 )
 
-_STEPS = (
-    Addition(
-        id="steps",
-        title="recording of steps of the sideslip angle",
-        reason=(
-            "The distance over which the side force follows a step is the relaxation length: roll at "
-            f"{constants.PLAN_STEP_SPEED:g} m/s, step within a fraction of a second, hold each angle for "
-            f"{constants.PLAN_STEP_HOLD:g} s, and record at 20 Hz."
-        ),
-        lines=(LineOfPoints("alpha", constants.PLAN_STEPS),),
-        belt_only=True,
-        steps="alpha",
-    ),
-    Addition(
-        id="slip-steps",
-        title="recording of steps of longitudinal slip",
-        reason=(
-            "The distance over which the longitudinal force follows a step of slip is the relaxation length over slip: roll at "
-            f"{constants.PLAN_STEP_SPEED:g} m/s, let the drive of the wheel change its speed by "
-            f"{constants.PLAN_STEPS_OF_SLIP[1]:.1%} within a fraction of a second, hold it for {constants.PLAN_STEP_HOLD:g} s, "
-            "and record at 20 Hz."
-        ),
-        lines=(LineOfPoints("kappa", constants.PLAN_STEPS_OF_SLIP, absolute=True),),
-        belt_only=True,
-        measures=("Fx",),
-        steps="kappa",
-    ),
-)
-_STEPS_AT_PRESSURES = tuple(
-    replace(
-        steps,
-        id=f"{steps.id}-pressure",
-        title=f"{steps.title} at another pressure",
-        reason=f"A second pressure shows how the stiffness of the carcass changes with it. {steps.reason}",
-        loads="nominal",
-        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
-    )
-    for steps in _STEPS
-)
-
 ADDITIONS = (
     Addition(
         id="zeros",
         title="zeros both ways again",
         reason="More points at zero average the noise out of the turn-slip force.",
         lines=_ZEROS,
-        disc_only=True,
+        rig="disc",
     ),
     Addition(
         id="other-side",
@@ -133,7 +90,7 @@ ADDITIONS = (
             f"in half the difference. {_NEW_SETUP}"
         ),
         lines=_ZEROS,
-        disc_only=True,
+        rig="disc",
         radius=-1.0,
     ),
     Addition(
@@ -144,23 +101,23 @@ ADDITIONS = (
             f"cambers include zero, so the run also measures the turn-slip force. {_NEW_SETUP}"
         ),
         lines=_SMALL_CAMBERS,
-        disc_only=True,
+        rig="disc",
         radius=-1.0,
     ),
     Addition(
         id="second-radius",
-        title=f"zeros both ways at {constants.PLAN_SECOND_RADIUS_FACTOR:g} of the path radius",
+        title=f"zeros both ways at {constants.SECOND_RADIUS_FACTOR:g} of the path radius",
         reason=(f"Turn slip grows with the path's curvature; conicity does not depend on it. {_NEW_SETUP}"),
         lines=_ZEROS,
-        disc_only=True,
-        radius=constants.PLAN_SECOND_RADIUS_FACTOR,
+        rig="disc",
+        radius=constants.SECOND_RADIUS_FACTOR,
     ),
     Addition(
         id="small-camber",
         title="small cambers, closely spaced",
         reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
         lines=_SMALL_CAMBERS,
-        disc_only=True,
+        rig="disc",
     ),
     *_RIG_MEASUREMENTS,
     Addition(
@@ -168,7 +125,7 @@ ADDITIONS = (
         title="one revolution of the disc",
         reason=f"{_EPSILON} cannot be measured without an effective radius.",
         loads="nominal",
-        disc_only=True,
+        rig="disc",
         revolution=True,
     ),
     Addition(
@@ -179,15 +136,15 @@ ADDITIONS = (
             "from the sideslip of a camber axis that is not square to the steering axis."
         ),
         loads="nominal",
-        lines=(LineOfPoints("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
-        disc_only=True,
+        lines=(LineOfPoints("gamma", _SHARES, direction=-1),),
+        rig="disc",
     ),
     Addition(
         id="flipped",
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
         loads="nominal",
-        lines=(LineOfPoints("alpha", constants.PLAN_FLIPPED_SHARES),),
+        lines=(LineOfPoints("alpha", _SHARES[3:-3]),),
         mount=-1,
     ),
     Addition(
@@ -206,8 +163,8 @@ ADDITIONS = (
         id="coupled",
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
-        lines=tuple(LineOfPoints("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
-        cambers=constants.PLAN_COUPLED_CAMBERS,
+        lines=tuple(LineOfPoints("alpha", _SHARES, side=side) for side in (-1, 1)),
+        held_deg=constants.COUPLED_CAMBERS,
     ),
     Addition(
         id="pressure",
@@ -217,7 +174,7 @@ ADDITIONS = (
             "itself or the load at which the stiffness peaks."
         ),
         lines=(*_SIDESLIP, *_CAMBER),
-        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
+        pressures=constants.NEW_PRESSURE_FACTORS,
     ),
     Addition(
         id="load",
@@ -231,25 +188,26 @@ ADDITIONS = (
         title="sweep of longitudinal slip, drive and brake",
         reason="Slip stiffness, peak and shape of the longitudinal force are seen only under slip.",
         lines=_DRIVE,
-        belt_only=True,
+        rig="belt",
         measures=("Fx",),
     ),
     Addition(
         id="combined",
         title="sweeps of longitudinal slip at sideslip to both sides",
         reason="How sideslip and slip take force from each other is seen only where both act together.",
-        lines=tuple(LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES, steer_side=side) for side in (-1, 1)),
-        sideslips=constants.PLAN_COMBINED_SIDESLIPS,
-        belt_only=True,
+        lines=_DRIVE_TO_BOTH_SIDES,
+        held="alpha",
+        held_deg=constants.COMBINED_SIDESLIPS,
+        rig="belt",
         measures=("Fx",),
     ),
     Addition(
         id="drive-camber",
         title="sweeps of longitudinal slip at camber of both signs",
         reason="Camber changes the peak of the longitudinal force, and the moment of slip about the two other axes.",
-        lines=tuple(LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
-        cambers=constants.PLAN_LEANED_SLIP_CAMBERS,
-        belt_only=True,
+        lines=_DRIVE_TO_BOTH_SIDES,
+        held_deg=constants.LEANED_SLIP_CAMBERS,
+        rig="belt",
         measures=("Fx",),
     ),
     Addition(
@@ -257,21 +215,10 @@ ADDITIONS = (
         title="sweep of longitudinal slip at another pressure",
         reason="Slip stiffness and longitudinal friction change with pressure.",
         lines=_DRIVE,
-        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
-        belt_only=True,
+        pressures=constants.NEW_PRESSURE_FACTORS,
+        rig="belt",
         measures=("Fx",),
     ),
-    Addition(
-        id="rolling",
-        title="rolling freely at all loads and three pressures",
-        reason="Vertical stiffness, free radius and their change with pressure follow from loaded radius and wheel speed.",
-        loads="nominal",
-        belt_only=True,
-        rolling=True,
-        measures=("RL", "omega"),
-    ),
-    *_STEPS,
-    *_STEPS_AT_PRESSURES,
 )
 """In the order in which they are tried; of equally good ones with as many points the first is taken."""
 BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS}

@@ -17,8 +17,6 @@ from tir.parameters import BY_NAME
 EPSILON, JOINT, BANDS, TIE, FILE = "eps_gamma", "eps_gamma:joint", "bands", "tie", "file"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT", FILE)
 """How goals are written; the name of a coefficient is a goal too."""
-CARCASS = tuple(name for direction in DIRECTIONS for name in direction.names)
-"""Coefficients that only steps determine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +35,7 @@ class Goal:
             EPSILON: f"u({epsilon}) by the direct method",
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
-            FILE: "95 % band of the file over its forces, relaxation lengths and deflection, rms",
+            FILE: "95 % band of the file over its largest forces, rms",
             TIE: f"u of {self._tied} with its rival effects free",
         }.get(self.kind, f"u({self.name})")
 
@@ -62,9 +60,11 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
             f"[coefficients] holds {text}, so that no run makes it more certain; choose another goal, or free it"
         )
     kind, _, rest = text.partition(":")
+    if any(text in direction.names for direction in DIRECTIONS):
+        raise InputError(
+            f"{text} follows from recordings of steps, which a plan does not propose; `mffit build` says which one is missing"
+        )
     if text == FILE:
-        if on_disc:
-            raise InputError(f'"{text}" needs a straight path; choose bands or a coefficient')
         return Goal(FILE)
     if kind == EPSILON and rest in ("", "direct", "joint"):
         if not on_disc:
@@ -79,14 +79,14 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
         effect = effect_named(rest)
         number = effect.free[0].name
         return Goal(TIE, effect.id, UNITS[number] if number in UNITS else BY_NAME[number].unit)
-    if text in CARCASS or (text in BY_NAME and BY_NAME[text].stage):
+    if text in BY_NAME and BY_NAME[text].stage:
         return Goal("coefficient", text, BY_NAME[text].unit)
     if text == "PECP1":
         return read_goal(EPSILON, on_disc=on_disc)
-    known = [*GOALS, *CARCASS, *(row for row in BY_NAME if BY_NAME[row].stage)]
+    known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
     near = difflib.get_close_matches(text, known, n=1)
     hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
-    raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that is fitted{hint}')
+    raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that its runs inform{hint}')
 
 
 def effect_named(text: str) -> Effect:

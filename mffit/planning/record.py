@@ -10,7 +10,6 @@ from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
 from mffit.planning.goals import Goal
-from mffit.planning.order import RunOrder
 from mffit.planning.runs import PlannedRun
 
 
@@ -73,9 +72,6 @@ class Plan(Brief):
     steps: tuple[PlanStep, ...]  #: the list, in the order in which the runs are made
     trials: tuple[Trial, ...]  #: every candidate made alone, best first
     told_below: float | None = None  #: of a tie: uncertainty below which the effects are separated
-    order: RunOrder | None = (
-        None  #: another order of the sweeps, if the tyre's temperature runs along with a setting
-    )
 
     @property
     def then(self) -> float:

@@ -12,7 +12,6 @@ from mffit.planning import constants
 from mffit.planning.additions import Addition
 from mffit.planning.goals import Goal
 from mffit.planning.identified import identified
-from mffit.planning.order import mixed_order
 from mffit.planning.outlook import Direct, Outlook
 from mffit.planning.record import Plan, PlanStep, Trial
 from mffit.planning.runs import PlannedRun, candidates
@@ -51,7 +50,6 @@ def plan(
     progress(f"trying {len(possible)} runs one by one")
     trials = sorted((Trial(run, outlook.u([run])) for run in possible), key=lambda trial: trial.u)
     chosen = _without_superfluous(outlook, _chosen(outlook, possible, most, progress))
-    outlook.add_noise()
     steps = [
         PlanStep(run, outlook.u(chosen[:k]), outlook.u(chosen[: k + 1]), *outlook.epsilons(chosen[: k + 1]))
         for k, run in enumerate(chosen)
@@ -67,7 +65,6 @@ def plan(
         steps=tuple(steps),
         trials=tuple(trials),
         told_below=outlook.told_below,
-        order=mixed_order(points) if found.confounded else None,
     )
 
 
@@ -96,12 +93,12 @@ def _best(
         return ()
     after = [outlook.u([*chosen, *more]) for more in possible]
     least = min(after)
-    if not least < (1.0 - constants.PLAN_WORTHWHILE_FALL) * outlook.u(chosen):
+    if not least < (1.0 - constants.WORTHWHILE_FALL) * outlook.u(chosen):
         return ()
     equally_good = [
         (sum(run.cost for run in more), u, k)
         for k, (more, u) in enumerate(zip(possible, after, strict=True))
-        if u <= (1.0 + constants.PLAN_EQUALLY_GOOD) * least
+        if u <= (1.0 + constants.EQUALLY_GOOD) * least
     ]
     return possible[min(equally_good)[2]]
 
@@ -116,7 +113,7 @@ def _without_superfluous(outlook: Outlook, chosen: Sequence[PlannedRun]) -> list
     kept = list(chosen)
     for run in chosen:
         fewer = [other for other in kept if other is not run]
-        limit = (1.0 + constants.PLAN_EQUALLY_GOOD) * outlook.u(kept)
+        limit = (1.0 + constants.EQUALLY_GOOD) * outlook.u(kept)
         if len(kept) > 1 and outlook.u(fewer) <= limit:
             kept = fewer
     return kept

@@ -23,10 +23,7 @@ def title(run: PlannedRun) -> str:
     if run.rig:
         (value,) = run.rig.values()
         return f"{run.addition.title}, known to {value:.2g} {run.addition.declares_unit}"
-    angle = run.camber_deg or run.sideslip_deg
-    more = f", {angle:g} deg" if angle else ""
-    if run.addition.rolling:
-        return run.addition.title
+    more = f", {run.held_deg:g} deg" if run.held_deg else ""
     more += f", {CONDITIONS['p_kPa'].of(run.pressure_kPa)}" if run.pressure_kPa else ""
     return f"{run.addition.title}, {LOAD.of(run.load)}{more}"
 
@@ -34,7 +31,7 @@ def title(run: PlannedRun) -> str:
 def headline(plan: Plan) -> str:
     """The plan in one sentence."""
     if not plan.steps:
-        least = f"{100 * constants.PLAN_WORTHWHILE_FALL:g} %"
+        least = f"{100 * constants.WORTHWHILE_FALL:g} %"
         return (
             f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget and "
             f"the ties show what limits it.{_tie_resolved(plan)}"
@@ -92,10 +89,9 @@ def promise(plan: Plan) -> str:
         )
     elif kind == FILE:
         estimate = (
-            "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values (rms over sideslip, camber and "
-            "slip at three loads), and of both relaxation lengths and the loaded radius over the deflection (also at three "
-            "pressures): the rms of these, over the loads at which the wheel has been steered, leaned or driven so far. "
-            "What was not measured counts with its prior."
+            "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and "
+            "slip at three loads, at which the wheel has been steered, leaned or driven so far. What was not measured counts "
+            "with its prior."
         )
     elif kind == TIE:
         limit = f", {shown(plan, plan.told_below)}" if plan.told_below else ""
@@ -179,11 +175,10 @@ def _first_of_all(found: Identified) -> list[str]:
     """The run that shows an error which nothing else shows."""
     if found.unseen_skew is None:
         return []
-    skew = constants.UNSEEN_SKEW
     return [
         "Run first a backward camber sweep at the nominal load, 11 angles: without one, a camber axis out of square by more "
-        f"than is declared goes unnoticed, because the fitted camber stiffness imitates it; {skew:g} deg would change {EPS} by "
-        f"{skew * found.unseen_skew:.2f}."
+        f"than is declared goes unnoticed, because the fitted camber stiffness imitates it; 1 deg would change {EPS} by "
+        f"{found.unseen_skew:.2f}."
     ]
 
 
@@ -200,7 +195,7 @@ def _largest_contribution(found: Identified) -> list[str]:
 def instructions(run: PlannedRun) -> list[str]:
     """Lines for tyre.toml, without the readings."""
     if run.rig:
-        share = f"{constants.PLAN_RIG_IMPROVEMENT:.2g} of the uncertainty declared now"
+        share = f"{constants.RIG_IMPROVEMENT:.2g} of the uncertainty declared now"
         # Comments, because tyre.toml already has a [rig] table and TOML allows only one.
         return [f"# change in [rig]: {key} = {value:.3g} ({share})" for key, value in run.rig.items()]
     if run.revolution is not None:
@@ -209,20 +204,4 @@ def instructions(run: PlannedRun) -> list[str]:
             f"load_N = {run.load:.0f}",
             "# revolutions, angle_start_deg, angle_end_deg",
         ]
-    if run.addition.steps:
-        return ["# a recording: with the column time_s, and a row per sample"]
     return []
-
-
-def order(plan: Plan) -> str:
-    """The order in which the sweeps should be run, and what it changes; empty if the present one is good."""
-    if plan.order is None:
-        return ""
-    changes = ", ".join(
-        f"{setting} {plan.order.now[setting]:.2f} to {plan.order.then[setting]:.2f}"
-        for setting in plan.order.now
-    )
-    return (
-        "The tyre's temperature runs along with the settings of the sweeps. Run again in this order, they separate "
-        f"(correlation with the temperature: {changes}): {', '.join(plan.order.sweeps)}."
-    )

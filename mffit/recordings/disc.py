@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.points import Points
+from mffit.points import Points, levels
 from mffit.recordings import constants
 from mffit.recordings.sniffed import Sniffed
 from mffit.sweeps import formats
@@ -40,13 +40,13 @@ def zero_of_upright(points: Points) -> float:
     """Sideslip [deg] at which the side force of the upright wheel, rolling forwards, vanishes; NaN if points do not show it."""
     alpha = np.degrees(points.alpha)
     near = (
-        (np.abs(np.degrees(points.gamma)) < constants.UPRIGHT)
+        (np.abs(points.gamma) < levels.CAMBER.tolerance)
         & (np.abs(alpha) < constants.NEAR_STRAIGHT)
         & (points.direction > 0)
         & np.isfinite(points.Fy)
         & (points.Fz > 0.0)
     )
-    if near.sum() < constants.FEWEST_FOR_ZERO or np.ptp(alpha[near]) < 1.0:
+    if near.sum() < 3 or np.ptp(alpha[near]) < 1.0:
         return math.nan
     slope, offset = np.polyfit(alpha[near], points.Fy[near] / points.Fz[near], 1)
     return float(-offset / slope) if slope < 0.0 else math.nan

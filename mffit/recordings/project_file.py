@@ -253,40 +253,22 @@ def _sweeps(
 
 
 def _files(paths: Sequence[Path]) -> list[tuple[Path, str]]:
-    """Files, or patterns for those whose names begin with the same word, each with a comment on how many it matches."""
-    if (pattern := _pattern(paths)) is not None:
-        return [(paths[0].parent / pattern, f"  # {len(paths)} files")]
-    families: dict[tuple[Path, str], list[Path]] = {}
-    for path in paths:
-        word = "".join(takewhile(str.isalpha, path.name))
-        families.setdefault((path.parent, word), []).append(path)
-    named = []
-    for family in families.values():
-        pattern = _pattern(family)
-        if pattern is None:
-            named += [(path, "") for path in family]
-        else:
-            named.append((family[0].parent / pattern, f"  # {len(family)} files"))
-    return named
+    """One pattern for files that it alone matches, with a comment on how many; else each file by its name."""
+    names = [path.name for path in paths]
+    start = _shared_start(names)
+    end = _shared_start([name[len(start) :][::-1] for name in names])[::-1]
+    folders = {path.parent for path in paths}
+    if len(paths) >= constants.FEWEST_FOR_PATTERN and len(folders) == 1 and not WILD & set(start + end):
+        pattern = f"{start}*{end}"
+        if {path.name for path in paths[0].parent.glob(pattern)} == set(names):
+            return [(paths[0].parent / pattern, f"  # {len(paths)} files")]
+    return [(path, "") for path in paths]
 
 
-def _pattern(paths: Sequence[Path]) -> str | None:
-    """The pattern that matches these files of their folder and no others; None for few files, or if there is none."""
-    names = {path.name for path in paths}
-    if len(paths) < constants.FEWEST_FOR_PATTERN or len({path.parent for path in paths}) > 1:
-        return None
-    start, end = _shared_start(names), _shared_start({name[::-1] for name in names})[::-1]
-    pattern = f"{start}*{end[-min(len(end), min(map(len, names)) - len(start)) :] if end else ''}"
-    if WILD & set(pattern.replace("*", "", 1)):
-        return None
-    return pattern if {path.name for path in paths[0].parent.glob(pattern)} == names else None
-
-
-def _shared_start(names: Collection[str]) -> str:
+def _shared_start(names: Iterable[str]) -> str:
     """The characters with which all names begin."""
-    return "".join(
-        chars[0] for chars in takewhile(lambda chars: len(set(chars)) == 1, zip(*names, strict=False))
-    )
+    alike = takewhile(lambda chars: len(set(chars)) == 1, zip(*names, strict=False))
+    return "".join(chars[0] for chars in alike)
 
 
 def _content(recording: SniffedRecording, shared: Mapping[str, Guess]) -> tuple[str, ...]:

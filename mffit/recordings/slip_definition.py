@@ -9,7 +9,6 @@ import numpy as np
 
 from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero
-from mffit.recordings import constants
 from mffit.recordings.unstated import FoundChannel
 from mffit.sweeps.units import converted
 
@@ -83,7 +82,7 @@ def _judged(
     zero = _zero(ratio, found, unit_of)
     unit = why = ""
     if not column.unit:
-        if column.size > constants.LARGEST_SLIP_AS_RATIO:
+        if column.size > column.channel.upper:
             unit, why = "%", f"{column.range} look like %"
         elif zero is not None and abs(zero.slope) < SOFTEST_SLIP_STIFFNESS:
             unit, why = (

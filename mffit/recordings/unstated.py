@@ -1,18 +1,23 @@
-"""Units that a file does not state: columns of one kind are decided together, and each choice comes with its reason."""
+"""Units that a file does not state: the one in which the readings are those of a tyre, with the reason.
+
+One table says for every kind of reading which units rigs use and what tyres allow. Columns of one kind share a unit.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.constants import HOTTEST_TREAD
+from mffit.points import levels
 from mffit.points.clock import spread
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible
-from mffit.sweeps.units import converted, factor, spelt
+from mffit.sweeps.units import converted, spelt
 
 
 class FoundChannel(NamedTuple):
@@ -28,6 +33,11 @@ class FoundChannel(NamedTuple):
         """The largest reading except for spikes; 0 without readings."""
         seen = np.abs(self.values[np.isfinite(self.values)])
         return float(np.percentile(seen, constants.PERCENTILE_OF_SIZE)) if len(seen) else 0.0
+
+    @property
+    def middle(self) -> float:
+        """The usual reading, without its sign."""
+        return float(np.nanmedian(np.abs(self.values)))
 
     @property
     def range(self) -> str:
@@ -49,19 +59,31 @@ class Choices(NamedTuple):
     left_out: dict[str, str]  #: why a column is left out
 
 
-KINDS_OF_ONE_UNIT = ("deg", "N", "N m")
-"""Channels with these contract units usually share a unit in a file."""
-PRESSURE_UNITS = ("bar", "psi", "kPa", "MPa", "Pa")
-"""Sorted by priority."""
-TIME_UNITS = ("s", "ms", "us")
-"""Sorted by priority."""
+class Kind(NamedTuple):
+    """A kind of reading."""
+
+    units: tuple[str, ...]  #: that rigs use, the likeliest first
+    limits: tuple[float, ...]  #: of tyres, in the contract's unit
+    american: str = ""
+
+
+RADII = BY_NAME["RL_m"].lower, BY_NAME["RL_m"].upper
+KINDS: Mapping[str, Kind] = {
+    "deg": Kind(("rad", "deg"), (0.0, BY_NAME["alpha_deg"].upper)),
+    "N": Kind(("kN", "N"), (0.0, BY_NAME["Fz_N"].upper), "lbf"),
+    "N m": Kind(("kN m", "N m"), (0.0, 1.0), "in-lb"),  # over the load
+    "kPa": Kind(("bar", "psi", "kPa", "MPa", "Pa"), constants.TYRE_PRESSURES, "psi"),
+    "m": Kind(("m", "mm", "cm", "in"), RADII, "in"),
+    "m/s": Kind(("m/s", "km/h", "mph"), (0.0, constants.FASTEST_SPEED_IN_METRES), "mph"),
+    "degC": Kind(("degC", "degF"), (BY_NAME["T_degC"].lower, HOTTEST_TREAD), "degF"),
+    "s": Kind(("s", "ms", "us"), tuple(1.0 / rate for rate in reversed(constants.STEERING_RATES))),  # per deg
+}
+"""By the contract's unit."""
 ROTATION_UNITS = ("rad/s", "rpm")
-SPEED_UNITS = ("m/s", "km/h", "mph")
-CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "degF", "m": "in"}
-"""American units by the contract's."""
 FOOT_POUNDS = "ft-lb"
-AMERICAN = frozenset(spelt(unit) for unit in (*CUSTOMARY.values(), FOOT_POUNDS))
-LENGTH_UNITS = ("m", "mm", "cm", "in")
+AMERICAN = frozenset(
+    spelt(unit) for unit in (*(k.american for k in KINDS.values() if k.american), FOOT_POUNDS)
+)
 
 
 def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
@@ -73,25 +95,59 @@ def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
     radius : unloaded [m]; None if it is not known
     """
     chosen: dict[str, Choice] = {}
-    american = _american_sign(found, radius)
-    for kind in KINDS_OF_ONE_UNIT:
+    for kind in KINDS:
         for group in _groups(kind, found):
-            chosen |= _shared_unit(kind, group, _load(found, chosen))
-    for name, column in found.items():
-        if not column.unit and column.channel.unit and name not in chosen and name != "omega_radps":
-            chosen[name] = _own_unit(name, found, chosen, radius)
-    if american is not None and not _has_other_units(found, chosen):
-        chosen |= _american(found, chosen, american)
-    if (speed := _speed_of_wheel(found, chosen, radius)) is not None:
-        chosen["V_mps"] = speed
-    rotation = _rotation(found, chosen, radius)
-    left_out = {"omega_radps": rotation} if isinstance(rotation, str) else {}
-    if isinstance(rotation, Choice):
-        chosen["omega_radps"] = rotation
+            chosen |= _shared_unit(kind, group, _Known(found, chosen, radius))
+    chosen |= _american(_Known(found, chosen, radius))
+    turning = _turning(_Known(found, chosen, radius))
+    left_out = {"omega_radps": turning} if isinstance(turning, str) else {}
+    if not isinstance(turning, str):
+        chosen |= turning
+    known = _Known(found, chosen, radius)
     for name in found:
-        if name not in left_out and (reason := _implausible(name, found, chosen)):
+        if name not in left_out and (reason := _implausible(name, known)):
             left_out[name] = reason
     return Choices({name: chosen[name] for name in chosen if name not in left_out}, left_out)
+
+
+class _Known(NamedTuple):
+    """What is known of a file's columns so far."""
+
+    found: Mapping[str, FoundChannel]
+    chosen: Mapping[str, Choice]
+    radius: float | None  #: unloaded [m]
+
+    def unit(self, name: str) -> str:
+        """Unit of a column, stated or chosen; "" while it is open, or without the column."""
+        if name not in self.found:
+            return ""
+        return self.found[name].unit or (self.chosen[name].unit if name in self.chosen else "")
+
+    @property
+    def load(self) -> float:
+        """The largest load [N]; 0 while its unit is open."""
+        unit = self.unit("Fz_N")
+        return _in(self.found["Fz_N"].size, unit, "N") if unit else 0.0
+
+    def possible(self, kind: str, value: float) -> dict[str, float]:
+        """Units in which a reading of a kind is that of a tyre, the likeliest first, with the reading in the contract's unit."""
+        lower, upper = KINDS[kind].limits
+        if kind == "N m":
+            upper *= self.load
+        if kind == "m" and self.radius is not None:
+            lower, upper = (share * self.radius for share in constants.ROLLING_RADIUS_RANGE)
+        fits = {unit: x for unit in KINDS[kind].units if lower <= (x := _in(value, unit, kind)) <= upper}
+        if kind == "kPa":  # load over pressure is the contact patch
+            fits = dict(sorted(fits.items(), key=lambda fit: _from_usual_patch(fit[1], self.load)))
+        return fits
+
+
+def _in(value: float, unit: str, target: str) -> float:
+    return float(converted(np.array([value]), unit, target)[0])
+
+
+def _from_usual_patch(kPa: float, load: float) -> float:
+    return abs(math.log(max(load, 1.0) / (1e3 * kPa * constants.USUAL_CONTACT_PATCH)))
 
 
 def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, FoundChannel]]:
@@ -105,224 +161,154 @@ def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, Foun
     return [group] if group else []
 
 
-def _shared_unit(kind: str, group: Mapping[str, FoundChannel], load: float) -> dict[str, Choice]:
-    """One unit for all columns of a group that state none: that of another column, else the one that fits."""
+def _shared_unit(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> dict[str, Choice]:
+    """One unit for all columns of a group that state none: that of another column, else the one of a tyre."""
+    open_ones = {name: column for name, column in group.items() if not column.unit}
     stated = next((column for column in group.values() if column.unit), None)
-    unit = stated.unit if stated else _fitting_unit(kind, group, load)
-    headings = ", ".join(column.heading for column in group.values())
-    shared = f"; {headings} share a unit" if len(group) > 1 else ""
+    if stated is not None:
+        return {
+            name: Choice(stated.unit, f"{column.range} assumed to be in {stated.unit}, like {stated.heading}")
+            for name, column in open_ones.items()
+        }
+    value = _decisive(kind, group, known)
+    if value is None:
+        why = "assumed to be in s; without a moving angle the unit is not known"
+        return {name: Choice(kind, f"{column.range} {why}") for name, column in open_ones.items()}
+    fits = known.possible(kind, value) if value else {}
+    if not fits or (kind == "m" and len(fits) > 1):  # in metres an implausible radius is left out
+        why = ": in no unit the angle moves as rigs steer, so that the unit is not known" * (kind == "s")
+        return {
+            name: Choice(kind, f"{column.range} taken as {kind}{why}") for name, column in open_ones.items()
+        }
+    unit, *others = fits
+    also = f", less likely {' or '.join(_with_size(kind, other, fits) for other in others)}" if others else ""
+    shared = f"; {', '.join(column.heading for column in group.values())} share a unit" * (len(group) > 1)
+    return {
+        name: Choice(unit, f"{column.range} look like {_with_size(kind, unit, fits)}{also}{shared}")
+        for name, column in open_ones.items()
+    }
 
-    def reason(column: FoundChannel) -> str:
-        if stated:
-            return f"{column.range} assumed to be in {unit}, like {stated.heading}"
-        return _look_like(column, unit) + shared
 
-    return {name: Choice(unit, reason(column)) for name, column in group.items() if not column.unit}
-
-
-def _fitting_unit(kind: str, group: Mapping[str, FoundChannel], load: float) -> str:
-    size = max(column.size for column in group.values())
-    if kind == "deg":
-        return "rad" if size < constants.LARGEST_ANGLE_IN_RADIANS else "deg"
-    if kind == "N":
-        return "kN" if size < constants.LARGEST_FORCE_IN_KILONEWTONS else "N"
-    return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM_IN_RECORDING * load else "N m"
+def _with_size(kind: str, unit: str, fits: Mapping[str, float]) -> str:
+    """A unit, with the reading in the contract's unit if that is another one."""
+    if unit == kind:
+        return unit
+    if kind == "s":
+        return f"{unit}, in which the angle moves at {1.0 / fits[unit]:.2g} deg/s"
+    return f"{unit} ({fits[unit]:{'.0f' if fits[unit] >= 10.0 else '.2g'}} {kind})"
 
 
-def _american_sign(found: Mapping[str, FoundChannel], radius: float | None) -> FoundChannel | None:
-    """A column that can only be in an American unit, so that the file has American units; None without one.
+def _decisive(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> float | None:
+    """The reading by which the unit of a group is decided, in that unit; None if there is none."""
+    if kind in ("kPa", "m", "degC"):
+        return next(iter(group.values())).middle
+    if kind != "s":
+        return max(column.size for column in group.values())
+    if "alpha_deg" not in known.found or "time_s" not in group:
+        return None
+    alpha_deg = converted(known.found["alpha_deg"].values, known.unit("alpha_deg"), "deg")
+    return _time_per_degree(group["time_s"].values, alpha_deg)
 
-    A pressure in psi is no such sign: rigs in Europe have gauges in psi, too.
+
+def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
+    """Time in which the sideslip angle moves by a degree where it is steered, in the unit of ``time``; None if it rests."""
+    seen = np.isfinite(time) & np.isfinite(alpha_deg)
+    time, alpha_deg = spread(time[seen]), alpha_deg[seen]
+    width = int(constants.SAMPLES_PER_RATE) if len(time) > 4 * constants.SAMPLES_PER_RATE else 1
+    elapsed = time[width:] - time[:-width]
+    forwards = elapsed > 0.0
+    if np.sum(forwards) < 4 or np.radians(np.ptp(alpha_deg)) < levels.SIDESLIP.tolerance:
+        return None
+    rates = np.abs(alpha_deg[width:] - alpha_deg[:-width])[forwards] / elapsed[forwards]
+    rate = float(np.percentile(rates, constants.PERCENTILE_OF_SIZE))
+    return 1.0 / rate if rate > 0.0 else None
+
+
+def _american(known: _Known) -> dict[str, Choice]:
+    """American units of the columns of the kinds without a stated unit, if a column can only be in one.
+
+    A pressure in psi is no such sign: rigs in Europe have gauges in psi, too. A pressure or a stated unit that is not American
+    speaks against them.
     """
-
-    def is_sign(name: str, column: FoundChannel) -> bool:
-        if column.unit:
-            return spelt(column.unit) in AMERICAN - {spelt("psi")}
-        return (name == "T_degC" and _too_hot(column)) or (
-            name == "RL_m" and _lengths(column, radius) == ["in"]
-        )
-
-    return next((column for name, column in found.items() if is_sign(name, column)), None)
-
-
-def _has_other_units(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> bool:
-    """Whether a pressure or a column with a stated unit is in a unit that is not American."""
-    pressure = _unit_of("p_kPa", found, chosen) if "p_kPa" in found else "psi"
-    stated = [column for column in found.values() if column.unit and column.channel.unit in CUSTOMARY]
-    return spelt(pressure) != spelt("psi") or any(spelt(column.unit) not in AMERICAN for column in stated)
-
-
-def _american(
-    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], sign: FoundChannel
-) -> dict[str, Choice]:
-    """American units of the columns whose kind has no stated unit in any column."""
-    settled = {column.channel.unit for column in found.values() if column.unit}
+    found, chosen, _ = known
+    sign = next((column for name, column in found.items() if _only_american(name, known)), None)
+    stated = {column.channel.unit: column.unit for column in found.values() if column.unit}
+    others = [unit for kind, unit in stated.items() if kind in KINDS and KINDS[kind].american]
+    if "p_kPa" in found:
+        others.append(known.unit("p_kPa"))
+    if sign is None or not all(spelt(unit) in AMERICAN for unit in others):
+        return {}
     moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
     arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
-    units = CUSTOMARY | ({"N m": FOOT_POUNDS} if arm < constants.LARGEST_LEVER_ARM_IN_FEET else {})
     given = {}
     for name in chosen:
         column = found[name]
-        unit = units.get(column.channel.unit)
-        if unit is None or column.channel.unit in settled:
-            continue
-        if name == "p_kPa" and chosen[name].unit != "psi":
-            continue  # readings decide between units that differ by a factor of seven
-        if name == "RL_m" and "in" not in _lengths(column, None):
-            continue
-        why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
-        given[name] = chosen[name] if chosen[name].unit == unit else Choice(unit, why)
+        kind = column.channel.unit
+        unit = KINDS[kind].american
+        if kind == "N m" and arm < constants.LARGEST_LEVER_ARM_IN_FEET:
+            unit = FOOT_POUNDS
+        fits = kind != "m" or unit in known.possible(kind, column.middle)
+        if unit and unit != chosen[name].unit and kind not in stated and fits:
+            why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
+            given[name] = Choice(unit, why)
     return given
 
 
-def _too_hot(column: FoundChannel) -> bool:
-    """Whether temperatures without a unit, or stated in degC, are those of no tyre in degC."""
-    return _within(float(np.nanmedian(column.values)), (HOTTEST_TREAD, constants.HOTTEST_TREAD_IN_FAHRENHEIT))
+def _only_american(name: str, known: _Known) -> bool:
+    """Whether a column can only be in an American unit; of a pressure that says nothing of others."""
+    column = known.found[name]
+    if column.unit:
+        return spelt(column.unit) in AMERICAN - {spelt("psi")}
+    kind = column.channel.unit
+    if kind not in ("degC", "m"):
+        return False
+    return list(known.possible(kind, column.middle)) == [KINDS[kind].american]
 
 
-def _lengths(column: FoundChannel, radius: float | None) -> list[str]:
-    """Units in which a column is the loaded radius of a tyre."""
-    limits: tuple[float, ...] = constants.ANY_LOADED_RADII
-    if radius is not None:
-        limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
-    middle = float(np.nanmedian(column.values))
-    return [unit for unit in LENGTH_UNITS if _within(factor(unit, "m") * middle, limits)]
-
-
-def _own_unit(
-    name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
-) -> Choice:
-    """The unit of a column that shares it with no other."""
-    column = found[name]
-    unit = column.channel.unit
-    if unit == "kPa":
-        return _pressure(column, _load(found, chosen))
-    if name == "RL_m":
-        # Between centimetres and inches only the size of the tyre decides; in metres the column is left out.
-        possible = _lengths(column, radius)
-        return (
-            Choice(possible[0], _look_like(column, possible[0])) if len(possible) == 1 else Choice(unit, "")
-        )
-    if name == "T_degC" and _too_hot(column):
-        return Choice("degF", f"{_look_like(column, 'degF')}: no tread stays as hot in degC")
-    if name == "time_s":
-        return _time(column, _sideslip_deg(found, chosen))
-    if name == "V_mps" and column.size >= constants.FASTEST_SPEED_IN_METRES:
-        return Choice("km/h", f"{_look_like(column, 'km/h')}, less likely mph")
-    return Choice(unit, _look_like(column, unit))
-
-
-def _unit_of(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
-    """Unit of a column, stated or chosen; "" while it is open."""
-    return found[name].unit or (chosen[name].unit if name in chosen else "")
-
-
-def _load(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> float:
-    """The largest load [N]; 0 while its unit is open."""
-    unit = _unit_of("Fz_N", found, chosen) if "Fz_N" in found else ""
-    return factor(unit, "N") * found["Fz_N"].size if unit else 0.0
-
-
-def _sideslip_deg(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> np.ndarray | None:
-    if "alpha_deg" not in found:
-        return None
-    return converted(found["alpha_deg"].values, _unit_of("alpha_deg", found, chosen), "deg")
-
-
-def _look_like(column: FoundChannel, unit: str) -> str:
-    return f"{column.range} look like {unit}"
-
-
-def _pressure(column: FoundChannel, load: float) -> Choice:
-    """The unit that gives the pressure of a tyre, with the other units that are possible."""
-    middle = float(np.nanmedian(np.abs(column.values)))
-    in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURE_UNITS}
-    is_lorry = load > constants.LORRY_LOAD
-    possible = [unit for unit in PRESSURE_UNITS if _within(in_kPa[unit], constants.ANY_TYRE_PRESSURES)]
-    likely = constants.LORRY_TYRE_PRESSURES if is_lorry else constants.CAR_TYRE_PRESSURES
-    usual = [unit for unit in possible if _within(in_kPa[unit], likely)]
-    unit = next(iter(usual or possible), column.channel.unit)
-    others = [f"{other} ({in_kPa[other]:.0f} kPa)" for other in possible if other != unit]
-    own = "" if unit == column.channel.unit else f" ({in_kPa[unit]:.0f} kPa)"
-    also = f", less likely {' or '.join(others)}" if others else ""
-    return Choice(unit, _look_like(column, unit) + own + also)
-
-
-def _within(value: float, limits: tuple[float, ...]) -> bool:
-    least, most = limits
-    return least <= value <= most
-
-
-def _time(column: FoundChannel, alpha_deg: np.ndarray | None) -> Choice:
-    """The unit in which the sideslip angle moves as fast as rigs steer."""
-    motion = None if alpha_deg is None else _motion(column.values, alpha_deg)
-    if motion is None:
-        return Choice("s", f"{column.range} assumed to be in s; without a moving angle the unit is not known")
-    step, rate = motion
-    for unit in TIME_UNITS:
-        seconds = factor(unit, "s")
-        if unit != "s" and seconds * float(np.ptp(column.values[np.isfinite(column.values)])) < (
-            constants.SHORTEST_RECORDING
-        ):
-            continue  # a table of finished points, not a recording
-        if _within(step * seconds, constants.RECORDED_TIME_STEPS) and _within(
-            rate / seconds, constants.STEERING_RATES
-        ):
-            why = f"steps of {step:.3g} look like {unit}, in which the angle moves at {rate / seconds:.2g} deg/s"
-            return Choice(unit, why)
-    return Choice(
-        "s",
-        f"steps of {step:.3g} assumed to be in s, but the angle would move at {rate:.2g} deg/s: unit not known",
-    )
-
-
-def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | None:
-    """Usual step of time and rate of steering [deg], per unit of time; None if the angle does not move."""
-    seen = np.isfinite(time) & np.isfinite(alpha_deg)
-    time, alpha_deg = spread(time[seen]), alpha_deg[seen]
-    if len(time) < 5 or np.ptp(alpha_deg) < constants.STEERING_TRAVEL:
-        return None
-    long_enough = len(time) > 4 * constants.SAMPLES_PER_RATE
-    width = constants.SAMPLES_PER_RATE if long_enough else 1
-    step = float(np.median(np.diff(time)))
-    elapsed = time[width:] - time[:-width]
-    forwards = elapsed > 0.0
-    rates = np.abs(alpha_deg[width:] - alpha_deg[:-width])[forwards] / elapsed[forwards]
-    if not (step > 0.0 and len(rates)):
-        return None
-    return step, float(np.percentile(rates, constants.STEERING_PERCENTILE))
-
-
-def _speed_of_wheel(
-    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
-) -> Choice | None:
-    """The unit of a speed that nothing states, in which the wheel turns at its rate.
-
-    None if no rate or size of the wheel is known, or no unit fits.
-    """
+def _turning(known: _Known) -> dict[str, Choice] | str:
+    """Units of speed and rotation in which the wheel turns at its size, where none is stated; or why rotation is left out."""
+    found = known.found
     column, speed = found.get("omega_radps"), found.get("V_mps")
-    size = radius or _measured_radius(found, chosen)
-    if column is None or speed is None or speed.unit or size is None:
-        return None
-    fits = [
-        (abs(float(np.log(ratio / size))), unit)
-        for unit in SPEED_UNITS
-        for rotation in ([column.unit] if column.unit else ROTATION_UNITS)
-        if 0.0 < (ratio := _rolling_radius(speed, unit, column, rotation)) < np.inf
-    ]
-    away, unit = min(fits, default=(np.inf, ""))
-    if away > np.log(constants.ROLLING_RADIUS_RANGE[1]):
-        return None
-    return Choice(unit, f"in {unit} they agree with {column.heading} at a radius of {size:.3g} m")
+    if column is None:
+        return {}
+    doubtful = column.heading != "omega_radps"
+    if speed is None:
+        why = "is left out: without a speed it cannot be checked that it is the wheel's"
+        return f"{column.heading} {why}" if doubtful else {}
+    size = known.radius or _measured_radius(known)
+    limits: tuple[float, ...] = RADII
+    if size is not None:
+        limits = tuple(share * size for share in constants.ROLLING_RADIUS_RANGE)
+    of_speed = KINDS["m/s"].units if size is not None and not speed.unit else (known.unit("V_mps"),)
+    of_rotation = (column.unit,) if column.unit else ROTATION_UNITS
+    usual = size or math.sqrt(math.prod(limits))
+    fits = {
+        (unit, rotation): abs(math.log(radius / usual))
+        for unit in of_speed
+        for rotation in of_rotation
+        if limits[0] <= (radius := _rolling_radius(speed, unit, column, rotation)) <= limits[1]
+    }
+    if not fits:
+        units = KINDS["m/s"].units
+        tried = "" if speed.unit else f" in {', '.join(units[:-1])} or {units[-1]},"
+        why = f"is left out: at the speed in {speed.heading},{tried} no wheel of this size turns at this rate"
+        return f"{column.heading} ({column.range}) {why}" if doubtful else {}
+    unit, rotation = min(fits, key=lambda pair: fits[pair])
+    given = {}
+    if size is not None and not speed.unit:
+        given["V_mps"] = Choice(
+            unit, f"in {unit} they agree with {column.heading} at a radius of {size:.3g} m"
+        )
+    if not column.unit:
+        given["omega_radps"] = Choice(rotation, f"in {rotation} they agree with {speed.heading}")
+    return given
 
 
-def _measured_radius(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> float | None:
+def _measured_radius(known: _Known) -> float | None:
     """The loaded radius [m], if it was recorded in a known unit."""
-    unit = _unit_of("RL_m", found, chosen) if "RL_m" in found else ""
-    if not unit:
-        return None
-    middle = factor(unit, "m") * float(np.nanmedian(found["RL_m"].values))
-    return middle if _within(middle, constants.ANY_LOADED_RADII) else None
+    unit = known.unit("RL_m")
+    middle = _in(known.found["RL_m"].middle, unit, "m") if unit else 0.0
+    return middle if RADII[0] <= middle <= RADII[1] else None
 
 
 def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str) -> float:
@@ -334,60 +320,30 @@ def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit
         return float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
 
 
-def _rotation(
-    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
-) -> Choice | str | None:
-    """The unit in which a speed of rotation is that of the wheel, or why it is left out; None if there is nothing to choose."""
-    column, speed = found.get("omega_radps"), found.get("V_mps")
-    if column is None or column.heading == "omega_radps":
-        return None
-    if speed is None:
-        return f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's"
-    lengths = BY_NAME["RL_m"]
-    limits: tuple[float, ...] = (lengths.lower, lengths.upper)
-    if radius is not None:
-        limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
-    fits: dict[str, float] = {}
-    for unit in (column.unit,) if column.unit else ROTATION_UNITS:
-        ratio = _rolling_radius(speed, _unit_of("V_mps", found, chosen), column, unit)
-        if _within(ratio, limits):
-            fits[unit] = abs(np.log(ratio / np.sqrt(np.prod(limits))))
-    if not fits:
-        tried = "" if speed.unit else f" in {', '.join(SPEED_UNITS[:-1])} or {SPEED_UNITS[-1]},"
-        return (
-            f"{column.heading} ({column.range}) is left out: at the speed in {speed.heading},{tried} no wheel of this size turns "
-            "at this rate"
-        )
-    unit = min(fits, key=lambda unit: fits[unit])
-    return None if column.unit else Choice(unit, f"in {unit} they agree with {speed.heading}")
-
-
-def _implausible(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
+def _implausible(name: str, known: _Known) -> str:
     """Why an optional column is left out: its readings are outside the plausible range; "" if they are not."""
-    column, channel = found[name], found[name].channel
+    column, channel = known.found[name], known.found[name].channel
     if channel.required or name == "time_s":
         return ""
-    unit = _unit_of(name, found, chosen)
+    unit = known.unit(name)
     values = converted(column.values, unit, channel.unit)
-    if not implausible(values, channel, may_have_gaps="time_s" in found):
+    if not implausible(values, channel, may_have_gaps="time_s" in known.found):
         return ""
+    left_out = f"{column.heading} ({column.range}) is left out"
+    remedy = f"if it is {channel.name}, write it with its true unit under [columns]"
+    possible = known._replace(radius=None).possible("m", column.middle) if name == "RL_m" else {}
+    if len(possible) > 1 and not column.unit:
+        return f"{left_out}: it may be in {' or '.join(possible)}; {remedy}"
     limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".rstrip()
-    possible = _lengths(column, None) if name == "RL_m" and not column.unit else []
-    if len(possible) > 1:
-        return (
-            f"{column.heading} ({column.range}) is left out: it may be in {' or '.join(possible)}; if it is {channel.name}, "
-            "write it with its true unit under [columns]"
-        )
-    return (
-        f"{column.heading} ({column.range}) is left out: in {unit or 'plain numbers'} it is not within {limits}; if it is "
-        f"{channel.name}, write it with its true unit under [columns]"
-    )
+    return f"{left_out}: in {unit or 'plain numbers'} it is not within {limits}; {remedy}"
 
 
 def hot(found: Mapping[str, FoundChannel]) -> str:
     """A remark if a temperature that is stated in degC is that of no tyre; "" otherwise."""
     column = found.get("T_degC")
-    if column is None or not column.unit or spelt(column.unit) != "degC" or not _too_hot(column):
+    if column is None or not column.unit or spelt(column.unit) != "degC":
+        return ""
+    if list(_Known(found, {}, None).possible("degC", column.middle)) != ["degF"]:
         return ""
     return (
         f"{column.heading} ({column.range}) is stated in {column.unit}, but no tread stays as hot: if it is in degF, write "
@@ -397,22 +353,22 @@ def hot(found: Mapping[str, FoundChannel]) -> str:
 
 def customary(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
     """A remark if one column is in an American unit and others state none; "" otherwise."""
-    units = {name: _unit_of(name, found, chosen) for name in found}
+    known = _Known(found, chosen, None)
     settled = {column.channel.unit for column in found.values() if column.unit}
-    sign = next((name for name in found if spelt(units[name]) in AMERICAN), None)
-    doubtful = [
-        name
+    sign = next((name for name in found if spelt(known.unit(name)) in AMERICAN), None)
+    doubtful = {
+        name: KINDS[kind].american
         for name in chosen
-        if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in AMERICAN
-    ]
+        if (kind := found[name].channel.unit) in KINDS.keys() - settled
+        and KINDS[kind].american
+        and spelt(known.unit(name)) not in AMERICAN
+    }
     if sign is None or not doubtful:
         return ""
-    pairs = [
-        f"{found[name].heading} ({units[name]} or {CUSTOMARY[found[name].channel.unit]})" for name in doubtful
-    ]
-    first = found[doubtful[0]]
+    pairs = [f"{found[name].heading} ({known.unit(name)} or {unit})" for name, unit in doubtful.items()]
+    name, unit = next(iter(doubtful.items()))
     return (
-        f"{found[sign].heading} is in {units[sign]}, so columns without a stated unit may be in American units, too: "
-        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {first.channel.name} = "
-        f'{{ column = "{first.heading}", unit = "{CUSTOMARY[first.channel.unit]}" }}'
+        f"{found[sign].heading} is in {known.unit(sign)}, so columns without a stated unit may be in American units, too: "
+        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {name} = "
+        f'{{ column = "{found[name].heading}", unit = "{unit}" }}'
     )

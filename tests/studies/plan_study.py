@@ -98,9 +98,7 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
         for key, u in step.run.rig.items():
             # The error of a better measurement is smaller: the same draw, scaled.
             fault, sure = FAULTS[key], as_declared(plan.config.rig)[FAULTS[key]]
-            content["faults"][fault] = sure + constants.PLAN_RIG_IMPROVEMENT * (
-                content["faults"][fault] - sure
-            )
+            content["faults"][fault] = sure + constants.RIG_IMPROVEMENT * (content["faults"][fault] - sure)
             content["rig"][key] = u
     return content
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.comparison import Comparison, CurveGap, wording
-from mffit.comparison.constants import SIGNIFICANT_DIFFERENCE
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.drawing.records import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, banded, in_rows
@@ -53,7 +53,7 @@ def differences(found: Comparison) -> Sheet:
         name="difference",
         lengths=z,
         places=np.arange(len(rows)),
-        colours=[style.CONTRAST if abs(value) > SIGNIFICANT_DIFFERENCE else style.FAINT for value in z],
+        colours=[style.CONTRAST if abs(value) > COVERAGE_FACTOR_95 else style.FAINT for value in z],
     )
     panel = Panel(
         x=Axis(label=f"{found.second} less {found.first}, in standard uncertainties"),
@@ -63,6 +63,6 @@ def differences(found: Comparison) -> Sheet:
             words={k: f"{wording.quantity(row).word}, {wording.place(row)}" for k, row in enumerate(rows)},
         ),
         series=[bars],
-        guides=[Guide(axis="x", at=side * SIGNIFICANT_DIFFERENCE, look=edge) for side in (-1.0, 1.0)],
+        guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )
     return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)

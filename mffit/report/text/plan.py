@@ -40,7 +40,6 @@ def plan_summary(plan: Plan) -> str:
         table(head, alone) if alone else "",
         wording.estimates(plan),
         wrapped(wording.promise(plan)),
-        wrapped(wording.order(plan)),
     ]
     return blocks(parts)
 

@@ -17,7 +17,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.hierarchy import Hierarchy, Population
-from mffit.fleet.record import FleetScatter, Row, WithinTyre
+from mffit.fleet.record import FleetScatter, Row
 from mffit.planning import Plan, PlannedRun
 from mffit.planning import wording as planned
 from mffit.planning.goals import Goal
@@ -73,7 +73,7 @@ keys(
 keys(
     Plan,
     "goal headline promise identified ties=identified.ties u_now=now u_then=then told_below "
-    "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps order alone=trials",
+    "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps alone=trials",
     headline=planned.headline,
     promise=planned.promise,
     identified=lambda found: planned.identified(found.identified),
@@ -97,7 +97,7 @@ keys(
     ),
 )
 
-keys(Fleet, "tyres=rows scatter within_tyre=within rigs notes", scatter=lambda found: _scatters(found))
+keys(Fleet, "tyres=rows scatter rigs notes", scatter=lambda found: _scatters(found))
 keys(
     Row,
     "name=specimen.name folder=specimen.folder rig epsilon_gamma **numbers rmse=specimen.misfit strain "
@@ -106,7 +106,6 @@ keys(
     epsilon_gamma=lambda row: {key: getattr(row, key) for key in EPSILON},
 )
 keys(FleetScatter, "* beyond")
-keys(WithinTyre, "* counts", counts=lambda within: within.inflation > 1.0)
 keys(Hierarchy, "errors population", errors=lambda rig: of_rig(rig.rig))
 keys(Population, "* assumed")
 

@@ -136,6 +136,15 @@ def test_rolling_resistance_does_not_depend_on_pressure_as_in_the_old_formula(co
     assert My[0] == pytest.approx(My[1], rel=1e-12)
 
 
+@pytest.mark.parametrize("load", [2000.0, 6000.0])
+def test_rolling_resistance_is_that_of_the_old_formula(converted, load):
+    """By hand: My = -Fz R0 (QSY1 + QSY3 V/V0 + QSY4 (V/V0)^4) of a freely rolling wheel; QSY2 is 0 in the file."""
+    for share in (1.0, 1.5):
+        resistance = 0.01 + 0.0004 * share + 0.00004 * share**4
+        found = converted.tyre(load, Vx=share * 16.7).My
+        assert found == pytest.approx(-load * 0.31 * resistance, rel=1e-9)
+
+
 def test_relaxation_lengths_and_radius_are_kept(converted):
     """By hand at nominal load: sigma_kappa = R0 PTX1, sigma_alpha = R0 PTY1 sin(2 atan(1/PTY2))."""
     state = converted.tyre.state(4000.0, kappa=0.0)

@@ -262,25 +262,37 @@ def test_units_and_starts_are_declared(fmus, fmi):
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("transient", [False, True])
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_every_unit_is_the_product_of_si_units_that_its_name_says(tmp_path, fmi):
+def test_every_unit_is_the_product_of_si_units_that_its_name_says(tmp_path, fmi, transient):
+    """Of a file with terms of temperature too, whose zero is that of degC."""
     registry = pint.UnitRegistry()
-    symbols = {"kilogram": "kg", "meter": "m", "second": "s", "radian": "rad"}
-    with zipfile.ZipFile(write_fmu(FILE, tmp_path, fmi=fmi, sources_only=True)) as archive:
+    symbols = {"kilogram": "kg", "meter": "m", "second": "s", "radian": "rad", "kelvin": "K"}
+    terms = {"rig.k_T_grip_per_K": (-0.005, 1e-4, "1/K"), "rig.T_ref_degC": (60.0, 0.0, "degC")}
+    warm = tmp_path / "warm.tir"
+    measured = {name: tir.Quantity(*value) for name, value in terms.items()}
+    tir.read(FILE).annotate(measured=measured).write(warm)
+    with zipfile.ZipFile(
+        write_fmu(warm, tmp_path / "fmu", fmi=fmi, sources_only=True, transient=transient)
+    ) as archive:
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    for unit in root.iter("Unit"):
-        named = registry.Quantity(1.0, unit.attrib["name"].replace("Nm", "N m"))
-        base = named.to_base_units()
-        assert base.magnitude == 1.0
-        powers = {symbols[str(name)]: f"{power:g}" for name, power in base.unit_items()}
-        assert dict(unit.find("BaseUnit").attrib) == powers, unit.attrib["name"]
+    units = {unit.attrib["name"]: unit for unit in root.iter("Unit")}
+    assert {"degC", *(["Ns/m"] if transient else [])} <= set(units)
+    for name, unit in units.items():
+        zero, one = (
+            registry.Quantity(x, name.replace("Nm", "N m").replace("Ns", "N s")).to_base_units()
+            for x in (0.0, 1.0)
+        )
+        assert one.magnitude - zero.magnitude == pytest.approx(1.0)
+        powers = {symbols[str(name)]: f"{power:g}" for name, power in one.unit_items()}
+        declared = dict(unit.find("BaseUnit").attrib)
+        assert float(declared.pop("offset", 0.0)) == zero.magnitude, name
+        assert declared == powers, name
         shown = unit.find("DisplayUnit")
         if shown is not None:
-            assert float(shown.attrib["factor"]) == pytest.approx(named.to(shown.attrib["name"]).magnitude)
-    assert {unit.attrib["name"] for unit in root.iter("Unit") if unit.find("DisplayUnit") is not None} == {
-        "Pa",
-        "rad",
-    }
+            named = registry.Quantity(1.0, name).to(shown.attrib["name"])
+            assert float(shown.attrib["factor"]) == pytest.approx(named.magnitude)
+    assert {name for name, unit in units.items() if unit.find("DisplayUnit") is not None} == {"Pa", "rad"}
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

@@ -188,8 +188,11 @@ def test_only_a_tyre_of_another_rig_is_strained():
     assert max(s for i, s in enumerate(strain) if i != 2) < 4.0
 
 
-def test_the_strain_is_the_difference_over_its_uncertainty():
-    """By hand for a rig error that no number of the tyres resembles: known as 0 +- 10 N, to 5 N by one, to 2 N by the other."""
+def test_the_strain_is_the_surprise_at_a_tyre_that_is_left_out():
+    """By hand for a rig error that no number of the tyres resembles: known as 0 +- 10 N, to 5 N by one, to 2 N by the other.
+
+    What the others say of the error predicts the reading of a tyre, whose own uncertainty is added.
+    """
     known, (u_one, u_other), (one, other) = 10.0, (5.0, 2.0), (14.0, -3.0)
     found = [
         Information(
@@ -202,12 +205,14 @@ def test_the_strain_is_the_difference_over_its_uncertainty():
         )
         for F0, u in ((one, u_one), (other, u_other))
     ]
-    shrunk = [u**-2.0 / (u**-2.0 + known**-2.0) for u in (u_one, u_other)]
-    variance = (shrunk[0] - shrunk[1]) ** 2 * known**2 + (shrunk[0] * u_one) ** 2 + (shrunk[1] * u_other) ** 2
-    right = (shrunk[0] * one - shrunk[1] * other) / math.sqrt(variance)
     tyres = estimate(found).tyres
-    assert tyres[0].strain["F0_N"] == pytest.approx(right, rel=1e-6)
-    assert tyres[1].strain["F0_N"] == pytest.approx(-right, rel=1e-6)
+    for tyre, (own, u), (rest, u_rest) in (
+        (tyres[0], (one, u_one), (other, u_other)),
+        (tyres[1], (other, u_other), (one, u_one)),
+    ):
+        shrunk = u_rest**-2.0 / (u_rest**-2.0 + known**-2.0)
+        variance = shrunk * u_rest**2 + u**2
+        assert tyre.strain["F0_N"] == pytest.approx((own - shrunk * rest) / math.sqrt(variance), rel=1e-6)
 
 
 @pytest.mark.parametrize(("u", "strained"), [(21.0, False), (19.0, True)])

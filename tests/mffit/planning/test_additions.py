@@ -17,10 +17,10 @@ from mffit.points import concatenate
 DOCS = Path(__file__).parents[3] / "docs" / "plan.md"
 R, R_E, SLIP, CAMBER, PRESSURE = 1.323, 0.3, 8.0, 45.0, 250e3
 ZEROS = [-1.0, -0.5, 0.0, 0.5, 1.0]
-SMALL = [-20, -15, -12.5, -10, -7.5, -5, -2.5, 0, 2.5, 5, 7.5, 10, 12.5, 15, 20]
 SHARES = np.array(
     [-1, -0.75, -0.5, -0.375, -0.25, -0.125, -0.0625, 0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1]
 )
+SMALL = 20.0 * SHARES
 FULL = [*(SLIP * SHARES), *np.zeros(15)]
 LEANED = [*np.zeros(15), *(CAMBER * SHARES)]
 
@@ -89,12 +89,12 @@ def test_set_points(runs, kind, alpha, gamma, path, loads):
 
 def test_coupled_sweeps_lean_to_both_sides_where_the_programme_has_none(runs):
     """The programme has 20 deg at 1400 N."""
-    assert [(round(run.load), run.camber_deg) for run in runs["coupled"]] == [
+    assert [(round(run.load), run.held_deg) for run in runs["coupled"]] == [
         (900, 10), (900, 20), (900, 35), (1400, 10), (1400, 35),
     ]  # fmt: skip
     for run in runs["coupled"]:
         assert np.degrees(run.points.alpha) == pytest.approx([*(SLIP * SHARES)] * 2)
-        assert np.degrees(run.points.gamma) == pytest.approx([-run.camber_deg] * 15 + [run.camber_deg] * 15)
+        assert np.degrees(run.points.gamma) == pytest.approx([-run.held_deg] * 15 + [run.held_deg] * 15)
 
 
 def test_pressures_are_a_fifth_lower_and_higher(runs):
@@ -144,7 +144,7 @@ def test_without_a_camber_sweep_small_cambers_are_proposed(programme):
     upright = points.select(np.abs(points.gamma) < np.radians(0.9))
     (run, *_) = (run for run in candidates(config, upright) if run.addition.id == "camber")
     assert np.degrees(run.points.gamma) == pytest.approx(SMALL)
-    cambers = {run.camber_deg for run in candidates(config, upright) if run.addition.id == "coupled"}
+    cambers = {run.held_deg for run in candidates(config, upright) if run.addition.id == "coupled"}
     assert cambers == {10, 20}
 
 
@@ -152,9 +152,8 @@ def test_a_flat_track_has_no_runs_about_turn_slip(tmp_path):
     simulated(flat(), tmp_path)
     config = configuration.load(tmp_path / "tyre.toml")
     found = {run.addition.id for run in candidates(config, ingestion.load(config)[0])}
-    driven = {"drive", "combined", "drive-camber", "drive-pressure", "rolling"}
-    steps = {"steps", "slip-steps", "steps-pressure", "slip-steps-pressure"}
-    assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load", *driven, *steps}
+    driven = {"drive", "combined", "drive-camber", "drive-pressure"}
+    assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load", *driven}
 
 
 def test_rolling_and_steps_are_no_sweeps_of_the_programme(longer_programme):

@@ -27,7 +27,7 @@ IDENTIFIED = Identified(
     ties=(Tie("ply-steer", "sideslip-misalignment", 0.24), Tie("conicity", "crosstalk-fz-fy", 30.0)),
     budget=(Contribution("camber alignment", 0.5, "deg", -0.051), Contribution("conicity", 3.0, "N", 0.02)),
 )
-RUN = PlannedRun(BY_ID["coupled"], 1400.0, points=[None] * 30, camber_deg=10.0)
+RUN = PlannedRun(BY_ID["coupled"], 1400.0, points=[None] * 30, held_deg=10.0)
 CAMBER_ZERO = PlannedRun(BY_ID["camber-zero"], 1400.0, rig={"u_camber_alignment_deg": 0.5 / 3.0})
 
 
@@ -174,8 +174,7 @@ def test_the_json_of_a_plan():
 
 
 def test_a_backward_camber_sweep_is_asked_for_first_where_nothing_shows_the_skew():
-    """0.16 of eps_gamma per degree: half a degree is 0.08."""
     first = wording.identified(replace(IDENTIFIED, unseen_skew=0.16))[0]
     assert first.startswith("Run first a backward camber sweep")
-    assert "0.5 deg would change eps_gamma by 0.08" in first
+    assert "1 deg would change eps_gamma by 0.16" in first
     assert not any("backward camber" in text for text in wording.identified(IDENTIFIED))

@@ -28,6 +28,7 @@ from mffit.rig_errors import DECLARED
 from tests.browser import assert_readable
 
 EFFECTS = {effect.id: effect for effect in CATALOG}
+FREE = {"PECP1": math.inf}
 ONE_SIDE = ("other-side", "other-side-camber")
 
 
@@ -65,14 +66,14 @@ def run_of(result, kind, load=1400):
 
 
 def test_without_runs_the_posterior_is_the_builds(result, knowledge):
-    found = knowledge.posterior([], result.fit.search.held["PECP1"]).stderr
+    found = knowledge.posterior([], held={"PECP1": result.fit.search.held["PECP1"]}).stderr
     for name, u in result.fit.search.posterior.stderr.items():
         assert found[name] == pytest.approx(u, rel=1e-4), name
 
 
 def test_more_points_never_raise_an_uncertainty(result, knowledge):
-    before = knowledge.posterior([], None).stderr
-    after = knowledge.posterior([run_of(result, "small-camber")], None).stderr
+    before = knowledge.posterior([], FREE).stderr
+    after = knowledge.posterior([run_of(result, "small-camber")], FREE).stderr
     # The tolerance: a held coefficient contributes to the u of a fitted one.
     assert all(after[name] <= before[name] * 1.001 for name in before)
     assert after["PKY6"] < 0.9 * before["PKY6"]
@@ -81,7 +82,7 @@ def test_more_points_never_raise_an_uncertainty(result, knowledge):
 def test_the_same_points_again_halve_the_variance_due_to_noise(result, knowledge):
     """Only the points determine curvature of the side force and width of the trail, not the rig or priors."""
     again = dataclasses.replace(run_of(result, "sideslip"), points=result.points)
-    before, after = (knowledge.posterior(runs, None).stderr for runs in ([], [again]))
+    before, after = (knowledge.posterior(runs, FREE).stderr for runs in ([], [again]))
     for name in ("PEY1", "QBZ4"):
         assert after[name] / before[name] == pytest.approx(math.sqrt(0.5), rel=0.05)
 
@@ -125,7 +126,7 @@ def settled(addition):
     return (error.seen_as[0].id,)
 
 
-ON_DISCS = [addition for addition in ADDITIONS if not addition.belt_only]
+ON_DISCS = [addition for addition in ADDITIONS if addition.rig != "belt"]
 
 
 @pytest.mark.parametrize("addition", ON_DISCS, ids=lambda addition: addition.id)
@@ -144,7 +145,7 @@ def test_an_addition_settles_what_it_names(result, addition):
     for effect in effects if runs else ():
         name = effect.free[0].name
         if addition.declares and effect.kind == "rig":
-            before, after = (knowledge.posterior(more, None).stderr[name] for more in ([], runs))
+            before, after = (knowledge.posterior(more, FREE).stderr[name] for more in ([], runs))
         else:
             before = knowledge.u_of_effect([], effect, rivals[effect.id])
             after = min(knowledge.u_of_effect([run], effect, rivals[effect.id]) for run in runs)
@@ -213,7 +214,7 @@ def test_the_promise_is_met_within_a_fifth_on_the_virtual_rig(result, plan, long
     assert stated.u == pytest.approx(plan.then, rel=0.2)
     assert abs(stated.value - truth()["PECP1"]) < 3.0 * plan.then
     of_joint = Knowledge(result.config, result.points, result.measured, result.fit).posterior(
-        [plan.steps[0].run], stated.u
+        [plan.steps[0].run], held={"PECP1": stated.u}
     )
     same = {name: name for name in ("PKY6", "QDZ1", "PDY1", "F0_N@right", "gamma_0_deg@right")}
     of_first_setup = {f"{name}@left": name for name in ("F0_N", "gamma_0_deg")}
@@ -291,6 +292,7 @@ def test_a_band_is_not_called_a_standard_uncertainty(plan):
     ("goal", "said"),
     [
         ("PKY66", "did you mean PKY6"),
+        ("PCFY3", "recordings of steps, which a plan does not propose"),
         ("tie:rain", "not an effect that can be tied"),
         ("bands:RL", "neither a goal of a plan nor a coefficient"),
     ],

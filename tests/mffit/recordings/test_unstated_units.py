@@ -65,6 +65,12 @@ def test_angles_forces_and_moments_share_their_units():
     assert {in_kN["Mx_Nm"], in_kN["Mz_Nm"]} == {"kN m"}
 
 
+def test_readings_of_zero_are_in_the_units_of_the_contract():
+    """They would be plausible in any unit."""
+    found = units(MX=np.zeros(N), MZ=np.zeros(N), SA=np.zeros(N), IA=np.zeros(N))
+    assert (found["Mz_Nm"], found["alpha_deg"]) == ("N m", "deg")
+
+
 def test_a_load_in_kN_beside_forces_in_N_is_recognised_by_the_grip():
     found = units(FZ=np.full(N, 2.5))
     assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
@@ -358,7 +364,7 @@ Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+0
 Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
 Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
 p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
-V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h, less likely mph
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h (11 m/s), less likely mph (18 m/s)
 
 [[sweep]]
 file = "../a b.csv"
@@ -454,3 +460,19 @@ def test_the_heading_of_a_section_is_no_title(tmp_path):
     found = sniff([tmp_path / "a.csv"])
     assert "DATA" not in project_text(found, tmp_path, Stated(unloaded_radius=0.2, nominal_load=1500.0))
     assert "DATA" not in text.sniff_summary(found)
+
+
+def test_a_radius_that_fits_only_in_inches_shows_american_units_and_a_gauge_in_psi_does_not():
+    found = units(**AMERICAN | {"TSTC": None}, radius=0.285)
+    assert (found["RL_m"], found["Fz_N"], found["V_mps"]) == ("in", "lbf", "mph")
+    gauge = guessed({"P": "psi"}, P=np.full(N, 12.0)).found
+    assert (gauge["Fz_N"].unit, gauge["V_mps"].unit) == ("N", "m/s")
+
+
+def test_a_rotation_under_the_name_of_the_contract_is_never_left_out():
+    assert "omega_radps" in guessed(omega_radps=0.4 * WAVE).found
+
+
+@pytest.mark.parametrize("silent", [{"SA": None}, {"ET": np.zeros(N)}])
+def test_the_unit_of_a_time_that_shows_no_steering_is_called_unknown(silent):
+    assert "not known" in guessed(**silent).found["time_s"].why
