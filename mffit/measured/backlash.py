@@ -11,7 +11,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
 from mffit.measured import constants
-from mffit.measured.sources import named
+from mffit.measured.uncertain import named
 from mffit.parts import Parts
 from mffit.points import Points
 

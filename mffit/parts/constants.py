@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tir.constant import Count, Real
 
-SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point in the search for mirrors.")
 SAME_CAMBER = Real(0.25, "deg", "Camber angles within this are one set-point in the search for mirrors.")
 SAME_LOAD = Real(0.04, "-", "Loads within this share are one condition in the search for mirrors.")
 SAME_PRESSURE = Real(6.0, "kPa", "Pressures within this are one condition in the search for mirrors.")

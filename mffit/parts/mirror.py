@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from mffit.constants import SAME_SIDESLIP
 from mffit.parts import constants
 from mffit.points import Points
 
@@ -51,7 +52,7 @@ def find_mirrors(points: Points) -> Mirrors:
     for i in range(n) if np.any(points.phi_t) else ():
         same = same_condition(points, i)
         d_alpha, d_gamma = np.abs(alpha + alpha[i]), np.abs(gamma + gamma[i])
-        close = same & (d_alpha < constants.SAME_SIDESLIP) & (d_gamma < constants.SAME_CAMBER)
+        close = same & (d_alpha < SAME_SIDESLIP) & (d_gamma < constants.SAME_CAMBER)
         if np.any(close):
             distance = d_alpha + d_gamma + constants.OTHER_SWEEP_DISTANCE * (points.sweep != points.sweep[i])
             j = int(np.argmin(np.where(close, distance, np.inf)))
@@ -62,7 +63,7 @@ def find_mirrors(points: Points) -> Mirrors:
         line = same & (d_gamma < constants.SAME_CAMBER)
         found_values = _interpolated(points, line, alpha, -alpha[i])
         if found_values is None:
-            line = same & (d_alpha < constants.SAME_SIDESLIP)
+            line = same & (d_alpha < SAME_SIDESLIP)
             found_values = _interpolated(points, line, gamma, -gamma[i])
         if found_values is not None:
             paired[i] = "interpolated"

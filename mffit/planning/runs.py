@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Config, RollingRadiusTable, SweepTable, setup_names
-from mffit.measured.radii import measured_path_radius
+from mffit.measured import measured_path_radius
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.measured.groups import load_groups
+from mffit.measured.zeros import load_groups
 from mffit.points import make_points
 
 

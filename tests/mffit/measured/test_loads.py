@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from uncertainties import UFloat, covariance_matrix, ufloat
 
-from mffit.measured.loads import covariance, load_dependence
+from mffit.measured.epsilon import load_dependence
+from mffit.measured.uncertain import covariance
 
 LOADS = (1000.0, 1500.0, 2000.0)
 
