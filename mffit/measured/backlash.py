@@ -60,4 +60,4 @@ def odd_alpha(points: Points, parts: Parts, config: Config) -> np.ndarray:
         return points.alpha
     own, _ = backlash_shift(points.Mz, points.u_Mz, play)
     mirror, _ = backlash_shift(points.Mz - 2.0 * parts.Mz_odd, points.u_Mz, play)
-    return points.alpha + np.nan_to_num(own - mirror) / 2.0
+    return np.asarray(points.alpha + np.nan_to_num(own - mirror) / 2.0)

@@ -365,4 +365,4 @@ class Alignment(Brief):
 
     def _weights(self) -> np.ndarray:
         stiffness = np.array([abs(step.C_alpha) for step in self.last])
-        return stiffness / stiffness.sum()
+        return np.asarray(stiffness / stiffness.sum())

@@ -96,7 +96,7 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
 
 
-def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
+def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:
     """Fit D sin(C atan(b - E (b - atan b))), b = x s / (C D): an odd curve of slope s at zero that saturates at D.
 
     Slope, its standard error from ``u``, and the scatter of the points over ``u``.
@@ -114,7 +114,7 @@ def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
     if curvature:
         shape.add("E", 0.0, min=-6.0, max=1.0)
 
-    def residual(shape):
+    def residual(shape: lmfit.Parameters) -> np.ndarray:
         s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
         b = s * x / (C * D)
         bent = shape["E"].value * (b - np.arctan(b)) if curvature else 0.0
@@ -129,7 +129,7 @@ def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
     return float(found.value * start), float(error * abs(start)), scatter
 
 
-def _cubic(x, y, u) -> tuple[float, float]:
+def _cubic(x: np.ndarray, y: np.ndarray, u: np.ndarray) -> tuple[float, float]:
     A = np.column_stack([x, x**3]) / u[:, None]
     cov = np.linalg.inv(A.T @ A)
     a = cov @ (A.T @ (y / u))

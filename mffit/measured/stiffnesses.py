@@ -173,8 +173,8 @@ def sweep(
     i = i[(points.direction[i] == direction) & np.isfinite(odd[i])]
     alpha, gamma = points.alpha[i], points.gamma[i]
     if angle == "gamma":
-        return i[(np.abs(alpha) < STRAIGHT.rad) & (gamma > UPRIGHT.rad)]
-    return i[(np.abs(gamma) < UPRIGHT.rad) & (alpha > STRAIGHT.rad)]
+        return np.asarray(i[(np.abs(alpha) < STRAIGHT.rad) & (gamma > UPRIGHT.rad)])
+    return np.asarray(i[(np.abs(gamma) < UPRIGHT.rad) & (alpha > STRAIGHT.rad)])
 
 
 def _number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None) -> UFloat | None:

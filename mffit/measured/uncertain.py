@@ -207,7 +207,7 @@ def by_draws(r_e_C_gamma: UFloat, C_phit: UFloat, epsilon: UFloat, seed: int = 1
 
     def sample(number: UFloat) -> np.ndarray:
         parts = (slope * deviations[variable] for variable, slope in number.derivatives.items())
-        return number.nominal_value + sum(parts, np.zeros(count))
+        return np.asarray(number.nominal_value + sum(parts, np.zeros(count)))
 
     values = 1.0 + sample(r_e_C_gamma) / sample(C_phit) + sample(beside)
     tail = (1.0 - COVERAGE) / 2.0

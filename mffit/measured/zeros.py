@@ -48,7 +48,7 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
 
 
 def _usual(points: Points) -> np.ndarray:
-    return main_pressure(points) & points.free_rolling & ~points.continuous
+    return np.asarray(main_pressure(points) & points.free_rolling & ~points.continuous)
 
 
 def flipped(points: Points, group: LoadGroup) -> LoadGroup:
@@ -65,7 +65,7 @@ def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     near = (
         (size < STRAIGHT.rad) & (np.abs(points.gamma[i]) < UPRIGHT.rad) & (points.direction[i] == direction)
     )
-    return i[near & (size < np.min(size[near], initial=np.inf) + SAME_SIDESLIP.rad)]
+    return np.asarray(i[near & (size < np.min(size[near], initial=np.inf) + SAME_SIDESLIP.rad)])
 
 
 class PathInSetup(NamedTuple):

@@ -25,7 +25,7 @@ class Mirrors(NamedTuple):
 
 def same_condition(points: Points, i: int) -> np.ndarray:
     """Mask (n,) of the points run at the load, pressure, speed, direction, mount, path and set-up of point i."""
-    return (
+    same: np.ndarray = (
         (np.abs(points.Fz - points.Fz[i]) < constants.SAME_LOAD * points.Fz[i])
         & (np.abs(points.p - points.p[i]) < constants.SAME_PRESSURE * 1e3)
         & (np.abs(points.V - points.V[i]) <= constants.SAME_SPEED * points.V[i])
@@ -35,6 +35,7 @@ def same_condition(points: Points, i: int) -> np.ndarray:
         & (points.setup == points.setup[i])
         & (np.abs(points.kappa - points.kappa[i]) < constants.SAME_SLIP)
     )
+    return same
 
 
 def find_mirrors(points: Points) -> Mirrors:

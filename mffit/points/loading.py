@@ -13,8 +13,9 @@ import numpy as np
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.errors import InputError
-from mffit.points import constants, levels
+from mffit.points import levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
@@ -32,7 +33,8 @@ from mffit.sweeps.sweep import ExcludedRows
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
-STAND_IN = {"p": constants.STAND_IN_PRESSURE, "V": constants.STAND_IN_SPEED}
+STAND_IN = {"p": 250e3, "V": 1.0}
+"""Pressure [Pa] and speed [m/s] of a bare table without them; the alignment does not depend on either."""
 
 
 class Reading(NamedTuple):
@@ -185,7 +187,7 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     """
     value, u = lag
     alpha, taken = points.alpha.copy(), np.zeros(len(points))
-    if np.isfinite(value) and abs(value) > constants.PROVEN_LAG * u:
+    if np.isfinite(value) and abs(value) > COVERAGE_FACTOR_95 * u:
         for k in np.unique(points.sweep[points.continuous]):
             rows = np.flatnonzero(points.continuous & (points.sweep == k))
             if len(rows) < 3:  # too few for a gradient
@@ -207,7 +209,7 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: fl
             "unknown and not taken off; sweep up and down"
         ]
     value, u = lag
-    proven = abs(value) > constants.PROVEN_LAG * u
+    proven = abs(value) > COVERAGE_FACTOR_95 * u
     said = "taken off the angle" if proven else "not proven and not taken off"
     hysteresis = rms(np.array([one.hysteresis for one in known]))
     size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"

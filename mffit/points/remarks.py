@@ -13,7 +13,7 @@ from mffit.points.lag import Lag
 from mffit.points.levels import SIDESLIP
 from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
-from mffit.scatter import finite_median, robust
+from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
 
 COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
@@ -39,10 +39,10 @@ def cold_beginning(notes: Sequence[StretchNote]) -> tuple[str, ...]:
     ]
     T = np.array([sweeps[k].T_degC for k in alike])
     later = T[len(T) // 2 :]
-    if len(later) < constants.FEWEST_LATER_SWEEPS:
+    if len(later) < constants.FEWEST_SWEEPS:
         return ()
     usual = float(np.median(later))
-    limit = usual - max(constants.COLDER_BEGINNING, constants.COLDER_OVER_SCATTER * robust(later, usual))
+    limit = usual - max(constants.COLDER_BEGINNING, ALARM * robust(later, usual))
     cold = limit > T
     count = len(T) if np.all(cold) else int(np.argmin(cold))
     if not count:

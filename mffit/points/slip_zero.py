@@ -17,7 +17,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import constants
 from mffit.points.wheel_speed import FROM_SPEEDS, is_derived, with_slip
-from mffit.scatter import robust
+from mffit.scatter import ALARM, robust
 from mffit.sweeps import Sweep
 from tir.errors import listed
 
@@ -115,7 +115,7 @@ class SlipZero:
 def slip_zero(of: Driven) -> SlipZero | None:
     """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie near zero force.
 
-    Enough lie on either side of it, or at it: those of an undriven wheel, beside slip that was run in steps.
+    Enough lie on either side of it, or at it: those of an undriven wheel, with slip that was run in steps.
     """
     if (
         not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
@@ -128,10 +128,10 @@ def slip_zero(of: Driven) -> SlipZero | None:
     near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (
         load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
     )
-    near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
-    some = 0.3 * constants.FORCE_NEAR_FREE_ROLLING
-    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO
-    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS_AT_ZERO:
+    near &= np.abs(force) < constants.NEAR_ZERO
+    some = 0.3 * constants.NEAR_ZERO
+    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS
+    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS:
         return None
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
@@ -228,8 +228,8 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
 
 def _too_weak(of: Driven) -> bool:
     """Whether slips that show a force have less of one than any tyre."""
-    shown = (np.abs(of.slip) > constants.SLIP_WITH_FORCE) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
-    if np.sum(shown) < constants.FEWEST_POINTS_AT_ZERO or np.ptp(of.slip[shown]) < constants.SLIP_WITH_FORCE:
+    shown = (np.abs(of.slip) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
+    if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.slip[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
         return False  # a wheel without drive: its slip says nothing
     return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < constants.SMALLEST_DRIVEN_FORCE)
 
@@ -306,7 +306,7 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]
     scaled = design / np.where(size > 0.0, size, 1.0)
     solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
     residual = y - scaled @ solution
-    kept = np.abs(residual) <= constants.OUTLIER_OF_ZERO * robust(residual)
+    kept = np.abs(residual) <= ALARM * robust(residual)
     if np.sum(kept) > design.shape[1]:
         solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
     scatter = robust(y - scaled @ solution)
@@ -315,7 +315,7 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]
 
 def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
     """The zero at a low, the middle and a high load, upright and without sideslip as nearly as was run."""
-    loads = np.unique(np.percentile(np.abs(of.Fz), constants.LOADS_OF_ZERO).round())
+    loads = np.unique(np.percentile(np.abs(of.Fz), [constants.CORE[0], 50.0, constants.CORE[1]]).round())
     zeros = _conditions(
         Driven(
             slip=np.zeros(len(loads)),

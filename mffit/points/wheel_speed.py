@@ -52,12 +52,12 @@ def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
     slip[turning] = np.abs(sweep.omega[turning]) * radius / along[turning] - 1.0
     rolling = _over_load(slip[turning], sweep.Fz[turning])
     slip[turning] = (1.0 + slip[turning]) / (1.0 + rolling) - 1.0
-    low, high = np.nanpercentile(slip, constants.PERCENTILES_OF_HELD)
+    low, high = np.nanpercentile(slip, constants.CORE)
     return slip if high - low >= constants.SMALLEST_SWEEP_OF_SLIP else None
 
 
 def _over_load(slip: np.ndarray, Fz: np.ndarray) -> np.ndarray:
     """The slip (n,) as a parabola over load, as that of a freely rolling wheel against its unloaded radius."""
-    if np.ptp(Fz) < constants.LOAD_LEVEL_TOLERANCE * np.median(Fz):
+    if np.ptp(Fz) < constants.CONDITION * np.median(Fz):
         return np.full(len(slip), np.median(slip))
     return np.polynomial.Polynomial.fit(Fz, slip, 2)(Fz)

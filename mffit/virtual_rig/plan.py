@@ -22,7 +22,8 @@ from pydantic import (
 
 from mffit.config import Config, path_curvature, setup_names
 from mffit.config import quantities as q
-from mffit.config.models import SetupName, SweepTable, Table
+from mffit.config.models import SetupName, SweepTable
+from mffit.config.table import Table
 from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
 from mffit.rig_errors import RIG_ERRORS, RigError
 

@@ -44,7 +44,7 @@ class Settings:
     @property
     def Vx(self) -> np.ndarray:
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
-        return self.direction * self.V
+        return np.asarray(self.direction * self.V)
 
     def at(self, alpha: np.ndarray, gamma: np.ndarray, kappa: np.ndarray) -> Settings:
         """The same conditions as at the first point, at other angles (m,) [rad] and slips (m,)."""
