@@ -27,7 +27,6 @@ CUBIC_CAMBER = Real(
     "docs/method.md",
 )
 CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the odd curve.")
-SHORTEST_CAMBER_SWEEP = Real(10.0, "deg", "Camber that a sweep must reach for its slope at zero.")
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )

@@ -146,7 +146,7 @@ def _estimates(
 def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:
     """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
-    slope_possible = found.slope is not None and found.largest >= constants.SHORTEST_CAMBER_SWEEP.rad
+    slope_possible = found.slope is not None and 2.0 * found.largest >= constants.CUBIC_CAMBER.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
         return found.secant, wording.slope_not_possible(load, angle)
     if wanted == "secant" and found.secant is None and found.slope is not None:

@@ -17,6 +17,7 @@ from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 from mffit.sweeps.assembly import rows_of
+from mffit.sweeps.constants import RARE_SAMPLES
 
 
 class Reduced(NamedTuple):
@@ -121,7 +122,7 @@ def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:
     """The series without the few samples that a recorder wrote twice, and a sentence and an entry about them."""
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if not len(repeated) or len(repeated) > constants.MOST_REPEATED_SAMPLES * len(sweep):
+    if not len(repeated) or len(repeated) > RARE_SAMPLES * len(sweep):
         return sweep, (), ()
     kept = np.delete(np.arange(len(sweep)), repeated)
     sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
