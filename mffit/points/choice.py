@@ -90,8 +90,9 @@ def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
     """First sample of a stretch after the first metres behind a gap or a change; a recording begins settled."""
     if begin == 0:
         return 0
-    speed = max(float(np.median(settings.V[begin:end])), constants.SLOWEST_ROLLING)
-    return int(np.searchsorted(settings.time, settings.time[begin] + constants.TRANSIENT_ROLL / speed))
+    speed = float(np.median(settings.V[begin:end]))
+    seconds = constants.TRANSIENT_ROLL / speed if speed > 0.0 else np.inf  # nothing settles at standstill
+    return int(np.searchsorted(settings.time, settings.time[begin] + seconds))
 
 
 def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:

@@ -31,7 +31,9 @@ CORE = Series(
 )
 
 # Samples that are no measurement
-UNLOADED = Real(0.1, "-", "Share of the usual load below which the tyre is off the belt.")
+UNLOADED = Real(
+    0.1, "-", "Share of the usual load, or speed, below which the tyre is off the belt, or stands."
+)
 STUCK_TIME = Real(
     0.5, "s", "Time for which a sensor repeats one value, more often than chance lets it, if it is stuck."
 )
@@ -54,7 +56,6 @@ COMPARED_APART = Real(0.5, "s", "Time between settings that are compared to find
 SHORTEST_STRETCH = Real(2.0, "s", "Shortest stretch after its transient.")
 FEWEST_POINTS = Count(8, "-", "Fewest samples or points that show a level, a line or a noise.")
 TRANSIENT_ROLL = Real(2.0, "m", "Distance dropped after a change: three to ten relaxation lengths.")
-SLOWEST_ROLLING = Real(0.1, "m/s", "Smallest speed that converts this distance to time.")
 SMALLEST_SWEEP = Real(3.0, "deg", "Smallest range of a sweeping angle.")
 SMALLEST_SWEEP_OF_SLIP = Real(
     0.05,

@@ -146,10 +146,10 @@ def _still(sweep: Sweep, values: np.ndarray, some: np.ndarray) -> np.ndarray:
 
 def _long_runs(mask: np.ndarray, shortest: int) -> np.ndarray:
     """The samples (n,) of a mask in runs of at least ``shortest``."""
-    out = np.zeros(len(mask), dtype=bool)
-    for begin, end in runs(mask):
-        out[begin:end] = end - begin >= shortest
-    return out
+    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8))).reshape(-1, 2)
+    changes = np.zeros(len(mask) + 1, dtype=np.int32)
+    changes[edges[edges[:, 1] - edges[:, 0] >= shortest]] = 1, -1
+    return np.asarray(np.cumsum(changes)[:-1] > 0)
 
 
 FAULTS = (
