@@ -48,6 +48,7 @@ UPRIGHT = Real(
     "Camber as read within which a wheel is upright, and within which two angles are one level of a programme.",
 )
 SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point: zeros, mirrored points.")
+NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; it counts the others.")
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")

@@ -30,9 +30,6 @@ CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the od
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
-SECANT_REACH = Real(
-    0.02, "-", "Relative distance from the secant's angle within which a point counts as measured there."
-)
 
 LARGEST_EPSILON = Real(0.9, "-", "PECP2 is not written if eps_gamma would reach this within the loads.")
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.measured import constants
+from mffit.parts.constants import SAME_CAMBER
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,23 +78,17 @@ def slope_at_zero(
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
     """Secant y/x at the angle [rad], interpolated between the neighbours; None beyond the sweep."""
-    order = np.argsort(x)
-    x, y, u = x[order], y[order], u[order]
-    if (
-        not len(x)
-        or angle > x[-1] * (1.0 + constants.SECANT_REACH)
-        or angle < x[0] * (1.0 - constants.SECANT_REACH)
-    ):
+    reach = SAME_CAMBER.rad
+    if not len(x) or not x.min() - reach < angle < x.max() + reach:
         return None
-    nearest = int(np.argmin(np.abs(x - angle)))
-    if abs(x[nearest] - angle) < constants.SECANT_REACH * angle:
-        same = np.abs(x - x[nearest]) < 1e-3
-        return Secant(
-            float(np.mean(y[same] / x[same])),
-            float(np.sqrt(np.sum(u[same] ** 2)) / same.sum() / x[nearest]),
-            angle,
-        )
-    return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
+    nearest = x[np.argmin(np.abs(x - angle))]
+    if abs(nearest - angle) < reach:
+        same = np.abs(x - nearest) < 1e-3
+        u_mean = float(np.linalg.norm(u[same])) / same.sum()
+        return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest), angle)
+    order = np.argsort(x)
+    value, u_value = (float(np.interp(angle, x[order], one[order]) / angle) for one in (y, u))
+    return Secant(value, u_value, angle)
 
 
 def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:

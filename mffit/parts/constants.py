@@ -6,4 +6,3 @@ from tir.constant import Count, Real
 
 SAME_CAMBER = Real(0.25, "deg", "Camber angles within this are one set-point in the search for mirrors.")
 FEWEST_ANGLES_TO_INTERPOLATE = Count(3, "-", "Fewest angles between which a missing mirror is interpolated.")
-UNPAIRED_IN_SENTENCE = Count(4, "-", "Most points without a mirror that a sentence names.")

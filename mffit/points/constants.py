@@ -76,7 +76,6 @@ COLDER_BEGINNING = Real(
     "A recording begins cold if its first sweeps are this much colder than later ones: grip changes by 1 %.",
 )
 FEWEST_SWEEPS = Count(3, "-", "Fewest sweeps that show what is usual and its scatter.")
-STRETCHES_IN_SENTENCE = Count(3, "-", "Most dropped stretches that a sentence names.")
 
 # Means and lag of moving sweeps
 LARGEST_ORDER_OF_NOISE = Count(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import constants
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN, Fault
@@ -138,6 +139,6 @@ def _of_plateaus(sweep: Sweep, found: list[Stretch]) -> tuple[str, ...]:
 
 def _named(places: list[str]) -> str:
     """The first places, and the number of the others."""
-    shown = constants.STRETCHES_IN_SENTENCE
+    shown = NAMED_IN_SENTENCE
     more = f" and {len(places) - shown} more" if len(places) > shown else ""
     return "; ".join(places[:shown]) + more

@@ -137,13 +137,13 @@ def test_on_a_straight_path_nothing_is_decomposed_and_nothing_remarked():
     assert np.all(np.isnan([parts.Fy_odd, parts.Fy_even, parts.Mz_odd, parts.Mz_even, parts.u_Fy_odd]))
 
 
-@pytest.mark.parametrize(("count", "more"), [(4, ""), (5, " and 1 more")])
-def test_at_most_four_points_without_mirror_are_named(count, more):
+@pytest.mark.parametrize(("count", "more"), [(3, ""), (4, " and 1 more")])
+def test_at_most_three_points_without_mirror_are_named(count, more):
     points, _, _ = sweep(1.0 + np.arange(count), 2.0, sweep_names=("camber.csv",))
     (sentence,) = split(points).unpaired
     assert sentence == (
         f"camber.csv: {count} points have no mirror (-alpha, -gamma) and count only as raw points: "
-        f"(alpha, gamma) = (1, 2), (2, 2), (3, 2), (4, 2){more} deg"
+        f"(alpha, gamma) = (1, 2), (2, 2), (3, 2){more} deg"
     )
 
 
