@@ -164,3 +164,12 @@ def test_the_surer_path_counts_more():
     assert found.weights == pytest.approx([0.9, 0.1])
     assert found.C_phit.nominal_value == pytest.approx(301.0)
     assert found.C_phit.std_dev == pytest.approx(math.sqrt(0.9))
+
+
+@pytest.mark.parametrize(("fall", "contradictory"), [(0.03, False), (0.3, True)])
+def test_a_stiffness_that_falls_with_spin_is_no_contradiction_of_two_radii(fall, contradictory):
+    """On a radius of 0.8 m the same tyre is softer by a share of 1/0.8^2 - 1/1.3^2 per m^2; tyres lose some 3 %."""
+    u, small = 0.3, 0.8
+    softer = 300.0 * (1.0 - fall * (1.0 / small**2 - 1.0 / R**2))
+    both = [force_of_path(-1.0, 300.0, u), force_of_path(-1.0, softer, u, radius=small)]
+    assert turn_slip_stiffness(both).contradictory == contradictory
