@@ -191,7 +191,11 @@ def of_setups(
     if len(used) > 1:
         known.append(wording.several_setups(used))
     known += [wording.one_setup_on_paths(name, len(found)) for name, found in paths.items() if len(found) > 1]
-    without = [name for name in used if not _has_zeros(points, name)]
+    steady = {
+        name: np.flatnonzero((points.setup == points.setups.index(name)) & ~points.continuous)
+        for name in used
+    }
+    without = [name for name, rows in steady.items() if not len(zeros(points, LoadGroup(math.nan, rows), 1))]
     act += [wording.setup_without_zeros(name) for name in without] if len(used) > 1 else []
     act += _undeclared(config)
     row = measured.nominal
@@ -203,12 +207,6 @@ def of_setups(
         sentence = wording.setup_scatter(scatter)
         (act if scatter.chance < FALSE_ALARM else known).append(sentence)
     return SetupRemarks(tuple(known), tuple(act))
-
-
-def _has_zeros(points: Points, setup: str) -> bool:
-    """Whether a set-up has a point at zero sideslip and camber, rolled forwards."""
-    index = np.flatnonzero((points.setup == points.setups.index(setup)) & ~points.continuous)
-    return len(zeros(points, LoadGroup(math.nan, index), 1)) > 0
 
 
 def _undeclared(config: Config) -> list[str]:

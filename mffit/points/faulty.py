@@ -50,12 +50,15 @@ def driven(sweep: Sweep) -> np.ndarray:
 
 
 def faults(sweep: Sweep) -> list[Fault]:
-    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel."""
+    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel.
+
+    A sensor that was not measured, or has one value for all samples, is not looked at.
+    """
     found = []
     for channels, rules in groupby(FAULTS, key=lambda rule: rule.channels):
         same = list(rules)
         for channel in channels:
-            for rule in same:
+            for rule in same if channels is not SENSORS or _measured(getattr(sweep, channel)) else ():
                 reason = rule.reason.format(channel=channel)
                 found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch, rule.id))
     return [fault for fault in found if np.any(fault.which)]
@@ -73,15 +76,9 @@ def _usual_load(sweep: Sweep) -> float:
     return float(np.nanmedian(np.abs(sweep.Fz))) if np.any(np.isfinite(sweep.Fz)) else 0.0
 
 
-def _unloaded(sweep: Sweep, _: str) -> np.ndarray:
-    return np.asarray(sweep.Fz < constants.UNLOADED * _usual_load(sweep))
-
-
 def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
     """Samples far from the median of their neighbours."""
     values = getattr(sweep, channel)
-    if not _measured(values):
-        return np.zeros(len(sweep), dtype=bool)
     smallest = constants.SPIKE * _usual_load(sweep) * (constants.ARM if channel == "Mz" else 1.0)
     away = np.abs(values - median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
     return np.asarray(away > np.fmax(constants.FAR_FROM_NOISE * robust(away), smallest))
@@ -90,16 +87,12 @@ def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
 def _clipped(sweep: Sweep, channel: str) -> np.ndarray:
     """Runs of samples at the end of the channel's range."""
     values = getattr(sweep, channel)
-    if not _measured(values):
-        return np.zeros(len(sweep), dtype=bool)
     return _long_runs(_at_end(values), _longest_by_chance(values, ~_at_end(values)) + 1)
 
 
 def _stuck(sweep: Sweep, channel: str) -> np.ndarray:
     """Runs of one value within the channel's range."""
     values = getattr(sweep, channel)
-    if not _measured(values):
-        return np.zeros(len(sweep), dtype=bool)
     return np.asarray(_still(sweep, values, ~_at_end(values)) & ~_clipped(sweep, channel))
 
 
@@ -172,7 +165,7 @@ FAULTS = (
         looks_at="Load over the usual load of the recording",
         limits=(constants.UNLOADED,),
         reason="no load on the tyre",
-        find=_unloaded,
+        find=lambda sweep, _: np.asarray(sweep.Fz < constants.UNLOADED * _usual_load(sweep)),
     ),
     FaultRule(
         id=DRIVEN_RULE,

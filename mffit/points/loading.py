@@ -121,7 +121,10 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
             return Reading(steady, (*warnings, _nothing(reduced)), stretches, left_out, notes=of_slip.notes)
         raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
-        warnings += _moving(points)
+        warnings += [
+            f"{points.files[index]}: keeps moving and gives no steady point; only mffit diagnose uses it"
+            for index in np.unique(points.file[points.continuous])
+        ]
     warnings += _thin(steady, config)
     kept = points if continuous else steady
     if not continuous:
@@ -246,7 +249,12 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
-    points = concatenate([reduce(_completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
+
+    def completed(sweep: files.Sweep) -> files.Sweep:
+        filled = {name: np.nan_to_num(getattr(sweep, name), nan=value) for name, value in STAND_IN.items()}
+        return replace(sweep, p=filled["p"], V=filled["V"])
+
+    points = concatenate([reduce(completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 
@@ -257,21 +265,6 @@ def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Pa
     found = f"does not say the rig's {name}" if value is None else f'{name} = "{value}" is not known'
     written = " or ".join(f'"{one}"' for one in choice)
     raise InputError(f"{found}; give {name} = {written}, or a tyre.toml", file=path)
-
-
-def _completed(sweep: files.Sweep) -> files.Sweep:
-    """The sweep with a pressure and a speed."""
-    filled = {
-        name: np.where(np.isfinite(getattr(sweep, name)), getattr(sweep, name), value)
-        for name, value in STAND_IN.items()
-    }
-    return replace(sweep, p=filled["p"], V=filled["V"])
-
-
-def _moving(points: Points) -> list[str]:
-    """Sentences about files that keep moving."""
-    names = [points.files[index] for index in np.unique(points.file[points.continuous])]
-    return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
 
 
 def _moving_left_out(points: Points) -> tuple[LeftOut, ...]:

@@ -58,7 +58,12 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     moving, averaged = averaging.along_sweeps(
         sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
     )
-    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept if not _over_slip(sweep, stretch)}
+    # A sweep of longitudinal slip shows no lag behind the sideslip angle.
+    lags = {
+        stretch: _lag(sweep, stretch, faulty)
+        for stretch in swept
+        if np.ptp(sweep.kappa[stretch.begin : stretch.end]) < constants.SMALLEST_SWEEP_OF_SLIP
+    }
     counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
     used = np.isin(np.arange(len(sweep)), averaged)
     for plateau in plateaus:
@@ -91,11 +96,6 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
         stretch: f"{sweep.name}:{k:02d}" if stretch.kind == SWEEP else sweep.name
         for stretch, k in zip(tried, numbers, strict=True)
     }
-
-
-def _over_slip(sweep: Sweep, stretch: Stretch) -> bool:
-    """Whether a sweep is one of longitudinal slip, which shows no lag behind the sideslip angle."""
-    return bool(np.ptp(sweep.kappa[stretch.begin : stretch.end]) >= constants.SMALLEST_SWEEP_OF_SLIP)
 
 
 def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:

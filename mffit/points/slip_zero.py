@@ -7,7 +7,7 @@ force is zero, ``kappa = (1 + s) / (1 + s0) - 1``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -165,14 +165,17 @@ def against_free_rolling(
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
     sweeps, derived = _with_slip(sweeps, config.tyre.unloaded_radius)
-    stated |= {sweep.file: (FROM_SPEEDS, None) for sweep in sweeps if _is_derived(sweep)}
+    # Not recorded, so it follows from speeds.
+    stated |= {s.file: (FROM_SPEEDS, None) for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
     out = list(sweeps)
     notes: list[str] = []
     warnings: list[str] = [*derived]
     taken_off: dict[str, tuple[SlipZero, str]] = {}
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
-        readings = _joined_readings(sweeps[k] for k in rows)
+        readings = Driven(
+            *(np.concatenate(values) for values in zip(*(readings_of(sweeps[k]) for k in rows), strict=True))
+        )
         if _too_weak(readings):
             raise InputError(
                 _weak(readings, config), file=config.path or config.sweep[0].file, key="columns.Fx_N"
@@ -256,11 +259,6 @@ def readings_of(sweep: Sweep) -> Driven:
     )
 
 
-def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
-    parts = [readings_of(sweep) for sweep in sweeps]
-    return Driven(*(np.concatenate(values) for values in zip(*parts, strict=True)))
-
-
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:
     """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip.
 
@@ -329,11 +327,6 @@ def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[S
         f"{some(list(dict.fromkeys(files)))}: no slip was recorded, but wheel and road speed show that the wheel was driven or "
         "braked; slip follows from both",
     )
-
-
-def _is_derived(sweep: Sweep) -> bool:
-    """Whether the slip of a sweep was not recorded but follows from speeds."""
-    return "kappa" not in sweep.table and bool(np.any(sweep.kappa != 0.0))
 
 
 def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:

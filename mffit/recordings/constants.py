@@ -75,7 +75,6 @@ ZERO_OF_A_DISC = Real(
     "Zero of the side force beyond which the path is likely curved: ply-steer and conicity move it by 0.3 deg, the alignment "
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
-UPRIGHT = Real(1.0, "deg", "Camber up to which a wheel counts as upright here.")
 NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
 FEWEST_FOR_ZERO = Count(5, "-", "Fewest points that show where the side force vanishes.")
 FEWEST_FOR_PATTERN = Count(4, "-", "Fewest recordings that are named by one pattern instead of one by one.")
