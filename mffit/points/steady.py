@@ -230,7 +230,7 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
                 usual = max(scale[name], float(np.median(np.abs(values))))
                 step = usual * _step_of_condition(masks["kappa"][lag:])
             smooth = uniform_filter1d(values, lag, mode="nearest")
-            noise = _noise(values) / np.sqrt(lag)
+            noise = _noise(values) * np.sqrt(2.0 / lag)  # of the difference of two means
             change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(step, clear * noise)
             # All samples between the two that differ: a change little above the smallest one shows in few of these pairs.
             begun = np.zeros(n + 1, dtype=int)

@@ -13,7 +13,7 @@ from mffit.points.choice import ROLLING_IN, chosen, settled
 from mffit.points.faulty import Fault, faults
 from mffit.points.lag import Lag, common, measure
 from mffit.points.remarks import driven, left_out, note
-from mffit.points.steady import SteadySettings
+from mffit.points.steady import SteadySettings, moves
 from mffit.points.stretch import SWEEP, Stretch
 
 RATE = 50.0
@@ -276,6 +276,31 @@ def test_a_drift_is_dropped_from_its_harmless_size_on(change, dropped):
         assert found.begin == 250
 
 
+@pytest.mark.parametrize(("change", "dropped"), [(4.0, False), (30.0, True)])
+def test_a_drift_is_told_from_its_noise(change, dropped):
+    """500 samples of 10 N: the change along a line is known to 1.5 N; half of it may be cut off as a transient."""
+    noise = 10.0 * np.random.default_rng(6).standard_normal(500)
+    found = settled(
+        Stretch(0, 500), settings(500), [(noise + change * np.linspace(-0.5, 0.5, 500), 1.0, "N")]
+    )
+    assert bool(found.dropped) == dropped
+
+
+@pytest.mark.parametrize(("size", "begin"), [(3.0, 0), (13.0, 50)])
+def test_a_transient_is_told_from_its_noise(size, begin):
+    """The first 50 of 500 samples of 10 N are known to 1.5 N against the second half."""
+    x = 10.0 * np.random.default_rng(6).standard_normal(500)
+    x[:50] += size
+    assert settled(Stretch(0, 500), settings(500), [(x, 1e3, "N")]).begin == begin
+
+
+def test_noise_of_a_setting_is_no_move_however_large():
+    """Means of half a second of 1 deg of noise differ by more than the step of a set-point."""
+    rng = np.random.default_rng(6)
+    noisy = settings(2000)._replace(alpha=np.radians(rng.standard_normal(2000)))
+    assert not np.any(moves(noisy)["alpha"])
+
+
 def swept(n: int = 2000, T=None, Fz=None) -> Series:
     """Five sweeps of sideslip at 50 Hz, eight seconds each; the load is set for each."""
     time = np.arange(n) / RATE
@@ -361,6 +386,7 @@ def test_too_few_samples_or_one_way_alone_show_no_lag():
     assert np.isnan(measure(alpha[:31], Fy[:31], s[:31]).lag)
     assert np.isnan(measure(alpha[:200], Fy[:200], s[:200]).lag)
     assert np.isnan(measure(alpha, np.abs(Fy), s).lag)
+    assert np.isnan(measure(alpha, np.maximum(Fy, 0.0), s).lag)
 
 
 def test_the_common_lag_is_the_median_of_three_sweeps_or_the_mean_of_two():
