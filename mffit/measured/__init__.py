@@ -2,9 +2,9 @@
 
 from mffit.measured.alignment import align
 from mffit.measured.axis import alignment_verdict
-from mffit.measured.backlash import odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
+from mffit.measured.evidence import odd_alpha
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
 from mffit.measured.result import (
     KEYS,

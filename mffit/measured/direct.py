@@ -23,7 +23,6 @@ from mffit.measured.axis import (
     slip_stiffness,
     split_of_zero,
 )
-from mffit.measured.backlash import rest_of_play
 from mffit.measured.epsilon import (
     corrected,
     epsilon_from_moments,
@@ -31,7 +30,7 @@ from mffit.measured.epsilon import (
     load_dependence,
     warmer_in_camber,
 )
-from mffit.measured.evidence import DirectEvidence, evidence_of
+from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import CONICITY, LoadResult, Measured, SideslipZeros
 from mffit.measured.setups import excess_forces, of_setups, results_of_setups, setup_scatter

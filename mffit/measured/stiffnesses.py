@@ -13,8 +13,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.measured import constants, wording
-from mffit.measured.backlash import rest_of_play
-from mffit.measured.evidence import DirectEvidence
+from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.slopes import Secant, SlopeAtZero, secant_at, slope_at_zero
 from mffit.measured.uncertain import named
 from mffit.measured.zeros import LoadGroup, polynomial, u_of

@@ -16,8 +16,7 @@ from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
 from mffit.measured import constants, wording
 from mffit.measured.axis import SlipStiffness, slip_stiffness
-from mffit.measured.backlash import rest_of_play
-from mffit.measured.evidence import DirectEvidence
+from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.stiffnesses import LoadSlopes
 from mffit.measured.uncertain import agreed, combined, quantity
 from mffit.measured.zeros import LoadGroup, PathZeros, flipped, unlike_zeros, zeros_by_path
