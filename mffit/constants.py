@@ -18,6 +18,9 @@ EXPLAINED_SHARE = Real(
 LIKENESS_OF_MISSPELT = Real(0.6, "-", "Similarity (difflib) from which a key or heading counts as misspelt.")
 LONGEST_QUOTE = Count(60, "characters", "Longest quotation of a file in a message.")
 COVERAGE_FACTOR_95 = Real(1.959964, "-", "Coverage factor of a 95 % interval of a normal distribution.")
+FALSE_ALARM = Real(
+    1e-3, "-", "Probability that chance alone makes a sound reading or rig conspicuous, per question."
+)
 AT_BOUND_SHARE = Real(
     1e-4, "-", "Distance from a bound, over the width of the bounds, that counts as at the bound."
 )
@@ -34,14 +37,22 @@ ROWS_AS_TEXT = Count(16_384, "-", "Rows of a table that are in memory as text at
 LOOKS_AT_LIMITS = Count(
     200, "-", "Most times a step is computed again because it meets a limit or a bound; 5 to 50 are usual."
 )
-ZERO_SIDESLIP = Real(
-    0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."
+STRAIGHT = Real(
+    0.4,
+    "deg",
+    "Sideslip as read within which a wheel runs straight, and within which two angles are one level of a programme.",
 )
-ZERO_CAMBER = Real(0.5, "deg", "Camber as read within which points count as upright: zeros, sideslip sweeps.")
 SLIP_BEYOND_THE_PEAK = Real(
     0.3, "-", "Longest slip at which files are compared or converted: well beyond the peak of every tyre."
 )
 ANGLES_OF_A_CURVE = Count(21, "-", "Angles of a curve over which a misfit or a band is averaged.")
+UPRIGHT = Real(
+    0.8,
+    "deg",
+    "Camber as read within which a wheel is upright, and within which two angles are one level of a programme.",
+)
+SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point: zeros, mirrored points.")
+NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; it counts the others.")
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")

@@ -5,9 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from scipy.special import ndtri
+
+from mffit.constants import FALSE_ALARM
 
 NORMAL = 1.482602218505602
 """Standard deviation of normal noise over the median of its absolute value."""
+
+
+def beyond(chance: float) -> float:
+    """Standard deviations from the mean, to either side, beyond which a normal number lies with a probability."""
+    return float(-ndtri(chance / 2.0))
+
+
+ALARM = beyond(FALSE_ALARM)
+"""Standard deviations beyond which a sound number lies with the probability of a false alarm."""
 
 
 def rms(x: np.ndarray) -> float:

@@ -1,12 +1,21 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
-from mffit.measured.alignment import Alignment, align
-from mffit.measured.backlash import odd_alpha
-from mffit.measured.budget_rows import Contribution
+from mffit.measured.alignment import align
+from mffit.measured.axis import alignment_verdict
 from mffit.measured.camber_reduction import DirectInputs, direct_method
-from mffit.measured.direct import at_the_axis, measure
-from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import KEYS, LoadResult, Measured, SetupResult, SetupScatter, SideslipZeros
+from mffit.measured.direct import adding_to_camber, at_the_axis, measure
+from mffit.measured.evidence import odd_alpha
+from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
+from mffit.measured.result import (
+    KEYS,
+    Alignment,
+    LoadResult,
+    Measured,
+    SetupResult,
+    SetupScatter,
+    SideslipZeros,
+)
+from mffit.measured.uncertain import Contribution
 
 __all__ = [
     "KEYS",
@@ -19,10 +28,13 @@ __all__ = [
     "SetupResult",
     "SetupScatter",
     "SideslipZeros",
+    "adding_to_camber",
     "align",
+    "alignment_verdict",
     "at_the_axis",
     "direct_method",
     "measure",
+    "measured_path_radius",
     "odd_alpha",
     "radius_readings",
 ]

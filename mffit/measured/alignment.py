@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from mffit.brief import Brief
-from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
+from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.errors import InputError
-from mffit.measured import constants, notes, setup_notes
-from mffit.measured.groups import LoadGroup, last_setup, load_groups, zeros
-from mffit.measured.ply_steer import usual_ply_steer
+from mffit.measured import constants, wording
+from mffit.measured.result import Alignment, AlignmentStep
+from mffit.measured.zeros import LoadGroup, load_groups, u_of, zeros
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
@@ -25,66 +24,6 @@ class AxisAtLoad(NamedTuple):
     C_alpha: Quantity | None  #: measured cornering stiffness, ISO, negative [N/rad]
     F_forward: float  #: force at zero, corrected for the play [N]; NaN if not measured
     F_backward: float  #: [N]
-
-
-@dataclass(frozen=True, slots=True)
-class AlignmentStep:
-    """One iteration at one load."""
-
-    load: float  #: [N]
-    iteration: int
-    F_forward: float  #: mean of the forward zeros, ISO [N]
-    F_backward: float  #: [N]
-    F_turn_slip: float  #: (6) [N]
-    F_slip: float  #: (7) [N]
-    C_alpha: float  #: used for the correction, ISO, negative [N/rad]
-    correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
-    source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
-    u_deg: float  #: standard uncertainty of the correction
-    reported: tuple[float, float] | None = None  #: the same zeros in the report, where these differ [N]
-
-    @property
-    def secant(self) -> bool:
-        """Whether C_alpha is from two iterations."""
-        return self.source == "secant"
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class Alignment(Brief):
-    """All steps, in the order of loads and iterations."""
-
-    steps: tuple[AlignmentStep, ...]
-    warnings: tuple[str, ...]
-    resolution_deg: float = field(default=constants.AXIS_RESOLUTION)
-
-    @property
-    def last(self) -> tuple[AlignmentStep, ...]:
-        """The last iteration at every load."""
-        return tuple({step.load: step for step in self.steps}.values())
-
-    @property
-    def correction_deg(self) -> float:
-        """The next correction: mean over loads of the last iteration, weighted by stiffness."""
-        return float(self._weights() @ [step.correction_deg for step in self.last])
-
-    @property
-    def u_deg(self) -> float:
-        """Its standard uncertainty."""
-        return float(np.linalg.norm(self._weights() * [step.u_deg for step in self.last]))
-
-    @property
-    def u_axis_deg(self) -> float:
-        """Standard uncertainty of the axis's own misalignment, of which ply-steer takes an unknown part."""
-        return math.hypot(self.u_deg, math.degrees(usual_ply_steer()))
-
-    @property
-    def aligned(self) -> bool:
-        """Whether the correction is within its uncertainty, or below the resolution of the axis."""
-        return abs(self.correction_deg) <= max(self.u_deg, self.resolution_deg)
-
-    def _weights(self) -> np.ndarray:
-        stiffness = np.array([abs(step.C_alpha) for step in self.last])
-        return stiffness / stiffness.sum()
 
 
 def align(
@@ -112,10 +51,11 @@ def align(
         If zeros of one direction are missing.
     """
     steps: list[AlignmentStep] = []
+    on_usual = points.phi_t == main_path(points)
     for group in load_groups(points):
-        usual = last_setup(
-            points, LoadGroup(group.load, group.index[points.phi_t[group.index] == main_path(points)])
-        )
+        usual = group.of(on_usual[group.index])
+        setup = points.setup[usual.index]
+        usual = usual.of(setup == setup.max(initial=0))
         steps += _steps(
             points, usual, axes, C_alpha or USUAL_CORNERING_STIFFNESS, (measured or {}).get(group.load)
         )
@@ -126,18 +66,15 @@ def align(
         )
     found = Alignment(tuple(steps), (), resolution_deg)
     limit = constants.LARGEST_DIFFERENCE
-    off = (
-        notes.axis_off(step.load, difference, limit, abs(step.correction_deg))
+    warnings = [
+        wording.axis_off(step.load, difference, limit, abs(step.correction_deg))
         for step in found.last
         if (difference := abs(step.F_forward - step.F_backward)) > limit
-    )
-    return replace(found, warnings=(*off, *_of_setup(points)))
-
-
-def _of_setup(points: Points) -> list[str]:
-    """A sentence on the set-up that is aligned, if the usual path was run in several."""
-    usual = np.unique(points.setup[points.phi_t == main_path(points)])
-    return [setup_notes.last_is_aligned(points.setups[usual[-1]])] if len(usual) > 1 else []
+    ]
+    setups = np.unique(points.setup[on_usual])
+    if len(setups) > 1:
+        warnings.append(wording.last_is_aligned(points.setups[setups[-1]]))
+    return replace(found, warnings=tuple(warnings))
 
 
 class _Stiffness(NamedTuple):
@@ -191,8 +128,7 @@ def _steps(
 
 def _u(points: Points, rows: np.ndarray) -> float:
     """Standard uncertainty of the mean force of some points [N]."""
-    u = np.where(np.isfinite(points.u_Fy[rows]), points.u_Fy[rows], USUAL_U_FORCE)
-    return float(np.linalg.norm(u)) / len(rows)
+    return float(np.linalg.norm(u_of(points, "Fy")[rows])) / len(rows)
 
 
 def _elsewhere(known: AxisAtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:

@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 
 from uncertainties import UFloat
 
-from mffit.measured.sources import named
+from mffit.measured.uncertain import named
 from mffit.rig_errors import DECLARED, AtZero, Declared
-from tir import Quantity
 
 _DECLARATIONS = {error.name: declared for error, declared in DECLARED}
 
@@ -118,16 +117,6 @@ def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: floa
     """
     C_phit = phi_sign * F_phit * R
     return TurnSlip(F_phit, C_phit, 1.0 + r_e * C_gamma / C_phit)
-
-
-def known_quantity(x: UFloat, unit: str) -> Quantity:
-    """A number with uncertainty as the record that leaves this folder."""
-    return Quantity(float(x.nominal_value), float(x.std_dev), unit)
-
-
-def quantity(x: UFloat | None, unit: str) -> Quantity | None:
-    """The same of a number that may be missing."""
-    return None if x is None else known_quantity(x, unit)
 
 
 @dataclass(frozen=True, slots=True)

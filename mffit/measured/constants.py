@@ -15,13 +15,10 @@ LARGEST_DIFFERENCE = Real(
 )
 AXIS_RESOLUTION = Real(0.01, "deg", "Smallest angle by which a sideslip axis can usually be turned.")
 
-AVERAGED_ZEROS = Real(0.05, "deg", "Zeros whose sideslip differs by less are averaged.")
-SMALLEST_SIDESLIP = Real(0.15, "deg", "Points of a sideslip sweep below this angle count as zeros.")
 PARABOLA_SIDESLIP = Real(1.2, "deg", "Sideslip within which a parabola describes the side force to a newton.")
 POINTS_FOR_PARABOLA = Count(
     5, "-", "Fewest angles near zero from which a parabola gives the zero better than a mean."
 )
-UNLIKE_ZEROS = Real(5.0, "-", "Standard uncertainties above which two zeros cannot come from one path.")
 
 CUBIC_CAMBER = Real(
     20.0,
@@ -30,44 +27,12 @@ CUBIC_CAMBER = Real(
     "docs/method.md",
 )
 CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the odd curve.")
-SHORTEST_CAMBER_SWEEP = Real(10.0, "deg", "Camber that a sweep must reach for its slope at zero.")
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
-SECANT_REACH = Real(
-    0.02, "-", "Relative distance from the secant's angle within which a point counts as measured there."
-)
 
-NEAREST_RADIUS_LOAD = Real(
-    0.02, "-", "Relative difference of load up to which a measured radius holds unchanged."
-)
 LARGEST_EPSILON = Real(0.9, "-", "PECP2 is not written if eps_gamma would reach this within the loads.")
-SIGNIFICANT_SLOPE = Real(
-    2.0, "-", "Standard uncertainties that the slope of eps_gamma over load must exceed."
-)
-CLEAR_MOMENT = Real(
-    2.0, "-", "Standard uncertainties that the turn-slip moment must exceed for its own eps_gamma."
-)
 
-COVERAGE_PROBABILITY = Real(0.95, "-", "Coverage probability of expanded uncertainties.", "JCGM 100, 6.2.2")
-MANY_DEGREES_OF_FREEDOM = Real(
-    1e6, "-", "Degrees of freedom beyond which the t distribution is the normal one."
-)
-LEAST_DOF_DRAWN = Real(
-    3.0, "-", "Fewest degrees of freedom that are drawn, as the t distribution has no variance below."
-)
-FINITE_SPIN_SHARE = Real(
-    0.05,
-    "m^2",
-    "Standard uncertainty of the relative fall of C_phit per square of turn slip.",
-    "the sample tyres have 0.03",
-)
-CONTRADICTION_CHANCE = Real(
-    1e-3, "-", "Probability below which the stiffnesses of the paths contradict each other."
-)
-SETUP_SCATTER_CHANCE = Real(
-    0.01, "-", "Probability below which the scatter of repeated set-ups contradicts the declared zeros."
-)
 MONTE_CARLO_DRAWS = Count(
     20_000, "-", "Random draws for u(eps_gamma), which is then known to better than 1 %."
 )
@@ -78,11 +43,6 @@ SPIN_LOSS = Real(
     "Bias of (17) on a disc over (1 - eps_gamma) phi_t^2: where a force saturates with spin, its slope falls three times as much "
     "as its secant.",
     "sample tyres with coefficients up to 10 % off: 0.018 to 0.036",
-)
-SPIN_LOSS_U = Real(
-    0.015,
-    "m^2",
-    "Its standard uncertainty, half the value: a brush that does not slide has no loss, and other tyres may have twice as much.",
 )
 SPIN_BIAS_OF_MODEL = Real(
     0.3,
@@ -105,19 +65,6 @@ REST_OF_PLAY = Real(
     "-",
     "Standard uncertainty, over half the play, of sideslip zeros: where the moment changes sign, the wheel floats in the play.",
     "noise-free sample tyres with 0.17 deg of play",
-)
-CONTRADICTED = Real(
-    2.0,
-    "-",
-    "Standard uncertainties above which a measurement contradicts a declared uncertainty and replaces it.",
-)
-SKEW_BEYOND_DECLARATION = Real(
-    3.0, "-", "Standard uncertainties from which a measured camber skew is a warning: one sound rig in 370."
-)
-CLEAR_MISALIGNMENT = Real(
-    2.0,
-    "-",
-    "Standard uncertainties that the misalignment split from ply-steer must exceed to be called one.",
 )
 TEMPERATURE_APART = Real(
     2.0, "K", "Mean temperatures of zeros and camber sweeps that differ by less need no sentence."

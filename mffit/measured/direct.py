@@ -6,33 +6,42 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.measured import camber_reduction as method
-from mffit.measured import notes
+from mffit.measured import constants, wording
 from mffit.measured.alignment import AxisAtLoad
-from mffit.measured.at_zero import angle_at_zero, zeros_by_path
-from mffit.measured.backlash import rest_of_play
-from mffit.measured.both_directions import skew_warning, with_measured_skew
-from mffit.measured.budget import budget
-from mffit.measured.budget_rows import Contribution
-from mffit.measured.evidence import DirectEvidence, evidence_of
-from mffit.measured.factor import corrected, factor, warmer_in_camber
-from mffit.measured.groups import LoadGroup, load_groups
-from mffit.measured.load_slopes import LoadSlopes, cornering_stiffness, load_slopes
-from mffit.measured.loads import load_dependence
-from mffit.measured.moments import epsilon_from_moments
+from mffit.measured.axis import (
+    AlignmentVerdict,
+    SetupAngle,
+    ZeroAngle,
+    alignment_verdict,
+    angles_of_setups,
+    at_true_zero,
+    camber_at_true_zero,
+    slip_stiffness,
+    split_of_zero,
+)
+from mffit.measured.epsilon import (
+    corrected,
+    epsilon_from_moments,
+    factor,
+    load_dependence,
+    warmer_in_camber,
+)
+from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
-from mffit.measured.remarks import remarks
 from mffit.measured.result import CONICITY, LoadResult, Measured, SideslipZeros
 from mffit.measured.setups import excess_forces, of_setups, results_of_setups, setup_scatter
-from mffit.measured.sideslip_zero import SetupAngle, ZeroAngle, angles_of_setups
-from mffit.measured.slip_stiffness import slip_stiffness
+from mffit.measured.stiffnesses import LoadSlopes, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
-from mffit.measured.zero_split import alignment_verdict, at_true_zero, camber_at_true_zero, split_of_zero
+from mffit.measured.uncertain import Contribution, agreed, budget, quantity, quantity_if
+from mffit.measured.zeros import LoadGroup, load_groups, zeros_by_path
 from mffit.parts import Parts
-from mffit.points import Points
+from mffit.points import Points, levels, main_pressure
+from mffit.rig_errors import DECLARED, AtZero, Declared, RigError
+from mffit.scatter import ALARM
 from tir import Quantity, Tyre
 
 
@@ -69,7 +78,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     warnings: list[str] = []
     rows = []
     found_slopes = [(group, *load_slopes(evidence, group)) for group in load_groups(evidence.points)]
-    evidence, skew = with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
+    evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
     stiffnesses = [(group, slopes.C_alpha, slopes.C_gamma) for group, slopes, _ in found_slopes]
     if evidence.rig is not None:
         scatter = setup_scatter(evidence.points, stiffnesses, evidence.rig, config)
@@ -99,7 +108,7 @@ def _of_other_loads(rows: Sequence[LoadResult]) -> list[str]:
     zeros = [row for row in rows if row.alpha_M is not None]
     without = [row.load for row in zeros if not math.isfinite(row.F_backward)]
     known = [row.load for row in zeros if math.isfinite(row.F_backward)]
-    return [notes.axis_of_other_loads(without, known)] if without and known else []
+    return [wording.axis_of_other_loads(without, known)] if without and known else []
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
@@ -134,8 +143,9 @@ def _sideslip_zeros(
             continue
         stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
         for path in zeros_by_path(evidence.points, group, slopes.C_alpha, evidence.config):
-            angle = angle_at_zero(path, stiffness)
-            if angle is not None:
+            if path.backward is not None:
+                # The difference is odd in the angle, so the slope at true zero counts, not that at the reading of zero.
+                angle = path.slip / stiffness.at(path.slip / stiffness.C_alpha)
                 angle = angle + rest_of_play(evidence.config)
                 readings.append(ZeroAngle(path.setup, group.load, path.phi_t, angle))
     return angles_of_setups(readings, evidence.config.tyre.nominal_load)
@@ -149,12 +159,9 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, Axi
         C_alpha = cornering_stiffness(evidence, group)
         paths = zeros_by_path(evidence.points, group, C_alpha, config) if evidence.rig else []
         # Of several set-ups on the usual path the last one is aligned.
-        zero = [path for path in paths if path.phi_t == paths[0].phi_t][-1].readings if paths else None
-        out[group.load] = AxisAtLoad(
-            method.quantity(C_alpha, "N/rad"),
-            zero.forward if zero else math.nan,
-            zero.backward if zero else math.nan,
-        )
+        usual = [path.readings for path in paths if path.phi_t == paths[0].phi_t]
+        forces = [float(force.nominal_value) for force in usual[-1]] if usual else []
+        out[group.load] = AxisAtLoad(quantity_if(C_alpha, "N/rad"), *[*forces, math.nan, math.nan][:2])
     return out
 
 
@@ -178,12 +185,13 @@ def _on_disc(
     assert rig is not None
     row = replace(
         _row(evidence, group, slopes, found),
-        r_e=method.quantity(r_e, "m"),
-        R=method.quantity(rig.R, "m"),
+        r_e=quantity_if(r_e, "m"),
+        R=quantity_if(rig.R, "m"),
     )
     C_gamma = corrected(evidence, slopes.C_gamma, slopes.C_alpha)
     if found is None or C_gamma is None or r_e is None:
         return _AtLoad(row, None)
+    C_alpha = float(slip_stiffness(slopes.C_alpha, None, group.load).C_alpha.nominal_value)
     warmer = warmer_in_camber(evidence, group)
     epsilon = factor(evidence, C_gamma, found, r_e, warmer)
     slope, secant = (
@@ -195,12 +203,12 @@ def _on_disc(
     draws = epsilon.draws
     row = replace(
         row,
-        epsilon_gamma=method.quantity(epsilon.plain, "-"),
-        epsilon_debiased=method.quantity(debiased, "-"),
+        epsilon_gamma=quantity_if(epsilon.plain, "-"),
+        epsilon_debiased=quantity_if(debiased, "-"),
         epsilon_slope=None if slope is None else float(slope.plain.nominal_value),
         epsilon_secant=None if secant is None else float(secant.plain.nominal_value),
         epsilon_moment=epsilon_from_moments(evidence, group, found, r_e),
-        setups=results_of_setups(found.found, found.paths, evidence.axes, C_gamma, r_e, evidence.config),
+        setups=results_of_setups(evidence, found, C_alpha, C_gamma, r_e),
         budget=budget(epsilon.plain),
         u_monte_carlo=draws.u,
         interval=draws.interval,
@@ -222,7 +230,7 @@ def _with_left_out(evidence: DirectEvidence, row: LoadResult) -> LoadResult:
 def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
     """The record of one load without eps_gamma."""
     C_gamma, slope, secant = (
-        method.quantity(corrected(evidence, C, slopes.C_alpha), "N/rad")
+        quantity_if(corrected(evidence, C, slopes.C_alpha), "N/rad")
         for C in (slopes.C_gamma, slopes.slope, slopes.secant)
     )
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
@@ -230,7 +238,7 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
     split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
     row = LoadResult(
         load=group.load,
-        C_alpha=method.quantity(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),
+        C_alpha=quantity_if(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),
         C_gamma=C_gamma,
         C_gamma_slope=slope,
         C_gamma_secant=secant,
@@ -239,14 +247,14 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
         return row
     return replace(
         row,
-        F_phit=method.quantity(found.force, "N"),
-        C_phit=method.quantity(found.stiffness.C_phit, "Nm"),
-        alpha_M=method.quantity(found.alpha_M, "rad"),
-        misalignment=method.quantity(split.misalignment, "rad") if split else None,
-        ply_steer=method.quantity(split.ply_steer, "rad") if split else None,
-        conicity=method.quantity(found.conicity, "N"),
-        F_forward=found.zeros.forward,
-        F_backward=found.zeros.backward,
+        F_phit=quantity_if(found.force, "N"),
+        C_phit=quantity_if(found.stiffness.C_phit, "Nm"),
+        alpha_M=quantity_if(found.alpha_M, "rad"),
+        misalignment=quantity_if(split.misalignment, "rad") if split else None,
+        ply_steer=quantity_if(split.ply_steer, "rad") if split else None,
+        conicity=quantity_if(found.conicity, "N"),
+        F_forward=float(found.zeros.forward.nominal_value),
+        F_backward=math.nan if found.zeros.backward is None else float(found.zeros.backward.nominal_value),
         paths=found.phi_t,
     )
 
@@ -266,12 +274,12 @@ def _assembled(
         u_pecp2=None,
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=False,
-        notes=() if evidence.rig else (notes.STRAIGHT_PATH,),
+        notes=() if evidence.rig else (wording.STRAIGHT_PATH,),
         warnings=(),
         camber_skew=skew,
     )
     if not known:
-        lacking = notes.nothing_measured(
+        lacking = wording.nothing_measured(
             camber=any(row.C_gamma is not None for row in per_load),
             zeros=any(row.C_phit is not None for row in per_load),
             radius=bool(evidence.radii),
@@ -293,9 +301,121 @@ def _assembled(
         misaligned_setups=_misaligned_setups(evidence, nominal.row),
         axis_off=axis.misaligned,
         notes=(
-            *remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
+            *_remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
             *_of_other_loads(per_load),
         ),
         load_note=law.note,
     )
-    return measured, [*([axis.sentence] if axis.misaligned else []), *skew_warning(evidence, skew)]
+    return measured, [*([axis.sentence] if axis.misaligned else []), *_skew_warning(evidence, skew)]
+
+
+def _with_measured_skew(
+    evidence: DirectEvidence, slopes: Sequence[LoadSlopes]
+) -> tuple[DirectEvidence, Quantity | None]:
+    """The evidence with the rig error that adds to the camber stiffness as measured, and its value in the declared unit.
+
+    Rolling backwards the camber force keeps its sign and the slip force changes it: half the difference of both slopes is
+    what the rig adds, half their sum is the camber stiffness. One difference determines one number: if several errors add
+    to the slope, it is their sum, and the one that is declared most uncertain takes it.
+    """
+    both = [
+        (row.C_alpha, row.C_gamma, row.C_gamma_backward)
+        for row in slopes
+        if row.C_alpha is not None and row.C_gamma is not None and row.C_gamma_backward is not None
+    ]
+    if evidence.rig is None or not both:
+        return evidence, None
+    errors = dict(evidence.rig.errors)
+    error, declared = max(adding_to_camber(), key=lambda pair: errors[pair[0].name].std_dev)
+    assert declared.camber_stiffness is not None
+    found = agreed(
+        errors[error.name],
+        [
+            (forward - backward) / (2.0 * declared.camber_stiffness(1.0, AtZero(C_alpha, forward, 0.0)))
+            for C_alpha, forward, backward in both
+        ],
+    )
+    errors[error.name] = found
+    measured = replace(evidence, rig=replace(evidence.rig, errors=errors))
+    return measured, quantity(found, declared.unit)
+
+
+def _skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:
+    """A sentence if the measured skew is far beyond its declaration."""
+    if skew is None:
+        return []
+    declared = max(evidence.config.rig.u(error.name) for error, _ in adding_to_camber())
+    beyond = abs(skew.value) > ALARM * math.hypot(declared, skew.u)
+    return [wording.camber_skew_beyond(skew, declared)] if beyond else []
+
+
+def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
+    """The declared rig errors that add to the slope over camber, each with its declaration."""
+    return tuple((error, declared) for error, declared in DECLARED if declared.camber_stiffness)
+
+
+def _remarks(
+    evidence: DirectEvidence,
+    row: LoadResult,
+    skew: Quantity | None,
+    warmer: float,
+    axis: AlignmentVerdict,
+    load_note: str,
+) -> tuple[str, ...]:
+    """Notes in addition to the numbers of the nominal load.
+
+    Parameters
+    ----------
+    evidence : with the declared uncertainties
+    row : the results at the nominal load
+    skew : camber skew from sweeps in both directions [deg]
+    warmer : temperature of the camber sweep above that of the zeros [K]
+    axis : verdict on the sideslip axis
+    load_note : about PECP2
+    """
+    one_setup = len({setup.name for setup in row.setups}) < 2
+    several = (
+        [wording.several_paths([-1.0 / phi_t for phi_t in row.paths], one_setup=one_setup)]
+        if len(row.paths) > 1
+        else []
+    )
+    return (
+        *([axis.sentence] if axis.sentence and not axis.misaligned else []),
+        *([wording.camber_skew(skew)] if skew else []),
+        *several,
+        *_conicity(evidence, row),
+        *_temperature(evidence, row, warmer),
+        *([] if row.secant_bias is None else [wording.secant_bias(row.secant_bias, evidence.published)]),
+        load_note,
+        wording.ON_THE_PATH,
+        *_pressure(evidence),
+        wording.STANDARD_UNCERTAINTIES,
+        wording.CONTACT_WANDERS,
+    )
+
+
+def _pressure(evidence: DirectEvidence) -> list[str]:
+    """At which pressure everything holds, if that is not the nominal one."""
+    used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
+    nominal = 1e3 * evidence.config.tyre.nominal_pressure
+    near = abs(used - nominal) < levels.PRESSURE.tolerance
+    return [] if near else [wording.off_nominal_pressure(used, nominal)]
+
+
+def _conicity(evidence: DirectEvidence, row: LoadResult) -> list[str]:
+    """The sentence on conicity; none where paths on both sides of the disc cancel it."""
+    if row.conicity is not None:
+        return [wording.conicity_measured(row.conicity)]
+    force = evidence.config.rig.u_conicity * row.load
+    shift = row.shift_by(force)
+    if min(row.paths) < 0.0 < max(row.paths) or not force:
+        return []
+    return [wording.conicity(evidence.config.rig.u_conicity, force, shift)]
+
+
+def _temperature(evidence: DirectEvidence, row: LoadResult, warmer: float) -> list[str]:
+    assert row.epsilon_gamma is not None
+    if abs(warmer) < constants.TEMPERATURE_APART:
+        return []
+    spread = evidence.warming.std_dev
+    return [wording.temperature(warmer, spread, abs((1.0 - row.epsilon_gamma.value) * warmer * spread))]

@@ -9,8 +9,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config, wheel_turn
-from mffit.measured import constants
-from mffit.measured.sources import named
+from mffit.measured.uncertain import named
 from tir import Tyre
 
 
@@ -72,7 +71,7 @@ def effective_radius_at(load: float, measured: Mapping[float, UFloat], base: Tyr
         return None
     nearest = min(measured, key=lambda other: abs(np.log(other / load)))
     r_e = measured[nearest]
-    if abs(nearest - load) < constants.NEAREST_RADIUS_LOAD * load or base is None:
+    if base is None:
         return r_e
     shape = base.state(np.array([nearest, load])).Re
     return r_e * float(shape[1] / shape[0])

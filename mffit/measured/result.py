@@ -8,16 +8,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
+
 from mffit.brief import Brief
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
-from mffit.measured.budget_rows import Contribution, Expanded, expanded
+from mffit.measured.uncertain import Contribution, Expanded, expanded
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
+from tir.parameters import BY_NAME
 
 CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
 """Names of sources in the budget."""
+
+
+def usual_ply_steer() -> float:
+    """Prior standard deviation of ply-steer [rad], which looks like a misaligned sideslip axis."""
+    spread = BY_NAME["PHY1"].disc_spread
+    assert spread is not None
+    return float(spread)
 
 
 class SideslipReading(NamedTuple):
@@ -296,3 +306,63 @@ KEYS = {
     "F_phit": "F_phit_N",
 }
 """What the quantities of a load are called, with their unit, in property files and JSON; by attribute."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlignmentStep:
+    """One iteration at one load."""
+
+    load: float  #: [N]
+    iteration: int
+    F_forward: float  #: mean of the forward zeros, ISO [N]
+    F_backward: float  #: [N]
+    F_turn_slip: float  #: (6) [N]
+    F_slip: float  #: (7) [N]
+    C_alpha: float  #: used for the correction, ISO, negative [N/rad]
+    correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
+    source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
+    u_deg: float  #: standard uncertainty of the correction
+    reported: tuple[float, float] | None = None  #: the same zeros in the report, where these differ [N]
+
+    @property
+    def secant(self) -> bool:
+        """Whether C_alpha is from two iterations."""
+        return self.source == "secant"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Alignment(Brief):
+    """All steps, in the order of loads and iterations."""
+
+    steps: tuple[AlignmentStep, ...]
+    warnings: tuple[str, ...]
+    resolution_deg: float = field(default=constants.AXIS_RESOLUTION)
+
+    @property
+    def last(self) -> tuple[AlignmentStep, ...]:
+        """The last iteration at every load."""
+        return tuple({step.load: step for step in self.steps}.values())
+
+    @property
+    def correction_deg(self) -> float:
+        """The next correction: mean over loads of the last iteration, weighted by stiffness."""
+        return float(self._weights() @ [step.correction_deg for step in self.last])
+
+    @property
+    def u_deg(self) -> float:
+        """Its standard uncertainty."""
+        return float(np.linalg.norm(self._weights() * [step.u_deg for step in self.last]))
+
+    @property
+    def u_axis_deg(self) -> float:
+        """Standard uncertainty of the axis's own misalignment, of which ply-steer takes an unknown part."""
+        return math.hypot(self.u_deg, math.degrees(usual_ply_steer()))
+
+    @property
+    def aligned(self) -> bool:
+        """Whether the correction is within its uncertainty, or below the resolution of the axis."""
+        return abs(self.correction_deg) <= max(self.u_deg, self.resolution_deg)
+
+    def _weights(self) -> np.ndarray:
+        stiffness = np.array([abs(step.C_alpha) for step in self.last])
+        return np.asarray(stiffness / stiffness.sum())

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.measured import constants
+from mffit.parts.constants import SAME_CAMBER
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,26 +78,20 @@ def slope_at_zero(
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
     """Secant y/x at the angle [rad], interpolated between the neighbours; None beyond the sweep."""
-    order = np.argsort(x)
-    x, y, u = x[order], y[order], u[order]
-    if (
-        not len(x)
-        or angle > x[-1] * (1.0 + constants.SECANT_REACH)
-        or angle < x[0] * (1.0 - constants.SECANT_REACH)
-    ):
+    reach = SAME_CAMBER.rad
+    if not len(x) or not x.min() - reach < angle < x.max() + reach:
         return None
-    nearest = int(np.argmin(np.abs(x - angle)))
-    if abs(x[nearest] - angle) < constants.SECANT_REACH * angle:
-        same = np.abs(x - x[nearest]) < 1e-3
-        return Secant(
-            float(np.mean(y[same] / x[same])),
-            float(np.sqrt(np.sum(u[same] ** 2)) / same.sum() / x[nearest]),
-            angle,
-        )
-    return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
+    nearest = x[np.argmin(np.abs(x - angle))]
+    if abs(nearest - angle) < reach:
+        same = np.abs(x - nearest) < 1e-3
+        u_mean = float(np.linalg.norm(u[same])) / same.sum()
+        return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest), angle)
+    order = np.argsort(x)
+    value, u_value = (float(np.interp(angle, x[order], one[order]) / angle) for one in (y, u))
+    return Secant(value, u_value, angle)
 
 
-def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
+def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:
     """Fit D sin(C atan(b - E (b - atan b))), b = x s / (C D): an odd curve of slope s at zero that saturates at D.
 
     Slope, its standard error from ``u``, and the scatter of the points over ``u``.
@@ -114,7 +109,7 @@ def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
     if curvature:
         shape.add("E", 0.0, min=-6.0, max=1.0)
 
-    def residual(shape):
+    def residual(shape: lmfit.Parameters) -> np.ndarray:
         s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
         b = s * x / (C * D)
         bent = shape["E"].value * (b - np.arctan(b)) if curvature else 0.0
@@ -129,7 +124,7 @@ def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
     return float(found.value * start), float(error * abs(start)), scatter
 
 
-def _cubic(x, y, u) -> tuple[float, float]:
+def _cubic(x: np.ndarray, y: np.ndarray, u: np.ndarray) -> tuple[float, float]:
     A = np.column_stack([x, x**3]) / u[:, None]
     cov = np.linalg.inv(A.T @ A)
     a = cov @ (A.T @ (y / u))

@@ -1,69 +1,164 @@
-"""Cornering and camber stiffness at one load: slopes at zero and secants of the odd part."""
+"""Cornering and camber stiffness of one load, as read off its sweeps in both directions."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import USUAL_U_FORCE, ZERO_CAMBER, ZERO_SIDESLIP
-from mffit.measured import constants, notes
-from mffit.measured.groups import LoadGroup
-from mffit.measured.paths import on_radius
+from mffit.constants import STRAIGHT, UPRIGHT, USUAL_U_FORCE
+from mffit.measured import constants, wording
+from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.slopes import Secant, SlopeAtZero, secant_at, slope_at_zero
-from mffit.measured.sources import named
-from mffit.parts import Parts
-from mffit.points import Points
+from mffit.measured.uncertain import named
+from mffit.measured.zeros import LoadGroup, polynomial, u_of
+from mffit.points import Points, main_path
+
+CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
 
 
-@dataclass(frozen=True, slots=True)
-class Estimates:
-    """The two estimates of a stiffness at one load."""
+class Estimates(NamedTuple):
+    """The two estimates of a stiffness at one load, and the largest angle that its sweep reaches [rad]."""
 
     slope: SlopeAtZero | None
     secant: Secant | None
+    largest: float
 
 
-def cornering(points: Points, parts: Parts, odd_slip, group: LoadGroup, config: Config) -> Estimates:
-    """Cornering stiffness at zero camber."""
-    odd = parts.Fy_odd if config.rig.on_disc else points.Fy
-    slip, local = sweep(points, odd, group, "alpha", config), constants.CUBIC_SIDESLIP.rad
-    return estimates(odd_slip, odd, u_odd(parts), slip, local, local, float(constants.CURVATURE_SPREAD))
+@dataclass(frozen=True, slots=True)
+class LoadSlopes:
+    """The stiffnesses of one load; the rig errors are still in them."""
+
+    C_alpha: UFloat | None  #: at the reading of zero [N/rad]
+    bend: UFloat | None  #: change of the slope with sideslip there [N/rad^2]
+    C_gamma: UFloat | None  #: of the forward sweep by the configured method [N/rad]
+    C_gamma_backward: UFloat | None  #: the same of a backward sweep
+    slope: UFloat | None  #: of the forward sweep at zero [N/rad]
+    secant: UFloat | None  #: of the forward sweep [N/rad]
+
+    @property
+    def exists(self) -> bool:
+        """Whether anything could be estimated."""
+        return not (self.C_alpha is None and self.slope is None and self.secant is None)
 
 
-def chosen_camber_stiffness(
-    config: Config, found: Estimates, largest: float, load: float
-) -> tuple[SlopeAtZero | Secant | None, str | None]:
-    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it.
+def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes, list[str]]:
+    """The stiffnesses, from the odd curves on a disc and from the curves themselves on a straight path; and warnings."""
+    C_alpha = cornering_stiffness(evidence, group)
+    camber, backward = (_camber_estimates(evidence, group, C_alpha, direction) for direction in (1, -1))
+    chosen, trouble = _chosen(evidence.config, camber, group.load)
+    chosen_backward, _ = _chosen(evidence.config, backward, group.load)
+    if evidence.rig is None:
+        chosen_backward = None
+    # Both directions have one shape of curve, so its error drops out of their difference.
+    curved = [x for x in (camber.slope, chosen, chosen_backward) if isinstance(x, SlopeAtZero)]
+    shape = _shape_error(curved, CAMBER)
+    slope, secant = _number(camber.slope, CAMBER, shape), _number(camber.secant, CAMBER)
+    found = LoadSlopes(
+        C_alpha=C_alpha,
+        bend=_bend(evidence, group),
+        C_gamma=slope if chosen is camber.slope else secant,
+        C_gamma_backward=_number(chosen_backward, BACKWARD_CAMBER, shape),
+        slope=slope,
+        secant=secant,
+    )
+    return found, [trouble] if trouble else []
+
+
+def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
+    """Slope of the side force over sideslip at zero [N/rad]; the secant where there are too few angles."""
+    config, local = evidence.config, constants.CUBIC_SIDESLIP.rad
+    i = sweep(evidence.points, evidence.odd_Fy, group, "alpha", config)
+    spread = float(constants.CURVATURE_SPREAD)
+    found = _estimates(evidence, i, evidence.odd_slip, evidence.odd_Fy, local, local, spread)
+    C_alpha = _number(found.slope or found.secant, "cornering stiffness")
+    if C_alpha is None or not config.rig.backlash_deg:
+        return C_alpha
+    return C_alpha * (1.0 + rest_of_play(config) / local)
+
+
+def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
+    """Second derivative of the side force over sideslip at zero, upright and forwards; None with too few angles."""
+    points, reach = evidence.points, constants.CUBIC_SIDESLIP.rad
+    i = on_usual_radius(points, group, evidence.config)
+    i = i[
+        (points.direction[i] == 1)
+        & (np.abs(points.gamma[i]) < UPRIGHT.rad)
+        & (np.abs(points.alpha[i]) <= 1.1 * reach)
+        & np.isfinite(points.Fy[i])
+        & (points.phi_t[i] == main_path(points))
+    ]
+    x = points.alpha[i]
+    if len(np.unique(np.round(x, 3))) < constants.POINTS_FOR_PARABOLA or not x.min() < 0.0 < x.max():
+        return None
+    found, errors = polynomial(x / reach, points.Fy[i], u_of(points, "Fy")[i], 3)
+    scale = 2.0 / reach**2
+    return named(
+        scale * found[2], scale * math.sqrt(errors[2, 2]), "bend of the sideslip curve", "N/rad^2", kind="A"
+    )
+
+
+def _camber_estimates(
+    evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, direction: int
+) -> Estimates:
+    """Slope and secant of the camber sweep in one direction."""
+    config, odd_Fy = evidence.config, evidence.odd_Fy
+    i = sweep(evidence.points, odd_Fy, group, "gamma", config, direction)
+    if C_alpha is not None:  # less the force of the sideslip that backlash leaves in a camber sweep
+        odd_Fy = odd_Fy - direction * C_alpha.nominal_value * evidence.odd_slip
+    local, angle = constants.CUBIC_CAMBER.rad, math.radians(config.camber_stiffness.angle_deg)
+    return _estimates(evidence, i, evidence.points.gamma, odd_Fy, local, angle)
+
+
+def _estimates(
+    evidence: DirectEvidence,
+    index: np.ndarray,
+    angle: np.ndarray,
+    odd: np.ndarray,
+    local: float,
+    at: float,
+    curvature: float = 0.0,
+) -> Estimates:
+    """Slope at zero and secant of an odd curve over an angle (n,) [rad].
 
     Parameters
     ----------
-    config : names the method
-    found : both estimates
-    largest : camber that the sweep reaches [rad]
-    load : [N]
+    evidence : states the uncertainties of the readings
+    index : (m,) of the points to use
+    angle, odd : (n,) angles [rad] and odd part of the side force [N]
+    local : up to where a cubic describes the curve [rad]
+    at : angle of the secant [rad]
+    curvature : prior standard deviation of the curvature of the shape
     """
+    u = evidence.parts.u_Fy_odd
+    u = np.where(np.isfinite(u), u, USUAL_U_FORCE / math.sqrt(2.0))
+    x, y, u = angle[index], odd[index], u[index]
+    slope = slope_at_zero(x, y, u, local=local, curvature=curvature)
+    return Estimates(slope, secant_at(x, y, u, at), float(x.max(initial=0.0)))
+
+
+def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:
+    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
-    slope_possible = found.slope is not None and largest >= constants.SHORTEST_CAMBER_SWEEP.rad
+    slope_possible = found.slope is not None and 2.0 * found.largest >= constants.CUBIC_CAMBER.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
-        return found.secant, notes.slope_not_possible(load, angle)
+        return found.secant, wording.slope_not_possible(load, angle)
     if wanted == "secant" and found.secant is None and found.slope is not None:
-        return found.slope, notes.secant_not_possible(load, angle)
+        return found.slope, wording.secant_not_possible(load, angle)
     return (found.slope if wanted == "slope" else found.secant), None
 
 
-def u_odd(parts: Parts) -> np.ndarray:
-    """Standard uncertainty of the odd side force (n,) [N]."""
-    return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, USUAL_U_FORCE / math.sqrt(2.0))
-
-
 def on_usual_radius(points: Points, group: LoadGroup, config: Config) -> np.ndarray:
-    """Indices of the group's points at the usual radius, on either side of the disc."""
-    return group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
+    """Indices of the group's points at the usual radius, on either side of the disc; all if there are none."""
+    if config.rig.radius is None:
+        return group.index
+    usual = np.isclose(np.abs(points.phi_t[group.index]), 1.0 / config.rig.radius, rtol=1e-6)
+    return group.index[usual] if np.any(usual) else group.index
 
 
 def sweep(
@@ -75,37 +170,13 @@ def sweep(
     """
     i = on_usual_radius(points, group, config)
     i = i[(points.direction[i] == direction) & np.isfinite(odd[i])]
+    alpha, gamma = points.alpha[i], points.gamma[i]
     if angle == "gamma":
-        return i[(np.abs(points.alpha[i]) < ZERO_SIDESLIP.rad) & (points.gamma[i] > ZERO_CAMBER.rad)]
-    return i[
-        (np.abs(points.gamma[i]) < ZERO_CAMBER.rad) & (points.alpha[i] > constants.SMALLEST_SIDESLIP.rad)
-    ]
+        return np.asarray(i[(np.abs(alpha) < STRAIGHT.rad) & (gamma > UPRIGHT.rad)])
+    return np.asarray(i[(np.abs(gamma) < UPRIGHT.rad) & (alpha > STRAIGHT.rad)])
 
 
-def estimates(
-    x: np.ndarray,
-    odd: np.ndarray,
-    u: np.ndarray,
-    index: np.ndarray,
-    local: float,
-    angle: float,
-    curvature: float = 0.0,
-) -> Estimates:
-    """Slope at zero and secant at an angle of an odd curve.
-
-    Parameters
-    ----------
-    x, odd, u : (n,) angles [rad], odd part and its standard uncertainty
-    index : of the points to use
-    local : up to where a cubic describes the curve [rad]
-    angle : of the secant [rad]
-    curvature : prior standard deviation of the curvature of the shape
-    """
-    x, y, u = x[index], odd[index], u[index]
-    return Estimates(slope_at_zero(x, y, u, local=local, curvature=curvature), secant_at(x, y, u, angle))
-
-
-def number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None) -> UFloat | None:
+def _number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None) -> UFloat | None:
     """An estimate as a number with uncertainty [N/rad].
 
     Parameters
@@ -119,13 +190,11 @@ def number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | N
     if isinstance(estimate, Secant):
         return named(estimate.value, estimate.u, source, "N/rad", kind="A")
     noise = named(estimate.value, estimate.u_noise, source, "N/rad", kind="A", dof=estimate.dof)
-    if shape is None:
-        shape = shape_error([estimate], source)
     own = named(0.0, estimate.u_own, f"{source}, shape of the curve", "N/rad")
-    return noise + own + abs(estimate.value) * shape
+    return noise + own + abs(estimate.value) * (shape or _shape_error([estimate], source))
 
 
-def shape_error(estimates: Sequence[SlopeAtZero], source: str) -> UFloat:
+def _shape_error(estimates: Sequence[SlopeAtZero], source: str) -> UFloat:
     """Relative error of slopes at zero due to the shape of the curve, common to curves of one shape."""
     u = max((found.u_shape / abs(found.value) for found in estimates if found.value), default=0.0)
     return named(0.0, u, f"{source}, difference of shapes", "-")

@@ -2,29 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numpy as np
 from uncertainties import UFloat
 
-from mffit.measured import notes
-from mffit.measured.agreed import agreed
-from mffit.measured.at_zero import (
-    PathInSetup,
-    PathZeros,
-    ZeroReadings,
-    refuse_inward,
-    turn_slip_of_path,
-    unlike_zeros,
-    zeros_by_path,
-)
-from mffit.measured.backlash import rest_of_play
-from mffit.measured.camber_reduction import known_quantity
-from mffit.measured.evidence import DirectEvidence
-from mffit.measured.groups import LoadGroup, flipped
-from mffit.measured.load_slopes import LoadSlopes
-from mffit.measured.paths import PathForce, TurnSlipStiffness, least_uncertain_mean, turn_slip_stiffness
-from mffit.measured.slip_stiffness import SlipStiffness, slip_stiffness
+from mffit.config import Config, path_curvature
+from mffit.constants import FALSE_ALARM
+from mffit.errors import InputError
+from mffit.measured import camber_reduction as method
+from mffit.measured import constants, wording
+from mffit.measured.axis import SlipStiffness, slip_stiffness
+from mffit.measured.evidence import DirectEvidence, rest_of_play
+from mffit.measured.stiffnesses import LoadSlopes
+from mffit.measured.uncertain import agreed, combined, quantity
+from mffit.measured.zeros import LoadGroup, PathZeros, flipped, unlike_zeros, zeros_by_path
+from mffit.rig_errors import AtZero
+
+
+class PathForce(NamedTuple):
+    """The turn-slip force of one path in one set-up."""
+
+    sign: float  #: of phi_t
+    R: UFloat  #: path radius [m]
+    force: UFloat  #: corrected (23) [N]
+
+
+class TurnSlipStiffness(NamedTuple):
+    """The turn-slip stiffness and the weight of each path in it."""
+
+    C_phit: UFloat  #: [Nm]
+    weights: np.ndarray  #: (k,), sum 1
+    of_paths: tuple[UFloat, ...]  #: by each path alone [Nm]
+    chance: float  #: probability that paths of one stiffness differ by so much; 1 for one path
+
+    @property
+    def contradictory(self) -> bool:
+        """Whether the paths differ beyond all known uncertainty."""
+        return self.chance < FALSE_ALARM
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +57,9 @@ class Turning:
     alpha_M: UFloat | None  #: sum of misalignment and ply-steer of the first set-up whose one is known [rad]
 
     @property
-    def zeros(self) -> ZeroReadings:
+    def zeros(self) -> PathZeros:
         """The readings on the usual path."""
-        return self.found[0].readings
+        return self.found[0]
 
     @property
     def phi_t(self) -> tuple[float, ...]:
@@ -57,74 +75,114 @@ class Turning:
 def turning(
     evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes
 ) -> tuple[Turning | None, list[str]]:
-    """Turn-slip force and stiffness, and warnings; None without zeros."""
+    """Turn-slip force and stiffness, and warnings; None without zeros.
+
+    Raises
+    ------
+    InputError
+        The force points towards the centre of the disc.
+    """
     config, points, rig = evidence.config, evidence.points, evidence.rig
     assert rig is not None
     found = zeros_by_path(points, group, slopes.C_alpha, config)
     if not found:
         return None, []
-    troubles: list[str] = []
-    for path in found:
-        troubles += unlike_zeros(points, path.group, slopes.C_alpha, config)
+    troubles = [x for path in found for x in unlike_zeros(points, path.group, slopes.C_alpha, config)]
     stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
     angles = {name: axis.at(group.load) for name, axis in evidence.axes.items()}
-    raw = {
-        path.place: turn_slip_of_path(
-            path,
-            stiffness,
-            slopes.C_gamma,
-            rig,
-            config,
-            evidence.excess.get(path.setup),
-            angles.get(path.setup),
-        )
-        for path in found
-    }
-    measured, expected = _conicity(evidence, group, slopes, stiffness, raw)
+    measured, expected = _conicity(evidence, group, slopes.C_alpha, found)
     # Conicity has the same sign on every path.
     floating = abs(stiffness.C_alpha.nominal_value) * rest_of_play(config)
-    paths = tuple(path._replace(force=path.force - expected + floating) for path in raw.values())
-    combined = turn_slip_stiffness(paths)
-    if combined.contradictory:
-        alone = [known_quantity(C, "Nm") for C in combined.of_paths]
-        troubles.append(notes.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
-    force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
+    usual = config.rig.radius
+    assert usual is not None
+    paths = tuple(
+        PathForce(
+            sign=float(np.sign(zero.phi_t)),
+            # The wheel is moved from path to path by known distances, so one error of R is common to all.
+            R=rig.R + (1.0 / abs(zero.phi_t) - usual),
+            force=_force(zero, stiffness, slopes.C_gamma, evidence, angles.get(zero.setup))
+            - expected
+            + floating,
+        )
+        for zero in found
+    )
+    combined_paths = turn_slip_stiffness(paths)
+    if combined_paths.contradictory:
+        alone = [quantity(C, "Nm") for C in combined_paths.of_paths]
+        troubles.append(wording.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
+    force = paths[0].force if len(paths) == 1 else paths[0].sign * combined_paths.C_phit / rig.R
     alpha_M = next((angles[path.setup] for path in found if path.setup in angles), None)
-    made = Turning(tuple(found), paths, combined, force, measured, alpha_M)
-    if combined.C_phit.nominal_value <= 0.0:
-        refuse_inward(force.nominal_value, group.load, made.alpha_M, config)
-    return made, troubles
+    if combined_paths.C_phit.nominal_value <= 0.0:
+        raise _inward(force.nominal_value, group.load, alpha_M, config)
+    return Turning(tuple(found), paths, combined_paths, force, measured, alpha_M), troubles
+
+
+def _force(
+    zero: PathZeros,
+    stiffness: SlipStiffness,
+    C_gamma: UFloat | None,
+    evidence: DirectEvidence,
+    alpha_M: UFloat | None,
+) -> UFloat:
+    """The turn-slip force (23) of one path in one set-up [N].
+
+    Of both directions the mean counts, in which alpha_M drops out; a forward reading alone is corrected for its force, if
+    any load of the set-up was run both ways. The angles are already corrected for the play.
+    """
+    assert evidence.rig is not None
+    at = AtZero(stiffness.C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play)
+    both = zero.backward is not None
+    force = zero.mean(both=both)
+    if alpha_M is not None and not both:
+        force = force - stiffness.force(
+            alpha_M, math.copysign(1.0, zero.phi_t * path_curvature(evidence.config.rig))
+        )
+    errors = evidence.rig.at(zero.setup)
+    force = method.turn_slip_force(force, errors, at, both_directions=both or alpha_M is not None)
+    return force - evidence.excess.get(zero.setup, 0.0)
+
+
+def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
+    """C_phit = F/phi_t (21), the paths weighted for the least uncertainty.
+
+    The zeros are common to the paths of one set-up: a force of the same sign on both sides of the disc, or on two radii,
+    cancels there. Between set-ups they are independent.
+    """
+    single = [path.sign * path.force * path.R for path in paths]
+    spin = np.array([1.0 / path.R.nominal_value**2 for path in paths])
+    of_spin = constants.SPIN_LOSS * np.mean([C.nominal_value for C in single]) * (spin - spin[0])
+    found = combined(single, beside=np.outer(of_spin, of_spin))
+    return TurnSlipStiffness(found.numbers[0], found.weights[0], tuple(single), found.chance)
 
 
 def _conicity(
-    evidence: DirectEvidence,
-    group: LoadGroup,
-    slopes: LoadSlopes,
-    stiffness: SlipStiffness,
-    normal: Mapping[PathInSetup, PathForce],
+    evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, normal: Sequence[PathZeros]
 ) -> tuple[UFloat | None, UFloat]:
     """The conicity force [N] from both mounts, None with one mount only; and the one to correct with.
 
     The tyre turned on its rim has the opposite conicity; everything else keeps its sign.
     """
-    declared = evidence.shared.conicity * (0.0 if evidence.published else group.load)
+    declared = evidence.conicity * (0.0 if evidence.published else group.load)
     turned = flipped(evidence.points, group)
-    if not len(turned.index):
-        return None, declared
+    usual: Mapping[tuple[float, str], PathZeros] = {(path.phi_t, path.setup): path for path in normal}
     halves = []
-    for path in zeros_by_path(evidence.points, turned, slopes.C_alpha, evidence.config):
-        usual = normal.get(path.place)
-        if usual is None:
-            continue
-        assert evidence.rig is not None
-        other = turn_slip_of_path(path, stiffness, slopes.C_gamma, evidence.rig, evidence.config)
-        count = min(len(usual.readings), len(other.readings))
-        halves.append((_mean(usual, count) - _mean(other, count)) / 2.0)
-    if not halves:
-        return None, declared
-    return least_uncertain_mean(halves), agreed(declared, halves)
+    for other in zeros_by_path(evidence.points, turned, C_alpha, evidence.config):
+        own = usual.get((other.phi_t, other.setup))
+        if own is not None:
+            both = own.backward is not None and other.backward is not None
+            halves.append((own.mean(both=both) - other.mean(both=both)) / 2.0)
+    return (combined(halves).numbers[0], agreed(declared, halves)) if halves else (None, declared)
 
 
-def _mean(path: PathForce, count: int) -> UFloat:
-    """Mean of the first readings, forwards and backwards [N]."""
-    return sum(path.readings[:count]) / count
+def _inward(force: float, load: float, alpha_M: UFloat | None, config: Config) -> InputError:
+    """The error about a turn-slip force that points towards the centre of the disc."""
+    if alpha_M is None:
+        cause = "sideslip misaligned by a degree or more (run mffit align with forward and backward zeros), or path_centre wrong"
+    else:
+        cause = "path_centre or axes are wrong, as forward and backward runs agree on it"
+    return InputError(
+        f"the turn-slip force at {load:.0f} N is {force:.0f} N in ISO-W, towards the disc's centre, but turn slip "
+        f"pushes outwards: {cause}",
+        file=config.path,
+        key="rig.path_centre",
+    )

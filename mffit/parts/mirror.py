@@ -7,8 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from mffit.constants import SAME_SIDESLIP
 from mffit.parts import constants
-from mffit.points import Points
+from mffit.points import Points, levels
+
+READ = ("Fy", "Mz", "u_Fy", "u_Mz")
 
 
 class Mirrors(NamedTuple):
@@ -22,17 +25,17 @@ class Mirrors(NamedTuple):
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
 
 
-def same_condition(points: Points, i: int) -> np.ndarray:
-    """Mask (n,) of the points run at the load, pressure, speed, direction, mount, path and set-up of point i."""
-    return (
-        (np.abs(points.Fz - points.Fz[i]) < constants.SAME_LOAD * points.Fz[i])
-        & (np.abs(points.p - points.p[i]) < constants.SAME_PRESSURE * 1e3)
-        & (np.abs(points.V - points.V[i]) <= constants.SAME_SPEED * points.V[i])
-        & (points.direction == points.direction[i])
-        & (points.mount == points.mount[i])
-        & np.isclose(points.phi_t, points.phi_t[i])
-        & (points.setup == points.setup[i])
-        & (np.abs(points.kappa - points.kappa[i]) < constants.SAME_SLIP)
+def conditions(points: Points) -> list[np.ndarray]:
+    """Rows (m,) of the points run at one level of load, pressure, speed and slip, on one path, in one set-up, mount and way."""
+    settings = {
+        levels.LOAD: points.Fz,
+        levels.PRESSURE: points.p,
+        levels.SPEED: points.V,
+        levels.SLIP: points.kappa,
+    }
+    keys = [levels.nearest_labels(values, kind) for kind, values in settings.items()]
+    return levels.rows_of_equal(
+        np.column_stack([*keys, points.phi_t, points.setup, points.mount, points.direction])
     )
 
 
@@ -46,42 +49,39 @@ def find_mirrors(points: Points) -> Mirrors:
     n = len(points)
     partner = np.full(n, -1)
     paired = np.full(n, "unpaired", dtype="<U12")
-    values = {name: np.full(n, np.nan) for name in ("Fy", "Mz", "u_Fy", "u_Mz")}
-    alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
-    for i in range(n) if np.any(points.phi_t) else ():
-        same = same_condition(points, i)
-        d_alpha, d_gamma = np.abs(alpha + alpha[i]), np.abs(gamma + gamma[i])
-        close = same & (d_alpha < constants.SAME_SIDESLIP) & (d_gamma < constants.SAME_CAMBER)
-        if np.any(close):
-            distance = d_alpha + d_gamma + constants.OTHER_SWEEP_DISTANCE * (points.sweep != points.sweep[i])
-            j = int(np.argmin(np.where(close, distance, np.inf)))
-            partner[i], paired[i] = j, "exact"
-            for name, found in values.items():
-                found[i] = getattr(points, name)[j]
-            continue
-        line = same & (d_gamma < constants.SAME_CAMBER)
-        found_values = _interpolated(points, line, alpha, -alpha[i])
-        if found_values is None:
-            line = same & (d_alpha < constants.SAME_SIDESLIP)
-            found_values = _interpolated(points, line, gamma, -gamma[i])
-        if found_values is not None:
-            paired[i] = "interpolated"
-            for name, found in values.items():
-                found[i] = found_values[name]
-    return Mirrors(partner, values["Fy"], values["Mz"], values["u_Fy"], values["u_Mz"], paired)
+    found = {name: np.full(n, np.nan) for name in READ}
+    angles = np.degrees(np.column_stack([points.alpha, points.gamma]))
+    tolerance = np.array([SAME_SIDESLIP, constants.SAME_CAMBER])
+    for rows in conditions(points) if np.any(points.phi_t) else ():
+        for i in rows.tolist():
+            off = np.abs(angles[rows] + angles[i])
+            near = off < tolerance
+            close = rows[np.all(near, axis=1)]
+            values: dict[str, float] | None
+            if len(close):
+                other = points.sweep[close] != points.sweep[i]
+                j = int(close[np.lexsort((np.sum(off[np.all(near, axis=1)], axis=1), other))[0]])
+                partner[i], paired[i] = j, "exact"
+                values = {name: float(getattr(points, name)[j]) for name in READ}
+            else:
+                along = (
+                    _interpolated(points, rows[near[:, 1 - k]], angles[:, k], -angles[i, k]) for k in (0, 1)
+                )
+                values = next((line for line in along if line is not None), None)
+                paired[i] = "unpaired" if values is None else "interpolated"
+            for name, value in (values or {}).items():
+                found[name][i] = value
+    return Mirrors(partner=partner, paired=paired, **found)
 
 
-def _interpolated(points: Points, line: np.ndarray, x: np.ndarray, at: float) -> dict[str, float] | None:
-    """Readings at ``at``, interpolated along the points of ``line``; None outside their range or with too few of them."""
-    index = np.flatnonzero(line)
-    angles = np.unique(np.round(x[index], 3))
+def _interpolated(points: Points, index: np.ndarray, angle: np.ndarray, at: float) -> dict[str, float] | None:
+    """Readings at ``at`` [deg], interpolated along some points; None outside their range or with too few angles."""
+    angles, own = np.unique(np.round(angle[index], 3), return_inverse=True)
     if len(angles) < constants.FEWEST_ANGLES_TO_INTERPOLATE or not angles[0] <= at <= angles[-1]:
         return None
-    groups = [index[np.abs(x[index] - angle) < constants.REPEATED_ANGLE] for angle in angles]
     out = {}
     for name in ("Fy", "Mz"):
-        means = np.array([np.mean(getattr(points, name)[g]) for g in groups])
+        means = np.bincount(own, getattr(points, name)[index]) / np.bincount(own)
         out[name] = float(PchipInterpolator(angles, means)(at)) if np.all(np.isfinite(means)) else np.nan
-    nearest = groups[int(np.argmin(np.abs(angles - at)))][0]
-    out["u_Fy"], out["u_Mz"] = float(points.u_Fy[nearest]), float(points.u_Mz[nearest])
-    return out
+    nearest = index[own == np.argmin(np.abs(angles - at))][0]
+    return out | {"u_Fy": float(points.u_Fy[nearest]), "u_Mz": float(points.u_Mz[nearest])}

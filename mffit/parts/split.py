@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.parts import constants
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.parts.mirror import find_mirrors
 from mffit.points import Points
 
@@ -75,7 +75,7 @@ def split(points: Points) -> Parts:
 
 def _sentences(points: Points, unpaired: np.ndarray) -> tuple[str, ...]:
     """A sentence per sweep about the points of the mask (n,)."""
-    out, most = [], constants.UNPAIRED_IN_SENTENCE
+    out, most = [], NAMED_IN_SENTENCE
     for k in np.unique(points.sweep[unpaired]):
         rows = np.flatnonzero(unpaired & (points.sweep == k))
         shown = ", ".join(

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from mffit.diagnosis.needs import missing
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
-from mffit.measured import Measured
-from mffit.measured.both_directions import adding_to_camber
+from mffit.measured import Measured, adding_to_camber
 from mffit.planning.knowledge import Knowledge
 from mffit.planning.record import Identified, Tie
 from mffit.points import Points

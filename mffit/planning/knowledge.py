@@ -17,9 +17,7 @@ from mffit.fit.posterior import beside_held
 from mffit.fit.priors import scatter
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.least_squares import inverse
-from mffit.measured import Measured
-from mffit.measured.radii import measured_path_radius
-from mffit.measured.zero_split import alignment_verdict
+from mffit.measured import Measured, alignment_verdict, measured_path_radius
 from mffit.planning.runs import PlannedRun, candidates, new_setups
 from mffit.points import Points
 from mffit.points.points import concatenate

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Config, RollingRadiusTable, SweepTable, setup_names
+from mffit.measured import measured_path_radius
 from mffit.measured.constants import CUBIC_CAMBER
-from mffit.measured.radii import measured_path_radius
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from mffit.constants import STRAIGHT
 from mffit.points import constants
 from mffit.points.mean import errors_of_means
 from mffit.points.points import Points, make_points
@@ -21,9 +22,9 @@ AVERAGED_CHANNELS = (
 )
 
 AVERAGED_RANGE = {
-    "alpha": constants.AVERAGED_ANGLE.rad,
-    "gamma": constants.AVERAGED_ANGLE.rad,
-    "kappa": float(constants.AVERAGED_SLIP),
+    "alpha": STRAIGHT.rad,
+    "gamma": STRAIGHT.rad,
+    "kappa": float(constants.SLIP),
 }
 """Largest change of each swept setting over which a sweep is averaged."""
 
@@ -81,7 +82,7 @@ def along_sweeps(
     for k, stretch in enumerate(stretches):
         rows = sound_rows(stretch, faulty)
         first, size = _blocks(sweep, rows)
-        enough = np.diff(np.r_[first, len(rows)]) >= constants.FILLED_BLOCK * size
+        enough = 2 * np.diff(np.r_[first, len(rows)]) >= size  # most of its samples
         whole.append(rows)
         begins.append(np.column_stack([first + count, enough]))
         numbers.append(np.full(len(first), k))
@@ -93,7 +94,7 @@ def along_sweeps(
     def mean(values: np.ndarray) -> np.ndarray:
         if values.strides == (0,):  # not measured, or one value for all samples
             return np.broadcast_to(values[:1], (int(enough.sum()),))
-        return (np.add.reduceat(values[rows], first) / counts)[enough]
+        return np.asarray((np.add.reduceat(values[rows], first) / counts)[enough])
 
     means = {name: mean(getattr(sweep, name)) for name in AVERAGED_CHANNELS}
     table = pd.DataFrame(

@@ -1,14 +1,18 @@
-"""Which stretches of a recording give points, and why the others do not."""
+"""Which stretches of a recording give points: without their transients, at rest, warm, under a held load; why others do not."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from mffit.constants import FALSE_ALARM
 from mffit.points import constants
 from mffit.points.faulty import Fault
-from mffit.points.settling import settled
+from mffit.points.mean import mean_and_error
 from mffit.points.steady import Scale, SteadySettings, stretches
 from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
+from mffit.scatter import beyond
 from mffit.sweeps import Sweep
 
 ROLLING_IN = f"the first {constants.TRANSIENT_ROLL:g} m of rolling behind a gap or a change"
@@ -64,9 +68,10 @@ def _merged(found: list[Stretch]) -> list[Stretch]:
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
     """The stretches without their transients, or with the reason why they are dropped."""
     settings = settings_of(sweep)
-    responses = [(sweep.Fy, constants.HARMLESS_DRIFT_OF_FORCE * float(np.nanmedian(sweep.Fz)), "N")]
+    harmless = constants.HARMLESS_DRIFT * float(np.nanmedian(sweep.Fz))
+    responses = [(sweep.Fy, harmless, "N")]
     if np.all(np.isfinite(sweep.Mz)):
-        responses.append((sweep.Mz, constants.HARMLESS_DRIFT_OF_MOMENT * float(np.nanmedian(sweep.Fz)), "Nm"))
+        responses.append((sweep.Mz, constants.ARM * harmless, "Nm"))
     tried = []
     for stretch in found:
         if stretch.dropped or stretch.kind == MOVE:
@@ -81,29 +86,91 @@ def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
     return _without_cold(sweep, tried)
 
 
+def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
+    """First sample of a stretch after the first metres behind a gap or a change; a recording begins settled."""
+    if begin == 0:
+        return 0
+    speed = float(np.median(settings.V[begin:end]))
+    seconds = constants.TRANSIENT_ROLL / speed if speed > 0.0 else np.inf  # nothing settles at standstill
+    return int(np.searchsorted(settings.time, settings.time[begin] + seconds))
+
+
 def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
     """A sweep without the first metres behind a gap or a change; dropped if its load is not held."""
     begin, end = stretch.begin, stretch.end
-    if begin > 0:
-        speed = max(float(np.median(sweep.V[begin:end])), constants.SLOWEST_ROLLING)
-        settled_at = sweep.time[begin] + constants.TRANSIENT_ROLL / speed
-        begin = min(int(np.searchsorted(sweep.time, settled_at)), end - 1)
-    low, middle, high = np.nanpercentile(sweep.Fz[begin:end], [5, 50, 95])
-    if high - low > constants.WANDERING_LOAD * middle:
+    low, middle, high = np.nanpercentile(sweep.Fz[begin:end], [constants.CORE[0], 50.0, constants.CORE[1]])
+    if high - low > constants.HELD_LOAD * middle:
         return stretch._replace(dropped=f"the load wanders from {low:.0f} to {high:.0f} N")
-    return stretch._replace(begin=begin)
+    return stretch._replace(begin=min(_rolled_from(begin, settings_of(sweep), end), end - 1))
 
 
 def _without_cold(sweep: Sweep, tried: list[Stretch]) -> list[Stretch]:
     """The stretches, with the first sweeps dropped while the tread is much colder than later."""
     swept = [k for k, s in enumerate(tried) if s.kind == SWEEP and not s.dropped]
-    if len(swept) <= constants.FEWEST_WARM_SWEEPS or sweep.T.strides == (0,):
+    if len(swept) <= constants.FEWEST_SWEEPS or sweep.T.strides == (0,):
         return tried
     heat = [float(np.nanmedian(sweep.T[tried[k].begin : tried[k].end])) for k in swept]
     usual = float(np.median(heat))
     out = list(tried)
-    for k, T in list(zip(swept, heat, strict=True))[: -constants.FEWEST_WARM_SWEEPS]:
+    for k, T in list(zip(swept, heat, strict=True))[: -constants.FEWEST_SWEEPS]:
         if not usual - T > constants.COLD_TREAD:
             break
         out[k] = tried[k]._replace(dropped=f"the tread is cold: {T:.0f} degC, later {usual:.0f}")
     return out
+
+
+def settled(
+    stretch: Stretch, settings: SteadySettings, responses: Sequence[tuple[np.ndarray, float, str]]
+) -> Stretch:
+    """The stretch without its transient, or with the reason why it gives no point.
+
+    ``responses`` has, for each measured force or moment, the samples (n,), the harmless drift over a stretch, and its unit.
+    """
+    time, begin = settings.time, _rolled_from(stretch.begin, settings, stretch.end)
+    short = _too_short(time, begin, stretch.end)
+    if short:
+        return stretch._replace(dropped=short)
+    begin = max(begin + _transient(x[begin : stretch.end]) for x, _, _ in responses)
+    short = _too_short(time, begin, stretch.end)
+    if short:
+        return stretch._replace(dropped=short)
+    clear = beyond(FALSE_ALARM / len(time))
+    for x, harmless, unit in responses:
+        drift, error = _drift(x[begin : stretch.end])
+        if abs(drift) > max(clear * error, harmless):
+            return stretch._replace(dropped=f"still drifting by {drift:.3g} {unit}")
+    return Stretch(begin, stretch.end)
+
+
+def _too_short(time: np.ndarray, begin: int, end: int) -> str:
+    if end - begin < constants.FEWEST_POINTS:
+        return f"only {max(end - begin, 0)} samples after the transient"
+    seconds = time[end - 1] - time[begin]
+    return f"only {seconds:.1f} s steady" if seconds < constants.SHORTEST_STRETCH else ""
+
+
+def _transient(x: np.ndarray) -> int:
+    """Number of leading samples that differ from the mean of the second half; at most half of all samples."""
+    blocks = min(constants.BLOCKS_OF_STRETCH, len(x))
+    half = blocks // 2
+    edges = np.linspace(0, len(x), blocks + 1).astype(int)
+    level, error = mean_and_error(x[edges[half] :])
+    error *= np.sqrt(blocks / 2.0 + 1.0)  # of the difference between one block and the second half
+    clear = beyond(FALSE_ALARM / half) if half else 0.0
+    for block in range(half):
+        away = abs(float(np.mean(x[edges[block] : edges[block + 1]])) - level)
+        if not away > clear * error:
+            return int(edges[block])
+    return int(edges[half])
+
+
+def _drift(x: np.ndarray) -> tuple[float, float]:
+    """Change over the record along a straight line, and its standard error.
+
+    The residuals of the line have the noise of a steady record. The standard error of the change over equidistant
+    samples is sqrt(12) times that of their mean.
+    """
+    time = np.linspace(-0.5, 0.5, len(x))
+    change = float(np.dot(time, x) / np.dot(time, time))
+    _, error = mean_and_error(x - change * time)
+    return change, float(np.sqrt(12.0)) * error

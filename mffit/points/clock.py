@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.points import constants
 from mffit.sweeps import Sweep
+from mffit.sweeps.constants import RARE_SAMPLES
 
 
 def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
@@ -20,7 +20,7 @@ def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
     if not sweep.is_series or len(sweep) < 2:
         return sweep, ()
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if len(repeated) <= constants.MOST_REPEATED_SAMPLES * len(sweep):
+    if len(repeated) <= RARE_SAMPLES * len(sweep):
         return sweep, ()
     time = spread(sweep.time)
     if time is sweep.time:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import groupby
@@ -10,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import median_filter
 
+from mffit.constants import FALSE_ALARM
 from mffit.points import constants
 from mffit.points.stretch import runs
 from mffit.scatter import robust
@@ -44,16 +46,19 @@ class FaultRule:
 
 def driven(sweep: Sweep) -> np.ndarray:
     """Samples or points (n,) at which the wheel does not roll freely and no longitudinal force was measured."""
-    return (np.abs(sweep.kappa) > constants.FREE_ROLLING_SLIP) & ~np.isfinite(sweep.Fx)
+    return np.asarray((np.abs(sweep.kappa) > constants.SLIP) & ~np.isfinite(sweep.Fx))
 
 
 def faults(sweep: Sweep) -> list[Fault]:
-    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel."""
+    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel.
+
+    A sensor that was not measured, or has one value for all samples, is not looked at.
+    """
     found = []
     for channels, rules in groupby(FAULTS, key=lambda rule: rule.channels):
         same = list(rules)
         for channel in channels:
-            for rule in same:
+            for rule in same if channels is not SENSORS or _measured(getattr(sweep, channel)) else ():
                 reason = rule.reason.format(channel=channel)
                 found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch, rule.id))
     return [fault for fault in found if np.any(fault.which)]
@@ -64,45 +69,31 @@ def _slip_missing(sweep: Sweep) -> np.ndarray:
     if "kappa" not in sweep.table:
         return np.zeros(len(sweep), dtype=bool)
     missing = ~np.isfinite(sweep.table["kappa"].to_numpy(dtype=float))
-    return missing & ~np.all(missing)
+    return np.asarray(missing & ~np.all(missing))
 
 
 def _usual_load(sweep: Sweep) -> float:
     return float(np.nanmedian(np.abs(sweep.Fz))) if np.any(np.isfinite(sweep.Fz)) else 0.0
 
 
-def _unloaded(sweep: Sweep, _: str) -> np.ndarray:
-    return sweep.Fz < constants.UNLOADED * _usual_load(sweep)
-
-
 def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
     """Samples far from the median of their neighbours."""
     values = getattr(sweep, channel)
-    if not _measured(values):
-        return np.zeros(len(sweep), dtype=bool)
-    smallest = constants.SPIKE_OF_MOMENT if channel == "Mz" else constants.SPIKE_OF_FORCE
+    smallest = constants.SPIKE * _usual_load(sweep) * (constants.ARM if channel == "Mz" else 1.0)
     away = np.abs(values - median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
-    finite = away[np.isfinite(away)]
-    if not len(finite):
-        return np.zeros(len(sweep), dtype=bool)
-    noise = robust(finite[:: max(len(finite) // constants.MOST_SAMPLES_FOR_NOISE, 1)])
-    return away > max(constants.SPIKE_OVER_NOISE * noise, smallest * _usual_load(sweep))
+    return np.asarray(away > np.fmax(constants.FAR_FROM_NOISE * robust(away), smallest))
 
 
 def _clipped(sweep: Sweep, channel: str) -> np.ndarray:
     """Runs of samples at the end of the channel's range."""
     values = getattr(sweep, channel)
-    if not _measured(values) or not _lively(values, ~_at_end(values)):
-        return np.zeros(len(sweep), dtype=bool)
-    return _long_runs(_at_end(values), constants.CLIPPED_SAMPLES)
+    return _long_runs(_at_end(values), _longest_by_chance(values, ~_at_end(values)) + 1)
 
 
 def _stuck(sweep: Sweep, channel: str) -> np.ndarray:
     """Runs of one value within the channel's range."""
     values = getattr(sweep, channel)
-    if not _measured(values) or not _lively(values, ~_at_end(values)):
-        return np.zeros(len(sweep), dtype=bool)
-    return _still(sweep, values) & ~_clipped(sweep, channel)
+    return np.asarray(_still(sweep, values, ~_at_end(values)) & ~_clipped(sweep, channel))
 
 
 def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
@@ -111,11 +102,9 @@ def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
     An axis that holds a set-point may rest to the last digit; the side force does not move then.
     """
     out = np.zeros(len(sweep), dtype=bool)
-    values = getattr(sweep, channel)
-    if _lively(values, np.ones(len(sweep), dtype=bool)):
-        noise = robust(np.diff(sweep.Fy)) / np.sqrt(2.0)
-        for begin, end in runs(_still(sweep, values)):
-            out[begin:end] = np.ptp(sweep.Fy[begin:end]) > constants.MOVED_FORCE * noise
+    noise = robust(np.diff(sweep.Fy)) / np.sqrt(2.0)
+    for begin, end in runs(_still(sweep, getattr(sweep, channel), ~out)):
+        out[begin:end] = np.ptp(sweep.Fy[begin:end]) > constants.FAR_FROM_NOISE * noise
     return out
 
 
@@ -125,30 +114,35 @@ def _measured(values: np.ndarray) -> bool:
 
 
 def _at_end(values: np.ndarray) -> np.ndarray:
-    return (values == np.nanmax(values)) | (values == np.nanmin(values))
+    return np.asarray((values == np.nanmax(values)) | (values == np.nanmin(values)))
 
 
-def _lively(values: np.ndarray, some: np.ndarray) -> bool:
-    """Whether nearly every sample among ``some`` (n,) differs from the one before, as those of a sensor do."""
+def _longest_by_chance(values: np.ndarray, some: np.ndarray) -> int:
+    """Samples that repeat the one before, in a row, as chance may let them.
+
+    Of a resolution so coarse that a share p of the samples among ``some`` (n,) repeats, a run of k begins anywhere with the
+    chance n p^k. A channel that repeats more often than not holds set-points; any run may be one.
+    """
     steps = np.diff(values)[some[1:] & some[:-1]]
-    return bool(len(steps)) and float(np.mean(steps != 0.0)) >= constants.LIVELY_SHARE
+    repeats = (np.sum(steps == 0.0) + 1.0) / (len(steps) + 2.0)
+    if repeats >= 0.5:
+        return len(values)
+    return math.ceil(math.log(FALSE_ALARM / max(len(values), 1)) / math.log(repeats))
 
 
-def _still(sweep: Sweep, values: np.ndarray) -> np.ndarray:
-    """Samples (n,) in long runs of one value to the last digit."""
+def _still(sweep: Sweep, values: np.ndarray, some: np.ndarray) -> np.ndarray:
+    """Samples (n,) in runs of one value to the last digit that are longer than chance and a moment."""
     rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
-    shortest = max(constants.FEWEST_STUCK_SAMPLES, round(constants.STUCK_TIME * rate)) - 1
+    shortest = max(_longest_by_chance(values, some), round(constants.STUCK_TIME * rate) - 1)
     return _long_runs(np.r_[False, np.diff(values) == 0.0], shortest)
 
 
 def _long_runs(mask: np.ndarray, shortest: int) -> np.ndarray:
     """The samples (n,) of a mask in runs of at least ``shortest``."""
-    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
-    long = edges[1::2] - edges[::2] >= shortest
-    out = np.zeros(len(mask) + 1, dtype=np.int32)
-    out[edges[::2][long]] = 1
-    out[edges[1::2][long]] = -1
-    return np.cumsum(out)[:-1] > 0
+    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8))).reshape(-1, 2)
+    changes = np.zeros(len(mask) + 1, dtype=np.int32)
+    changes[edges[edges[:, 1] - edges[:, 0] >= shortest]] = 1, -1
+    return np.asarray(np.cumsum(changes)[:-1] > 0)
 
 
 FAULTS = (
@@ -171,19 +165,19 @@ FAULTS = (
         looks_at="Load over the usual load of the recording",
         limits=(constants.UNLOADED,),
         reason="no load on the tyre",
-        find=_unloaded,
+        find=lambda sweep, _: np.asarray(sweep.Fz < constants.UNLOADED * _usual_load(sweep)),
     ),
     FaultRule(
         id=DRIVEN_RULE,
         looks_at="Longitudinal slip, where Fx was not measured",
-        limits=(constants.FREE_ROLLING_SLIP,),
+        limits=(constants.SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),
     ),
     FaultRule(
         id="spike",
         looks_at="Distance of a reading from the median of its neighbours",
-        limits=(constants.SPIKE_OVER_NOISE, constants.SPIKE_OF_FORCE, constants.SPIKE_OF_MOMENT),
+        limits=(constants.FAR_FROM_NOISE, constants.SPIKE, constants.ARM),
         reason="spikes of {channel}",
         channels=SENSORS,
         ends_stretch=False,
@@ -191,16 +185,16 @@ FAULTS = (
     ),
     FaultRule(
         id="clipped-channel",
-        looks_at="Readings in a row at the end of the channel's range",
-        limits=(constants.CLIPPED_SAMPLES, constants.LIVELY_SHARE),
+        looks_at="Readings in a row at the end of the channel's range, against the chance of them",
+        limits=(FALSE_ALARM,),
         reason="{channel} clipped",
         channels=SENSORS,
         find=_clipped,
     ),
     FaultRule(
         id="stuck-channel",
-        looks_at="Readings in a row of one value, of a channel that changes otherwise",
-        limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.LIVELY_SHARE),
+        looks_at="Readings in a row of one value, against the chance of them",
+        limits=(constants.STUCK_TIME, FALSE_ALARM),
         reason="{channel} stuck",
         channels=SENSORS,
         find=_stuck,
@@ -208,7 +202,7 @@ FAULTS = (
     FaultRule(
         id="stuck-angle",
         looks_at="Sideslip readings in a row of one value while the side force moves",
-        limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.MOVED_FORCE),
+        limits=(constants.STUCK_TIME, FALSE_ALARM, constants.FAR_FROM_NOISE),
         reason="{channel} stuck while Fy moves",
         channels=("alpha",),
         find=_stuck_while_moving,

@@ -7,6 +7,7 @@ proportion to the force. So the shift is read at zero side force only.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -49,12 +50,12 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     Lag
         ``UNKNOWN`` if the sweep does not go through zero force both ways.
     """
-    if len(alpha) < 4 * constants.FEWEST_POINTS_AT_ZERO:
+    if len(alpha) < 4 * constants.FEWEST_POINTS:
         return UNKNOWN
     rate = np.gradient(uniform_filter1d(alpha, max(smooth, 1), mode="nearest"), s)
     usual = float(np.median(np.abs(rate)))
     ways = [np.sign(rate) == way for way in (1.0, -1.0)]
-    near = np.abs(Fy) < constants.FORCE_NEAR_ZERO * np.max(np.abs(Fy))
+    near = np.abs(Fy) < constants.NEAR_ZERO * np.max(np.abs(Fy))
     even = np.abs(np.abs(rate) - usual) < constants.EVEN_RATE * usual
     crossings = [_crossing(Fy[way & near & even], alpha[way & near & even]) for way in ways]
     if usual == 0.0 or not all(np.isfinite(crossing.alpha) for crossing in crossings):
@@ -64,7 +65,7 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     one_line = 0.5 * (up.of_one_line - down.of_one_line) / usual
     # The difference of the two ways with the lag taken off the angle.
     moved = alpha - lag * rate
-    edges = np.linspace(moved.min(), moved.max(), constants.BINS_OF_HYSTERESIS + 1)
+    edges = np.linspace(moved.min(), moved.max(), round(math.sqrt(len(alpha))) + 1)
     means = [_binned(moved[way], Fy[way], edges) for way in ways]
     difference = means[0] - means[1]
     known = np.isfinite(difference)
@@ -92,16 +93,15 @@ def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> Crossing:
 
     A way that begins cold and ends hot is steeper on one side of zero; a single line would show that as a shift.
     """
-    if len(Fy) < constants.FEWEST_POINTS_AT_ZERO or Fy.min() > 0.0 or Fy.max() < 0.0:
+    if len(Fy) < constants.FEWEST_POINTS or Fy.min() > 0.0 or Fy.max() < 0.0:
         return Crossing(np.nan, np.nan, np.nan)
     x = Fy / np.max(np.abs(Fy))
     design = np.column_stack([np.ones(len(Fy)), x.clip(min=0.0), x.clip(max=0.0)])
-    found, *_ = np.linalg.lstsq(design, alpha, rcond=None)
-    residual = alpha - design @ found
-    normal = design.T @ design
-    if np.linalg.cond(normal) > constants.WORST_CONDITION_AT_ZERO:
+    found, _, rank, _ = np.linalg.lstsq(design, alpha, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
+    if rank < 3:  # one side of zero is missing
         return Crossing(np.nan, np.nan, np.nan)
-    variance = float(residual @ residual) / (len(Fy) - 3)
+    residual = alpha - design @ found
+    variance, normal = float(residual @ residual) / (len(Fy) - 3), design.T @ design
     straight = float(np.polynomial.polynomial.polyfit(x, alpha, 1)[0])
     return Crossing(float(found[0]), float(np.sqrt(variance * np.linalg.inv(normal)[0, 0])), straight)
 
@@ -116,7 +116,7 @@ def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 def rolled_distance(time: np.ndarray, V: np.ndarray) -> np.ndarray:
     """Distance (n,) rolled since the first sample [m], at speeds ``V`` (n,)."""
-    return np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
+    return np.asarray(np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))])
 
 
 def common(lags: Sequence[Lag]) -> tuple[float, float]:
@@ -129,7 +129,7 @@ def common(lags: Sequence[Lag]) -> tuple[float, float]:
         return np.nan, np.nan
     known = np.array([found.lag for found in sweeps])
     shape = float(np.median([found.u_shape for found in sweeps]))
-    if len(sweeps) < constants.FEWEST_SWEEPS_OF_LAG:
+    if len(sweeps) < constants.FEWEST_SWEEPS:
         own = float(np.hypot.reduce([found.u for found in sweeps])) / len(sweeps)
         return float(np.mean(known)), float(np.hypot(own, shape))
     middle = float(np.median(known))

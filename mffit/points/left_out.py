@@ -87,15 +87,11 @@ def of_recording(
     """
     rest = ~used
     out: list[LeftOut] = []
-    for which, rule, why in (*_faults(wrong), *_dropped(len(sweep), tried)):
+    faults = ((fault.which, fault.rule, fault.reason) for fault in wrong)
+    for which, rule, why in (*faults, *_dropped(len(sweep), tried)):
         out += by_rule(sweep, which & rest, rule, why)
         rest = rest & ~which
     return (*out, *by_rule(sweep, rest, "steady-state", UNUSED))
-
-
-def _faults(wrong: Sequence[Fault]) -> Iterator[tuple[np.ndarray, str, str]]:
-    for fault in wrong:
-        yield fault.which, fault.rule, fault.reason
 
 
 def _dropped(n: int, tried: Sequence[Stretch]) -> Iterator[tuple[np.ndarray, str, str]]:

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr
 
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.points import constants
 from mffit.points.points import Points
 
@@ -21,21 +23,23 @@ class LevelKind:
     """A setting of a test plan, and how near two values of it are the same level."""
 
     name: str
-    tolerance: float  #: values further apart than this may be two levels
+    tolerance: float  #: three standard deviations of a rig; values further apart may be two levels
     relative: bool = False  #: the tolerance is a share of the value, which is positive
 
 
-LOAD = LevelKind("load", constants.LOAD_LEVEL_TOLERANCE, relative=True)  # [N]
-CAMBER = LevelKind("camber", constants.CAMBER_LEVEL_TOLERANCE.rad)  # [rad]
-PRESSURE = LevelKind("pressure", constants.PRESSURE_LEVEL_TOLERANCE)  # [Pa]
-SPEED = LevelKind("speed", constants.SPEED_LEVEL_TOLERANCE, relative=True)  # [m/s]
-SIDESLIP = LevelKind("sideslip", constants.SIDESLIP_LEVEL_TOLERANCE.rad)  # [rad]
-SLIP = LevelKind("longitudinal slip", constants.SLIP_LEVEL_TOLERANCE)  # [-]
+LOAD = LevelKind("load", constants.CONDITION, relative=True)  # [N]
+CAMBER = LevelKind("camber", UPRIGHT.rad)  # [rad]
+PRESSURE = LevelKind("pressure", constants.PRESSURE)  # [Pa]
+SPEED = LevelKind("speed", constants.CONDITION, relative=True)  # [m/s]
+SIDESLIP = LevelKind("sideslip", STRAIGHT.rad)  # [rad]
+SLIP = LevelKind("longitudinal slip", constants.SLIP)  # [-]
 KINDS = {kind.name: kind for kind in (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP, SLIP)}
 """By the word of the quantity in :mod:`mffit.quantities`."""
 
 NO_LEVEL = -1
 """Label of a value that belongs to no level."""
+SCATTER = 1.0 / 3.0
+"""Standard deviation of a held setting, in tolerances."""
 
 
 def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
@@ -88,15 +92,11 @@ def labels_of_setting(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) ->
 
 
 def _is_held(scaled: np.ndarray) -> bool:
-    """Whether rising values (n,) in tolerances wander about one value, instead of stepping from one to another."""
-    if scaled[-1] - scaled[0] < constants.HELD_SPAN:
-        return True
-    low, high = np.percentile(scaled, constants.PERCENTILES_OF_HELD)
-    if high - low < constants.HELD_SPAN:
-        return True
+    """Whether rising values (n,) in tolerances wander about one value: no two levels are in them, and none is far off."""
+    low, high = np.percentile(scaled, constants.CORE)
     inside = scaled[(scaled >= low) & (scaled <= high)]
-    steady = len(inside) > 1 and bool(np.diff(inside).max() < constants.GAP_OF_A_STEP)
-    return steady and bool(high - low < constants.LONGEST_HELD_SPAN)
+    wanders = bool(np.diff(inside).max(initial=0.0) < 1.0)
+    return wanders and bool(high - low < constants.HELD_LOAD / constants.CONDITION)
 
 
 def median_of_labels(values: np.ndarray, found: np.ndarray) -> np.ndarray:
@@ -127,7 +127,7 @@ def spread(values: np.ndarray, kind: LevelKind) -> bool:
     if len(centres) < 2:
         return False
     away = np.abs(scaled - _at(centres, _nearest(scaled, centres)))
-    return bool(np.mean(away[np.isfinite(away)] > constants.HELD_DISTANCE) > constants.MOST_AWAY_FROM_LEVELS)
+    return bool(np.mean(away[np.isfinite(away)] > SCATTER) > 2.0 * ndtr(-1.0))
 
 
 def rows_of_equal(keys: np.ndarray) -> list[np.ndarray]:
@@ -157,7 +157,7 @@ def main_pressure(points: Points) -> np.ndarray:
     means = [float(np.mean(points.p[level == k])) for k in range(len(sizes))]
     middle = float(np.median(points.p))
     best = max(range(len(sizes)), key=lambda k: (sizes[k], -abs(means[k] - middle)))
-    return level == best
+    return np.asarray(level == best)
 
 
 def main_path(points: Points) -> float:
@@ -189,8 +189,8 @@ def _centres(scaled: np.ndarray) -> np.ndarray:
             places.append(place)
             sizes.append(int(about.counts.sum()))
         left = left.part(np.abs(left.values - place) >= 1.0)
-    # A third of the square root is below the scatter of a count: among few values a single one may be a level.
-    fewest = max(np.sqrt(max(sizes)) / 3.0, constants.SMALLEST_LEVEL * max(sizes))
+    # Below the scatter of a count: among few values a single one may be a level.
+    fewest = max(np.sqrt(max(sizes)) * SCATTER, constants.SMALLEST_LEVEL * max(sizes))
     return np.sort([place for place, size in zip(places, sizes, strict=True) if size >= fewest])
 
 
@@ -214,7 +214,7 @@ def _within(places: np.ndarray, among: _Counted, distance: float) -> np.ndarray:
     """How many values lie within a distance of each place."""
     below = np.concatenate([[0], np.cumsum(among.counts)])
     upper = below[np.searchsorted(among.values, places + distance, side="right")]
-    return upper - below[np.searchsorted(among.values, places - distance, side="left")]
+    return np.asarray(upper - below[np.searchsorted(among.values, places - distance, side="left")])
 
 
 def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:
@@ -227,4 +227,4 @@ def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:
 
 def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
     """``values`` at the numbers (n,), NaN at ``NO_LEVEL``."""
-    return np.append(values, np.nan)[index]
+    return np.asarray(np.append(values, np.nan)[index])

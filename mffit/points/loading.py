@@ -13,8 +13,9 @@ import numpy as np
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.errors import InputError
-from mffit.points import constants, levels
+from mffit.points import levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
@@ -32,7 +33,8 @@ from mffit.sweeps.sweep import ExcludedRows
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
-STAND_IN = {"p": constants.STAND_IN_PRESSURE, "V": constants.STAND_IN_SPEED}
+STAND_IN = {"p": 250e3, "V": 1.0}
+"""Pressure [Pa] and speed [m/s] of a bare table without them; the alignment does not depend on either."""
 
 
 class Reading(NamedTuple):
@@ -119,7 +121,10 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
             return Reading(steady, (*warnings, _nothing(reduced)), stretches, left_out, notes=of_slip.notes)
         raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
-        warnings += _moving(points)
+        warnings += [
+            f"{points.files[index]}: keeps moving and gives no steady point; only mffit diagnose uses it"
+            for index in np.unique(points.file[points.continuous])
+        ]
     warnings += _thin(steady, config)
     kept = points if continuous else steady
     if not continuous:
@@ -185,7 +190,7 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     """
     value, u = lag
     alpha, taken = points.alpha.copy(), np.zeros(len(points))
-    if np.isfinite(value) and abs(value) > constants.PROVEN_LAG * u:
+    if np.isfinite(value) and abs(value) > COVERAGE_FACTOR_95 * u:
         for k in np.unique(points.sweep[points.continuous]):
             rows = np.flatnonzero(points.continuous & (points.sweep == k))
             if len(rows) < 3:  # too few for a gradient
@@ -207,7 +212,7 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: fl
             "unknown and not taken off; sweep up and down"
         ]
     value, u = lag
-    proven = abs(value) > constants.PROVEN_LAG * u
+    proven = abs(value) > COVERAGE_FACTOR_95 * u
     said = "taken off the angle" if proven else "not proven and not taken off"
     hysteresis = rms(np.array([one.hysteresis for one in known]))
     size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"
@@ -244,7 +249,12 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
-    points = concatenate([reduce(_completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
+
+    def completed(sweep: files.Sweep) -> files.Sweep:
+        filled = {name: np.nan_to_num(getattr(sweep, name), nan=value) for name, value in STAND_IN.items()}
+        return replace(sweep, p=filled["p"], V=filled["V"])
+
+    points = concatenate([reduce(completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 
@@ -255,21 +265,6 @@ def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Pa
     found = f"does not say the rig's {name}" if value is None else f'{name} = "{value}" is not known'
     written = " or ".join(f'"{one}"' for one in choice)
     raise InputError(f"{found}; give {name} = {written}, or a tyre.toml", file=path)
-
-
-def _completed(sweep: files.Sweep) -> files.Sweep:
-    """The sweep with a pressure and a speed."""
-    filled = {
-        name: np.where(np.isfinite(getattr(sweep, name)), getattr(sweep, name), value)
-        for name, value in STAND_IN.items()
-    }
-    return replace(sweep, p=filled["p"], V=filled["V"])
-
-
-def _moving(points: Points) -> list[str]:
-    """Sentences about files that keep moving."""
-    names = [points.files[index] for index in np.unique(points.file[points.continuous])]
-    return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
 
 
 def _moving_left_out(points: Points) -> tuple[LeftOut, ...]:

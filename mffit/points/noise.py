@@ -30,7 +30,7 @@ def over_noise(
 
 def stating(u: np.ndarray) -> np.ndarray:
     """Mask (n,) of the readings that state their uncertainty."""
-    return np.isfinite(u) & (u > 0.0)
+    return np.asarray(np.isfinite(u) & (u > 0.0))
 
 
 def estimated_noise(points: Points, model: Mapping[str, np.ndarray]) -> dict[str, float]:
@@ -49,7 +49,5 @@ def neighbour_noise(points: Points, values: np.ndarray) -> float:
     """
     sweeps = [values[(points.sweep == k) & np.isfinite(values)] for k in np.unique(points.sweep)]
     # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
-    differences = [
-        np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS_FOR_NEIGHBOURS
-    ]
+    differences = [np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS]
     return robust(np.concatenate(differences)) if differences else float("nan")

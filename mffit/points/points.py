@@ -110,7 +110,7 @@ class Points(Brief):
     @property
     def free_rolling(self) -> np.ndarray:
         """Mask (n,) of the points at which the wheel was neither driven nor braked."""
-        return np.abs(self.kappa) <= constants.FREE_ROLLING_SLIP
+        return np.asarray(np.abs(self.kappa) <= constants.SLIP)
 
     @property
     def rolling_radius(self) -> np.ndarray:
@@ -132,7 +132,7 @@ class Points(Brief):
     @property
     def Vx(self) -> np.ndarray:
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
-        return self.direction * self.V
+        return np.asarray(self.direction * self.V)
 
     def select(self, which: np.ndarray | slice, *, with_table: bool = True) -> Points:
         """The points of a boolean mask (n,), of an index array (m,), in that order, or of a slice; their table may be left empty.
@@ -243,7 +243,7 @@ def _refuse_unknown(given: Mapping[str, Any]) -> None:
 
 def _renumbered(index: np.ndarray, old: Sequence[str], new: Sequence[str]) -> np.ndarray:
     """An index array (n,) into ``old`` as one into ``new``."""
-    return np.array([new.index(name) for name in old], dtype=int)[index]
+    return np.asarray(np.array([new.index(name) for name in old], dtype=int)[index])
 
 
 def _filled(name: str, values: Any, n: int) -> np.ndarray:

@@ -17,6 +17,7 @@ from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 from mffit.sweeps.assembly import rows_of
+from mffit.sweeps.constants import RARE_SAMPLES
 
 
 class Reduced(NamedTuple):
@@ -57,7 +58,12 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     moving, averaged = averaging.along_sweeps(
         sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
     )
-    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept if not _over_slip(sweep, stretch)}
+    # A sweep of longitudinal slip shows no lag behind the sideslip angle.
+    lags = {
+        stretch: _lag(sweep, stretch, faulty)
+        for stretch in swept
+        if np.ptp(sweep.kappa[stretch.begin : stretch.end]) < constants.SMALLEST_SWEEP_OF_SLIP
+    }
     counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
     used = np.isin(np.arange(len(sweep)), averaged)
     for plateau in plateaus:
@@ -92,11 +98,6 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
     }
 
 
-def _over_slip(sweep: Sweep, stretch: Stretch) -> bool:
-    """Whether a sweep is one of longitudinal slip, which shows no lag behind the sideslip angle."""
-    return bool(np.ptp(sweep.kappa[stretch.begin : stretch.end]) >= constants.SMALLEST_SWEEP_OF_SLIP)
-
-
 def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     """The lag of a sweep of the sideslip angle."""
     rows = averaging.sound_rows(stretch, faulty)
@@ -121,7 +122,7 @@ def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:
     """The series without the few samples that a recorder wrote twice, and a sentence and an entry about them."""
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if not len(repeated) or len(repeated) > constants.MOST_REPEATED_SAMPLES * len(sweep):
+    if not len(repeated) or len(repeated) > RARE_SAMPLES * len(sweep):
         return sweep, (), ()
     kept = np.delete(np.arange(len(sweep)), repeated)
     sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import constants
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN, Fault
@@ -13,7 +14,7 @@ from mffit.points.lag import Lag
 from mffit.points.levels import SIDESLIP
 from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
-from mffit.scatter import finite_median, robust
+from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
 
 COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
@@ -39,10 +40,10 @@ def cold_beginning(notes: Sequence[StretchNote]) -> tuple[str, ...]:
     ]
     T = np.array([sweeps[k].T_degC for k in alike])
     later = T[len(T) // 2 :]
-    if len(later) < constants.FEWEST_LATER_SWEEPS:
+    if len(later) < constants.FEWEST_SWEEPS:
         return ()
     usual = float(np.median(later))
-    limit = usual - max(constants.COLDER_BEGINNING, constants.COLDER_OVER_SCATTER * robust(later, usual))
+    limit = usual - max(constants.COLDER_BEGINNING, ALARM * robust(later, usual))
     cold = limit > T
     count = len(T) if np.all(cold) else int(np.argmin(cold))
     if not count:
@@ -138,6 +139,6 @@ def _of_plateaus(sweep: Sweep, found: list[Stretch]) -> tuple[str, ...]:
 
 def _named(places: list[str]) -> str:
     """The first places, and the number of the others."""
-    shown = constants.STRETCHES_IN_SENTENCE
+    shown = NAMED_IN_SENTENCE
     more = f" and {len(places) - shown} more" if len(places) > shown else ""
     return "; ".join(places[:shown]) + more

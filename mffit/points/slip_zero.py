@@ -7,7 +7,7 @@ force is zero, ``kappa = (1 + s) / (1 + s0) - 1``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -16,13 +16,14 @@ import numpy as np
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import constants
-from mffit.points.wheel_speed import FROM_SPEEDS, is_derived, with_slip
-from mffit.scatter import robust
+from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
-from tir.errors import listed
+from tir.errors import listed, some
 
 FREE, LOADED = "free-rolling", "loaded-radius"
 """What the slip of a column may be against."""
+FROM_SPEEDS = "slip from wheel and road speed"
+"""In place of a heading, where a rig records no slip."""
 
 
 class SlipRemarks(NamedTuple):
@@ -59,26 +60,21 @@ class SlipZero:
 
     slope: float  #: of force per load over slip, at zero force
     levels: tuple[ZeroAtLoad, ...]
-    middle: tuple[float, ...]  #: of each setting
-    coefficients: np.ndarray  #: of :func:`_conditions`
-    per_radius: np.ndarray | None = (
-        None  #: the same of ``(1 + slip) / RL`` [1/m], if the loaded radius explains the slip better
-    )
+    middle: Driven  #: usual size of each reading, (1,)
+    coefficients: np.ndarray  #: of :func:`_conditions`, for the slip or for ``(1 + slip) / RL`` [1/m]
+    per_radius: bool = False  #: the loaded radius explains the slip better
 
     def at(self, of: Driven) -> np.ndarray:
         """The slip (n,) of zero force under the conditions of some readings; at their loaded radius, if that counts."""
-        conditions = _conditions(of, self.middle)
-        if self.per_radius is None:
-            return np.asarray(conditions @ self.coefficients)
-        return np.asarray(of.RL * (conditions @ self.per_radius) - 1.0)
+        found = _conditions(of, self.middle) @ self.coefficients
+        return np.asarray(of.RL * found - 1.0 if self.per_radius else found)
 
     @property
     def reversed(self) -> SlipZero:
         """The same for slip of the other sign."""
+        assert not self.per_radius
         turned = tuple(ZeroAtLoad(level.load, -level.slip) for level in self.levels)
-        return replace(
-            self, slope=-self.slope, levels=turned, coefficients=-self.coefficients, per_radius=None
-        )
+        return replace(self, slope=-self.slope, levels=turned, coefficients=-self.coefficients)
 
     @property
     def largest(self) -> float:
@@ -115,7 +111,7 @@ class SlipZero:
 def slip_zero(of: Driven) -> SlipZero | None:
     """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie near zero force.
 
-    Enough lie on either side of it, or at it: those of an undriven wheel, beside slip that was run in steps.
+    Enough lie on either side of it, or at it: those of an undriven wheel, with slip that was run in steps.
     """
     if (
         not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
@@ -128,23 +124,18 @@ def slip_zero(of: Driven) -> SlipZero | None:
     near = np.all(np.isfinite([*of[:-2], force]), axis=0) & (
         load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
     )
-    near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
-    some = 0.3 * constants.FORCE_NEAR_FREE_ROLLING
-    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO
-    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS_AT_ZERO:
+    near &= np.abs(force) < constants.NEAR_ZERO
+    some = 0.3 * constants.NEAR_ZERO
+    in_steps = min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS
+    if in_steps and np.sum(np.abs(force[near]) <= some) < constants.FEWEST_POINTS:
         return None
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
-    middle = tuple(float(np.median(np.abs(values))) for values in used)
+    middle = Driven(*(np.median(np.abs(values), keepdims=True) for values in used))
     conditions, compliance = _conditions(used, middle), _compliance(used, middle)
     design = np.column_stack([conditions, x[:, None] * compliance, x**3])
     solution, scatter = _robust_lines(design, used.slip)
     k = conditions.shape[1]
-    per_radius = None
-    if np.all(np.isfinite(of.RL)):
-        other, left = _robust_lines(design, (1.0 + used.slip) / used.RL)
-        if left * middle[Driven._fields.index("RL")] < scatter:
-            per_radius = other[:k]
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     every = np.isfinite(of.slip) & np.isfinite(force)
@@ -153,13 +144,12 @@ def slip_zero(of: Driven) -> SlipZero | None:
         inverse = float(np.median((of.slip - _conditions(of, middle) @ found)[driven] / force[driven]))
     if inverse * float(np.mean(of.slip[every] * force[every])) < 0.0:
         return None  # few points near zero: their line contradicts the whole curve
-    return SlipZero(
-        slope=1.0 / inverse if inverse else np.nan,
-        levels=_at_loads(used, middle, found),
-        middle=middle,
-        coefficients=found,
-        per_radius=per_radius,
-    )
+    zero = SlipZero(1.0 / inverse if inverse else np.nan, _at_loads(used, middle, found), middle, found)
+    if np.all(np.isfinite(of.RL)):
+        by_radius, left = _robust_lines(design, (1.0 + used.slip) / used.RL)
+        if left * middle.RL < scatter:
+            return replace(zero, coefficients=by_radius[:k], per_radius=True)
+    return zero
 
 
 def against_free_rolling(
@@ -174,15 +164,18 @@ def against_free_rolling(
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
-    sweeps, derived = with_slip(sweeps, config.tyre.unloaded_radius)
-    stated |= {sweep.file: (FROM_SPEEDS, None) for sweep in sweeps if is_derived(sweep)}
+    sweeps, derived = _with_slip(sweeps, config.tyre.unloaded_radius)
+    # Not recorded, so it follows from speeds.
+    stated |= {s.file: (FROM_SPEEDS, None) for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
     out = list(sweeps)
     notes: list[str] = []
     warnings: list[str] = [*derived]
     taken_off: dict[str, tuple[SlipZero, str]] = {}
     for heading, against in dict.fromkeys(stated.values()):
         rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
-        readings = _joined_readings(sweeps[k] for k in rows)
+        readings = Driven(
+            *(np.concatenate(values) for values in zip(*(readings_of(sweeps[k]) for k in rows), strict=True))
+        )
         if _too_weak(readings):
             raise InputError(
                 _weak(readings, config), file=config.path or config.sweep[0].file, key="columns.Fx_N"
@@ -228,8 +221,8 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
 
 def _too_weak(of: Driven) -> bool:
     """Whether slips that show a force have less of one than any tyre."""
-    shown = (np.abs(of.slip) > constants.SLIP_WITH_FORCE) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
-    if np.sum(shown) < constants.FEWEST_POINTS_AT_ZERO or np.ptp(of.slip[shown]) < constants.SLIP_WITH_FORCE:
+    shown = (np.abs(of.slip) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
+    if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.slip[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
         return False  # a wheel without drive: its slip says nothing
     return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < constants.SMALLEST_DRIVEN_FORCE)
 
@@ -266,37 +259,30 @@ def readings_of(sweep: Sweep) -> Driven:
     )
 
 
-def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
-    parts = [readings_of(sweep) for sweep in sweeps]
-    return Driven(*(np.concatenate(values) for values in zip(*parts, strict=True)))
-
-
-def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
+def _conditions(of: Driven, middle: Driven) -> np.ndarray:
     """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip.
 
     The free radius grows with the square of the speed, the last column.
     """
-    of_setting = dict(zip(Driven._fields, middle, strict=True))
-    load = np.abs(of.Fz) / of_setting["Fz"] - 1.0
-    camber = np.abs(of.gamma)
-    pressure = of.p / of_setting["p"] - 1.0 if of_setting["p"] else np.zeros(len(load))
+    load, camber = np.abs(of.Fz) / middle.Fz - 1.0, np.abs(of.gamma)
+    nothing = np.zeros(len(load))
     columns = (
         np.ones(len(load)),
         load,
         load**2,
-        pressure,
+        of.p / middle.p - 1.0 if middle.p else nothing,
         camber,
         camber**2,
         camber * load,
         np.abs(of.alpha),
-        np.nan_to_num((of.V / of_setting["V"]) ** 2 - 1.0) if of_setting["V"] > 0.0 else np.zeros(len(load)),
+        np.nan_to_num((of.V / middle.V) ** 2 - 1.0) if middle.V > 0.0 else nothing,
     )
     return np.column_stack(columns)
 
 
-def _compliance(of: Driven, middle: Sequence[float]) -> np.ndarray:
+def _compliance(of: Driven, middle: Driven) -> np.ndarray:
     """Columns (n, k) of slip per force over load: constant, load, squared sideslip."""
-    load = np.abs(of.Fz) / middle[Driven._fields.index("Fz")] - 1.0
+    load = np.abs(of.Fz) / middle.Fz - 1.0
     return np.column_stack([np.ones(len(load)), load, of.alpha**2])
 
 
@@ -306,29 +292,63 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]
     scaled = design / np.where(size > 0.0, size, 1.0)
     solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
     residual = y - scaled @ solution
-    kept = np.abs(residual) <= constants.OUTLIER_OF_ZERO * robust(residual)
+    kept = np.abs(residual) <= ALARM * robust(residual)
     if np.sum(kept) > design.shape[1]:
         solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
     scatter = robust(y - scaled @ solution)
     return np.asarray(solution / np.where(size > 0.0, size, 1.0)), scatter
 
 
-def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
+def _at_loads(of: Driven, middle: Driven, coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
     """The zero at a low, the middle and a high load, upright and without sideslip as nearly as was run."""
-    loads = np.unique(np.percentile(np.abs(of.Fz), constants.LOADS_OF_ZERO).round())
-    zeros = _conditions(
-        Driven(
-            slip=np.zeros(len(loads)),
-            Fx=np.zeros(len(loads)),
-            Fz=loads,
-            alpha=np.full(len(loads), np.min(np.abs(of.alpha))),
-            gamma=np.full(len(loads), np.min(np.abs(of.gamma))),
-            p=np.full(len(loads), np.median(of.p)),
-            RL=np.full(len(loads), np.nan),
-            V=np.full(len(loads), middle[Driven._fields.index("V")]),
-        ),
-        middle,
+    low, high = constants.CORE
+    loads = np.unique(np.percentile(np.abs(of.Fz), [low, 50.0, high]).round())
+    usual = Driven(*(np.broadcast_to(value, len(loads)) for value in middle))
+    straight, upright = (np.full(len(loads), np.min(np.abs(angle))) for angle in (of.alpha, of.gamma))
+    zeros = _conditions(usual._replace(Fz=loads, alpha=straight, gamma=upright), middle) @ coefficients
+    return tuple(map(ZeroAtLoad, loads.tolist(), zeros.tolist()))
+
+
+def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[Sweep, ...], tuple[str, ...]]:
+    """The sweeps, with slip where speeds show that the wheel was driven and none was recorded; and a sentence about it.
+
+    It is ``omega R / (V cos alpha) - 1`` with the radius that holds on average at the load. Its zero is free rolling only as far
+    as driving and braking balance; if Fx was measured, it is set to Fx = 0 later.
+    """
+    out, files = [], []
+    for sweep in sweeps:
+        slip = _slip(sweep, unloaded_radius)
+        if slip is not None:
+            files.append(sweep.file)
+        out.append(sweep if slip is None else replace(sweep, kappa=slip))
+    if not files:
+        return tuple(out), ()
+    return tuple(out), (
+        f"{some(list(dict.fromkeys(files)))}: no slip was recorded, but wheel and road speed show that the wheel was driven or "
+        "braked; slip follows from both",
     )
-    return tuple(
-        ZeroAtLoad(float(load), float(zero)) for load, zero in zip(loads, zeros @ coefficients, strict=True)
-    )
+
+
+def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
+    """Slip (n,) of a driven or braked wheel; None if it was recorded, if a speed lacks, or if the wheel rolled freely."""
+    if "kappa" in sweep.table or "V_mps" not in sweep.table:
+        return None
+    along = sweep.V * np.cos(sweep.alpha)
+    turning = np.isfinite(sweep.omega) & (
+        along > constants.UNLOADED * finite_median(along)
+    )  # not at standstill
+    if not np.any(turning):
+        return None
+    slip = np.full(len(sweep), np.nan)
+    slip[turning] = np.abs(sweep.omega[turning]) * radius / along[turning] - 1.0
+    rolling = _over_load(slip[turning], sweep.Fz[turning])
+    slip[turning] = (1.0 + slip[turning]) / (1.0 + rolling) - 1.0
+    low, high = np.nanpercentile(slip, constants.CORE)
+    return slip if high - low >= constants.SMALLEST_SWEEP_OF_SLIP else None
+
+
+def _over_load(slip: np.ndarray, Fz: np.ndarray) -> np.ndarray:
+    """The slip (n,) as a parabola over load, as that of a freely rolling wheel against its unloaded radius."""
+    if np.ptp(Fz) < constants.CONDITION * np.median(Fz):
+        return np.full(len(slip), np.median(slip))
+    return np.polynomial.Polynomial.fit(Fz, slip, 2)(Fz)

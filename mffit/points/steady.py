@@ -14,15 +14,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from mffit.constants import FALSE_ALARM
 from mffit.points import constants
 from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
-from mffit.scatter import robust
+from mffit.scatter import beyond, finite_median, robust
 
 CONDITIONS = ("Fz", "p", "V")
 STEP = {
     "alpha": constants.STEP_OF_ANGLE.rad,
     "gamma": constants.STEP_OF_ANGLE.rad,
-    "kappa": float(constants.STEP_OF_SLIP),
+    "kappa": float(constants.SLIP),
 }
 """Settings that a rig sweeps, in the order in which they are looked for, and the smallest change to another set-point."""
 RANGE = {
@@ -59,7 +60,7 @@ def stretches(
     ----------
     settings : of one series
     point : (n,) label of the point of every sample, "" between points; None: the settings decide
-    cuts : samples at which a new stretch begins, beside the gaps in time
+    cuts : samples at which a new stretch begins, in addition to the gaps in time
     scale : usual size of each setting in the whole campaign; of this series if None
 
     Returns
@@ -89,7 +90,7 @@ def gaps(time: np.ndarray) -> np.ndarray:
     steps = np.diff(time)
     if not len(steps):
         return np.zeros(0, dtype=int)
-    shortest = max(constants.GAP_OVER_STEP * float(np.median(steps)), constants.SHORTEST_GAP)
+    shortest = max(constants.GAP_OVER_STEP * float(np.median(steps)), constants.AVERAGED_TIME)
     return np.flatnonzero(steps > shortest) + 1
 
 
@@ -117,7 +118,7 @@ def _reaching(settings: SteadySettings, scale: Scale, found: list[tuple[int, int
     n = len(settings.time)
     lag = _samples(settings, constants.COMPARED_APART)
     out = []
-    width = _samples(settings, constants.EDGE_AVERAGE)
+    width = _samples(settings, constants.AVERAGED_TIME)
     smooth = {name: uniform_filter1d(getattr(settings, name), width, mode="nearest") for name in CONDITIONS}
     for k, (begin, end) in enumerate(found):
         least = found[k - 1][1] if k else 0
@@ -129,7 +130,7 @@ def _reaching(settings: SteadySettings, scale: Scale, found: list[tuple[int, int
                 (least, begin, begin, min(begin + lag, end)),
                 (end, most, max(end - lag, begin), end),
             ):
-                step = constants.STEP_OF_CONDITION * max(scale[name], abs(float(np.median(x[c:d]))))
+                step = constants.CONDITION * max(scale[name], abs(float(np.median(x[c:d]))))
                 inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
         before, behind = inside[: begin - least][::-1], inside[end - least :]
         begin -= len(before) if before.all() else int(np.argmin(before))
@@ -150,11 +151,9 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
     still = [rest for rest in rests if not _creeps(settings, rest)]
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in still]
-    staircase = sum(held) >= constants.STAIRCASE_SHARE * np.ptp(settings.time)
-    if staircase:
-        found = list(still)
-    else:
-        found = [s for s, seconds in zip(still, held, strict=True) if seconds >= constants.SHORTEST_STRETCH]
+    staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # it rests for most of the time
+    shortest = 0.0 if staircase else constants.SHORTEST_STRETCH
+    found = [s for s, seconds in zip(still, held, strict=True) if seconds >= shortest]
     covered = np.zeros(len(settings.time), dtype=bool)
     for rest in found:
         covered[rest.begin : rest.end] = True
@@ -204,14 +203,11 @@ def _returns(x: np.ndarray) -> bool:
 
 
 def scale_of(series: Sequence[SteadySettings]) -> Scale:
-    """Median size of each setting; of long recordings from some of the samples."""
-    some = max(sum(len(settings.time) for settings in series) // constants.MOST_SAMPLES_FOR_SCALE, 1)
-    sizes = {}
-    for name in (*STEP, *CONDITIONS):
-        size = np.abs(np.concatenate([getattr(one, name)[::some] for one in series]))
-        known = size[np.isfinite(size)]
-        sizes[name] = float(np.median(known)) if len(known) else 0.0
-    return sizes
+    """Median size of each setting; 0 if it is not known."""
+    every = {
+        name: np.abs(np.concatenate([getattr(one, name) for one in series])) for name in (*STEP, *CONDITIONS)
+    }
+    return {name: float(np.nan_to_num(finite_median(size))) for name, size in every.items()}
 
 
 def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
@@ -222,6 +218,7 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     n = len(settings.time)
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
+    clear = beyond(FALSE_ALARM / n)  # no pair of samples differs by so much by chance
     masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
@@ -233,10 +230,8 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
                 usual = max(scale[name], float(np.median(np.abs(values))))
                 step = usual * _step_of_condition(masks["kappa"][lag:])
             smooth = uniform_filter1d(values, lag, mode="nearest")
-            noise = _noise(values) / np.sqrt(lag)
-            change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(
-                step, constants.STEP_OVER_NOISE * noise
-            )
+            noise = _noise(values) * np.sqrt(2.0 / lag)  # of the difference of two means
+            change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(step, clear * noise)
             # All samples between the two that differ: a change little above the smallest one shows in few of these pairs.
             begun = np.zeros(n + 1, dtype=int)
             begun[: n - lag] += change
@@ -249,8 +244,10 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
 def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
     """Relative change of a condition to another set-point, where the slip rests and where it moves (n,)."""
     if not np.any(driving):
-        return float(constants.STEP_OF_CONDITION)
-    return np.where(driving, constants.STEP_OF_CONDITION_WHILE_DRIVEN, constants.STEP_OF_CONDITION)
+        return float(constants.CONDITION)
+    return np.where(
+        driving, 0.5 * constants.HELD_LOAD, constants.CONDITION
+    )  # half the range lies to either side
 
 
 def _noise(values: np.ndarray) -> float:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.constants import STRAIGHT
 from mffit.points import constants
 from mffit.points.choice import settings_of
 from mffit.points.lag import rolled_distance
@@ -27,8 +28,8 @@ class Stepped(NamedTuple):
 
 
 STEPPED = {
-    "alpha": Stepped("Fy", constants.SMALLEST_STEP.rad, "kappa", float(constants.FREE_ROLLING_SLIP)),
-    "kappa": Stepped("Fx", float(constants.STEP_OF_SLIP), "alpha", constants.STRAIGHT_ON.rad),
+    "alpha": Stepped("Fy", STRAIGHT.rad, "kappa", float(constants.SLIP)),
+    "kappa": Stepped("Fx", float(constants.SLIP), "alpha", STRAIGHT.rad),
 }
 """By the name of the setting."""
 
@@ -91,7 +92,7 @@ def _is_step(
     if np.ptp(sweep.gamma[rows]) > constants.STEP_OF_ANGLE.rad or np.any(np.diff(sweep.direction[rows])):
         return False
     load = sweep.Fz[rows]
-    if np.ptp(load) > constants.LOAD_RANGE_OF_STEPS * np.mean(load):
+    if np.ptp(load) > constants.HELD_LOAD * np.mean(load):
         return False
     share = (values[rows] - first) / (last - first)
     leaves, arrives = int(np.argmax(share > 0.1)), len(share) - int(np.argmax(share[::-1] < 0.9)) - 1

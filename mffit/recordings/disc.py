@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.points import Points, levels
+from mffit.constants import UPRIGHT
+from mffit.points import Points
 from mffit.recordings import constants
 from mffit.recordings.sniffed import Sniffed
 from mffit.sweeps import formats
@@ -40,7 +41,7 @@ def zero_of_upright(points: Points) -> float:
     """Sideslip [deg] at which the side force of the upright wheel, rolling forwards, vanishes; NaN if points do not show it."""
     alpha = np.degrees(points.alpha)
     near = (
-        (np.abs(points.gamma) < levels.CAMBER.tolerance)
+        (np.abs(np.degrees(points.gamma)) < UPRIGHT)
         & (np.abs(alpha) < constants.NEAR_STRAIGHT)
         & (points.direction > 0)
         & np.isfinite(points.Fy)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mffit.diagnosis import wording as of_residuals
-from mffit.measured import constants, setup_notes, wording
+from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import constants as report_constants
 from mffit.report import page, published
@@ -83,7 +83,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         per_load=PER_LOAD,
         aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
-        of_setups=setup_notes.setup_scatter,
+        of_setups=wording.setup_scatter,
         radians=math.radians(1.0),
         meanings=MEANINGS,
         units=UNITS,

@@ -138,7 +138,7 @@ class Chain:
     @cached_property
     def time(self) -> np.ndarray:
         """Time of every point (n,) [s]; 0 where it is not known."""
-        return np.nan_to_num(self.points.t)
+        return np.asarray(np.nan_to_num(self.points.t))
 
     @property
     def distance_km(self) -> np.ndarray:

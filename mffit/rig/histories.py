@@ -68,7 +68,7 @@ def usual_radius(points: Points) -> float:
 
 def path_radii(points: Points) -> np.ndarray:
     """Declared path radius (n,) of every point [m]; very large on a straight path."""
-    return 1.0 / np.maximum(np.abs(points.phi_t), 1e-12)
+    return np.asarray(1.0 / np.maximum(np.abs(points.phi_t), 1e-12))
 
 
 def reference_speed(points: Points) -> float:
@@ -104,4 +104,4 @@ def of_part(points: Points, name: str) -> np.ndarray:
     """1 at the points (n,) of the set-up, the file or the sweep of that name, the first of the three that has it; else 0."""
     counted = ((points.setups, points.setup), (points.files, points.file), (points.sweep_names, points.sweep))
     names, index = next((pair for pair in counted if name in pair[0]), counted[0])
-    return np.array([float(other == name) for other in names])[index]
+    return np.asarray(np.array([float(other == name) for other in names])[index])

@@ -65,15 +65,16 @@ def _without_moment(
         moved, x = np.abs(following - x), following
         if np.all(moved < 1e-7):  # [rad]; the error left is its square
             break
-    return x
+    return np.asarray(x)
 
 
 def _inverse_quadratic(x: tuple[np.ndarray, ...], y: tuple[np.ndarray, ...]) -> np.ndarray:
     """Zero (m,) of the parabola x(y) through three points (m,) each."""
     (x0, x1, x2), (y0, y1, y2) = x, y
     with np.errstate(divide="ignore", invalid="ignore"):
-        return (
+        root: np.ndarray = (
             x0 * y1 * y2 / ((y0 - y1) * (y0 - y2))
             + x1 * y0 * y2 / ((y1 - y0) * (y1 - y2))
             + x2 * y0 * y1 / ((y2 - y0) * (y2 - y1))
         )
+    return root

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, ZERO_CAMBER, ZERO_SIDESLIP
+from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
@@ -160,7 +160,7 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="one-sided-on-a-disc",
-    limits=(ZERO_SIDESLIP, ZERO_CAMBER),
+    limits=(STRAIGHT, UPRIGHT),
     sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
     "turn slip; add the mirrored points",
 )
@@ -169,8 +169,8 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
     if not config.rig.on_disc:
         return
     for column, values, zero in (
-        ("alpha_deg", points.alpha, ZERO_SIDESLIP),
-        ("gamma_deg", points.gamma, ZERO_CAMBER),
+        ("alpha_deg", points.alpha, STRAIGHT),
+        ("gamma_deg", points.gamma, UPRIGHT),
     ):
         degrees = np.degrees(values)
         if (degrees.max() > zero) != (degrees.min() < -zero):
@@ -180,7 +180,7 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="no-zero-on-a-disc",
-    limits=(ZERO_SIDESLIP, ZERO_CAMBER),
+    limits=(STRAIGHT, UPRIGHT),
     sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
 )
 def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:

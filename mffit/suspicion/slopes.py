@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
@@ -117,8 +117,8 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
 
 def at_zero(points: Points) -> np.ndarray:
     """Mask (n,) of the points at zero sideslip and camber."""
-    upright = np.abs(np.degrees(points.gamma)) <= ZERO_CAMBER
-    return upright & (np.abs(np.degrees(points.alpha)) <= ZERO_SIDESLIP)
+    upright = np.abs(np.degrees(points.gamma)) <= UPRIGHT
+    return upright & (np.abs(np.degrees(points.alpha)) <= STRAIGHT)
 
 
 def _outward(points: Points) -> float:

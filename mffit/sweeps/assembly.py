@@ -46,10 +46,10 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
 
     def column(name: str, missing: float = np.nan) -> np.ndarray:
         # A channel that was not measured takes no memory, even in a long recording.
-        return table[name].to_numpy(dtype=float) if name in table else np.broadcast_to(missing, (n,))
+        return np.asarray(table[name], dtype=float) if name in table else np.broadcast_to(missing, (n,))
 
     def iso(channel: str, name: str) -> np.ndarray:
-        return to_iso(given.axes, channel, column(name)) + 0.0  # turns -0.0 into 0.0
+        return np.asarray(to_iso(given.axes, channel, column(name)) + 0.0)  # turns -0.0 into 0.0
 
     direction = np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction
     channels = {name: iso(name, column_of(name)) for name in CHANNELS if column_of(name) in table}

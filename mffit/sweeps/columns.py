@@ -350,7 +350,7 @@ def _outside(values: np.ndarray, channel: Channel) -> np.ndarray:
 
 def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) -> bool:
     """Whether more values (n,) are outside the plausible range of the channel than spikes of a recording explain."""
-    share = constants.LARGEST_SHARE_OF_SPIKES if may_have_gaps else 0.0
+    share = constants.RARE_SAMPLES if may_have_gaps else 0.0
     return bool(np.sum(_outside(values, channel)) > share * len(values))
 
 

@@ -107,7 +107,7 @@ def _fits(lines: list[str], separator: str) -> bool:
         return False
     counts = Counter(len(_split(line, separator)) for line in lines)
     usual, number = counts.most_common(1)[0]
-    return usual > 1 and number >= constants.SHARE_OF_REGULAR_LINES * len(lines)
+    return usual > 1 and 2 * number >= len(lines)
 
 
 def _split(line: str, separator: str) -> list[str]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.exclusion import ExcludeTable
-from mffit.config.lines import LineRange, inside, ranges_text
+from mffit.config.lines import inside, ranges_text
 from mffit.sweeps.raw_table import RawTable
 
 
@@ -42,7 +42,8 @@ def take_apart(raw: RawTable, entries: Sequence[ExcludeTable]) -> Apart:
     out = np.zeros(len(lines), dtype=bool)
     excluded = []
     for entry in entries:
-        wrong = _without_reading(lines, entry.ranges)
+        # The first end of a range that is not the line of a row.
+        wrong = next((end for pair in entry.ranges for end in pair if not np.any(lines == end)), None)
         if wrong is not None:
             raise ExclusionError(_sentence(raw, wrong), entry)
         mask = inside(lines, entry.ranges)
@@ -50,12 +51,6 @@ def take_apart(raw: RawTable, entries: Sequence[ExcludeTable]) -> Apart:
         excluded.append(raw.of_rows(mask))
     kept = None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw
     return Apart(kept, tuple(excluded))
-
-
-def _without_reading(lines: np.ndarray, ranges: Sequence[LineRange]) -> int | None:
-    """The first end of a range that is not the line of a row; None if all are."""
-    ends = [end for pair in ranges for end in pair]
-    return next((end for end in ends if not np.any(lines == end)), None)
 
 
 def _sentence(raw: RawTable, wrong: int) -> str:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mffit.errors import InputError
-from mffit.sweeps import constants
 from mffit.sweeps.raw_table import RawTable, with_decimal_point
 from mffit.sweeps.units import is_unit
 
@@ -17,29 +16,10 @@ Row = Sequence[str | float]
 
 WITH_UNIT = re.compile(r"^(.*\S)\s*[\[(]\s*([^\[\]()]*)\s*[\])]$")
 """A heading followed by its unit: ``FY [N]``, ``Fz (kN)``."""
-SUMMARIES = frozenset(
-    [
-        "mittelwert",
-        "mittel",
-        "mean",
-        "average",
-        "avg",
-        "median",
-        "standardabweichung",
-        "stdabw",
-        "std",
-        "stddev",
-        "std.dev",
-        "min",
-        "minimum",
-        "max",
-        "maximum",
-        "summe",
-        "sum",
-        "total",
-        "gesamt",
-    ]
-)
+SUMMARIES = frozenset({
+    "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
+    "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",
+})  # fmt: skip
 """Words, in lower case, at the beginning of rows that spreadsheets add below the readings."""
 
 
@@ -126,8 +106,8 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)
     usual = max(widths, key=lambda width: (widths[width], width))
-    fewest = constants.SHARE_OF_CELLS_IN_HEADINGS * usual
-    at = next((k for k, row in enumerate(rows) if sum(c != "" for c in row) > fewest), 0)
+    # The first row that is filled for the most part; a title is not.
+    at = next((k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual), 0)
     found = _trimmed(rows[at])
     headings = tuple(str(cell) for cell in found)
     if all(is_number(cell) for cell in found):

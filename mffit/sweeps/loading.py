@@ -12,6 +12,7 @@ import numpy as np
 from mffit.config import Config, setup_names
 from mffit.config.exclusion import ExcludeTable
 from mffit.config.models import SweepTable
+from mffit.constants import LIKENESS_OF_MISSPELT
 from mffit.errors import InputError
 from mffit.sweeps import constants
 from mffit.sweeps.assembly import Circumstances, sweeps_of
@@ -245,7 +246,7 @@ def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Co
 
 
 def _unknown(name: str) -> str:
-    near = nearest_channel(name, likeness=constants.LIKENESS_OF_MAPPED_COLUMN)
+    near = nearest_channel(name, likeness=LIKENESS_OF_MISSPELT)
     hint = f'did you mean "{near}"?' if near else f"known columns are {', '.join(BY_NAME)}"
     return f"is not a column of a sweep; {hint}"
 

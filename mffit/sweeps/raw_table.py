@@ -74,22 +74,9 @@ NUMBER_WITH_COMMA = re.compile(r"[-+]?(?:\d*|\d{1,3}(?:\.\d{3})+),\d+(?:[eE][-+]
 THOUSANDS_WITH_POINT = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+")
 THOUSANDS_WITH_COMMA = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 
-SPREADSHEET_ERRORS = frozenset(
-    [
-        "#NV",
-        "#N/A",
-        "#N/V",
-        "#DIV/0!",
-        "#WERT!",
-        "#VALUE!",
-        "#BEZUG!",
-        "#REF!",
-        "#ZAHL!",
-        "#NUM!",
-        "#NAME?",
-        "#NULL!",
-    ]
-)
+SPREADSHEET_ERRORS = frozenset({
+    "#NV", "#N/A", "#N/V", "#DIV/0!", "#WERT!", "#VALUE!", "#BEZUG!", "#REF!", "#ZAHL!", "#NUM!", "#NAME?", "#NULL!",
+})  # fmt: skip
 
 
 def has_decimal_comma(cell: str) -> bool:

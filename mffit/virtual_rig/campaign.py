@@ -77,11 +77,6 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
     return Campaign(tables, configuration_of(plan, machine, np.random.default_rng(for_radii)), truth)
 
 
-def faults_of(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> Faults:
-    """The rig errors of the first set-up."""
-    return faults_in_setups(plan, tyre, generator)[plan.setups[0]]
-
-
 def faults_in_setups(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> dict[str, Faults]:
     """The rig errors of every set-up; with ``draw``, declared errors that the plan does not give are drawn."""
     table, rig = plan.tables.faults, plan.declared.rig

@@ -57,7 +57,7 @@ Formula = Callable[[float, Settings, Machine], np.ndarray | float]
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
     """True camber (n,) [rad]."""
-    return np.deg2rad(np.rad2deg(s.gamma) + m.faults["gamma_0_deg"])
+    return np.asarray(np.deg2rad(np.rad2deg(s.gamma) + m.faults["gamma_0_deg"]))
 
 
 def _kelvin(s: Settings, m: Machine) -> np.ndarray:
@@ -134,7 +134,7 @@ def rolling_slip(machine: Machine, settings: Settings) -> np.ndarray:
         """Moment (n,) about the wheel's axis that would slow its rotation [Nm]."""
         out = at_the_tyre(machine, replace(settings, kappa=kappa), settings.alpha)
         forwards = np.sign(settings.Vx)
-        return forwards * (out.Fx * out.RL - out.My) + machine.drag
+        return np.asarray(forwards * (out.Fx * out.RL - out.My) + machine.drag)
 
     before, now = np.full(len(settings), -1e-3), np.zeros(len(settings))
     rest, last = unbalanced(before), unbalanced(now)

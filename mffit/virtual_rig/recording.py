@@ -100,7 +100,7 @@ def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndar
     new = 1.0 - seconds * rate_Hz * (1.0 - decay)
     old = 1.0 - decay - new
     lagged_alpha, _ = lfilter([new, old], [1.0, -decay], alpha, zi=[(1.0 - new) * alpha[0]])
-    return lagged_alpha
+    return np.asarray(lagged_alpha)
 
 
 def noise(time: np.ndarray, size: float, table: RecordingTable, generator: np.random.Generator) -> np.ndarray:
@@ -108,4 +108,4 @@ def noise(time: np.ndarray, size: float, table: RecordingTable, generator: np.ra
     fresh = generator.standard_normal(len(time))
     correlation = math.exp(-1.0 / (table.correlation_s * table.rate_Hz)) if table.correlation_s else 0.0
     fresh[1:] *= math.sqrt(1.0 - correlation**2)
-    return size * lfilter([1.0], [1.0, -correlation], fresh)
+    return np.asarray(size * lfilter([1.0], [1.0, -correlation], fresh))

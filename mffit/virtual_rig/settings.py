@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from mffit.virtual_rig import constants
 from mffit.virtual_rig.plan import RigPlan, SweepPlan
 
 
@@ -37,14 +36,13 @@ class Settings:
     @property
     def sense(self) -> np.ndarray:
         """Sense (n,) of the steering to each point: 1 up, -1 down, 0 held; the first point has that of the second."""
-        steps = np.diff(self.alpha)
-        steps = np.where(np.abs(steps) > constants.SENSE_STEP.rad, np.sign(steps), 0.0)
+        steps = np.sign(np.diff(np.degrees(self.alpha).round(6)))
         return np.concatenate([steps[:1], steps]) if len(steps) else np.zeros(len(self.alpha))
 
     @property
     def Vx(self) -> np.ndarray:
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
-        return self.direction * self.V
+        return np.asarray(self.direction * self.V)
 
     def at(self, alpha: np.ndarray, gamma: np.ndarray, kappa: np.ndarray) -> Settings:
         """The same conditions as at the first point, at other angles (m,) [rad] and slips (m,)."""

@@ -57,7 +57,7 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
 
     def turned(channel: str, values: np.ndarray) -> np.ndarray:
         # Adding zero turns -0.0, which a CSV would show, into 0.0.
-        return from_iso(rig.axes, channel, values) + 0.0
+        return np.asarray(from_iso(rig.axes, channel, values) + 0.0)
 
     table = pd.DataFrame(
         {

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tir
+from tir.equations import contact as equations
 from tir.parameters import TABLE
 from tir.transient import Contact, step
 
@@ -183,3 +184,35 @@ def test_a_load_of_nan_is_not_taken_for_no_load():
     assert np.isnan(forces.Fy[0])
     assert np.isfinite(contact.v[1])
     assert contact.v[2] == 0.0
+
+
+def test_the_contact_slides_where_no_bristle_of_a_parabolic_brush_sticks():
+    """A bristle sticks while its stretch under slip asks for less than friction times pressure, from the leading edge on."""
+    half, per_length, mu = 0.06, 9e5, 0.9
+    behind_edge = np.linspace(1e-6, 2.0 * half, 20_001)
+    pressure = 0.75 * Fz / half * (1.0 - (1.0 - behind_edge / half) ** 2)
+
+    def sticks(slip):
+        return np.any(per_length * behind_edge * slip < mu * pressure)
+
+    stiffness, length = 2.0 * per_length * half**2, 0.4
+    slip = equations.sliding(length, mu, Fz, stiffness) / length
+    assert sticks(0.999 * slip)
+    assert not sticks(1.001 * slip)
+    _, forces = step(TYRE, Contact(), 3600.0, Fz, 0.0, Vsx=-1.0)
+    state = TYRE.state(Fz)
+    assert step(TYRE, Contact(), 3600.0, Fz, 0.0, Vsx=-1.0)[0].u == pytest.approx(
+        state.sigma_x * 3.0 * state.mu_x * Fz / state.K_xk, rel=1e-9
+    )
+    assert forces.Fx > 0.0
+
+
+def test_the_damping_of_a_stop_fades_out_as_smoothly_at_its_end_as_it_begins():
+    """Half is left at half the speed, nothing at VXLOW, and neither end has a kink: mirrored about the middle."""
+    low = 2.0
+    speeds = np.linspace(0.0, low, 41)
+    left = equations.fading(speeds, low)
+    assert left[0] == pytest.approx(1.0)
+    assert left + left[::-1] == pytest.approx(np.ones(41))
+    assert abs(left[-1] - left[-2]) < 0.01
+    assert equations.fading(-speeds, low) == pytest.approx(left)

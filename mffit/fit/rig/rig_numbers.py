@@ -7,10 +7,9 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from mffit.config import Declaration, declared_faults, declared_rig
-from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
-from mffit.measured.constants import CONTRADICTED
 from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
@@ -118,7 +117,7 @@ def _sideways(config: Any, measured: Any, setups: Sequence[str], turned: bool) -
         found = math.degrees(abs(measured.alpha_M.value))
         declared["alpha_0_deg"] = Declaration(value, max(u, found))
     skew, own = measured.camber_skew, declared.get("camber_skew_deg")
-    if skew is not None and own is not None and abs(skew.value) > CONTRADICTED * own.u:
+    if skew is not None and own is not None and abs(skew.value) > COVERAGE_FACTOR_95 * own.u:
         declared["camber_skew_deg"] = Declaration(own.value, abs(skew.value))
     return tuple(_number(name, prior) for name, prior in declared.items())
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from mffit.diagnosis import wording
 from mffit.fit import Coefficient
-from mffit.measured import setup_notes
+from mffit.measured import wording as of_direct
 from mffit.quantities import CHANNELS
 from mffit.report.text.direct import setups_table, spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -25,7 +25,7 @@ def build_summary(result: BuildResult) -> str:
         parts.append(spin_numbers(result.measured))
         parts.append(setups_table(result.measured))
         scatter = result.measured.setup_scatter
-        parts.append(wrapped(setup_notes.setup_scatter(scatter)) if scatter else "")
+        parts.append(wrapped(of_direct.setup_scatter(scatter)) if scatter else "")
     rows = [
         (
             name,

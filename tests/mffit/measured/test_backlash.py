@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from plain_tyre import DEGREE, Plain, R, settings
 
-from mffit.measured.backlash import backlash_corrected, backlash_shift, odd_alpha
+from mffit.measured.evidence import backlash_corrected, backlash_shift, odd_alpha
 from mffit.parts import split
 from mffit.points import make_points
 

@@ -12,8 +12,8 @@ from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, se
 from scipy.stats import t as student
 
 from mffit.errors import InputError
-from mffit.measured import Contribution, measure, notes
-from mffit.measured.budget_rows import expanded
+from mffit.measured import Contribution, measure, wording
+from mffit.measured.uncertain import expanded
 from mffit.parts import split
 from mffit.points.points import concatenate
 from mffit.results import as_json
@@ -427,7 +427,7 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.C_gamma.value == pytest.approx(-0.9 * 1500.0, rel=0.004)
     assert result.F_phit is None
     assert result.epsilon_gamma is None
-    assert result.notes == (notes.STRAIGHT_PATH,)
+    assert result.notes == (wording.STRAIGHT_PATH,)
     assert result.warnings == ()
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from plain_tyre import Plain, R, settings
+from uncertainties import ufloat
 
-from mffit.measured.groups import load_groups
+from mffit.measured.zeros import load_groups, zeros_by_path
 from mffit.points import make_points
 
 
@@ -35,3 +37,14 @@ def test_spread_loads_are_several_groups():
 def test_only_the_main_pressure_is_read():
     (group,) = load_groups(points(1500.0, np.repeat([200e3, 250e3], [10, 30])))
     np.testing.assert_array_equal(group.index, np.arange(10, 40))
+
+
+def test_zeros_that_were_read_off_zero_are_moved_back_along_the_slope_of_their_direction():
+    """Rolling backwards the slip force changes its sign, the turn-slip force does not."""
+    tyre, off, ways = Plain(), np.radians(0.1), np.array([1, -1])
+    Fy, _ = tyre.readings(off, 0.0, 1500.0, ways)
+    both = make_points(off, 0.0, 1500.0, p=250e3, V=6.0, phi_t=tyre.side / R, Fy=Fy, direction=ways)
+    (group,) = load_groups(both)
+    (zero,) = zeros_by_path(both, group, ufloat(-tyre.cornering * 1500.0, 1.0), settings())
+    for force in zero.readings:
+        assert force.nominal_value == pytest.approx(tyre.turn_slip_force(1500.0), abs=0.1)

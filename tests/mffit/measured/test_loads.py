@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from uncertainties import UFloat, covariance_matrix, ufloat
 
-from mffit.measured.loads import covariance, load_dependence
+from mffit.measured.epsilon import load_dependence
+from mffit.measured.uncertain import Source, by_draws, covariance, named
 
 LOADS = (1000.0, 1500.0, 2000.0)
 
@@ -92,3 +93,10 @@ def test_it_does_not_depend_on_where_the_sources_lie_in_memory():
         kept.append([object() for _ in range(17 * k % 23)])
         found.add(covariance(with_common_sources()).tobytes())
     assert len(found) == 1
+
+
+def test_few_degrees_of_freedom_widen_the_drawn_uncertainty_as_three_do():
+    """The quantiles of the t distribution of three degrees of freedom at 15.87 and 84.13 % are at 1.197; of one at 1.837."""
+    readings = named(-100.0, 1.0, "noise", "N", kind="A", dof=1.0)
+    drawn = by_draws(readings, ufloat(1000.0, 1e-9, Source("exact", "N")), 1.0 + readings / 1000.0)
+    assert drawn.u == pytest.approx(1.197e-3, rel=0.02)

@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields
 
 import pytest
 
-from mffit.measured import Contribution, LoadResult, Measured, notes, wording
+from mffit.measured import Contribution, LoadResult, Measured, wording
 from mffit.measured.result import FINITE_SPIN
 from mffit.rounding import MINUS
 from tir import Quantity
@@ -17,73 +17,78 @@ ANGLE, AXIS, TYRE = (
 )
 
 NOTES = [
-    (notes.STRAIGHT_PATH, "it has no turn slip to measure"),
+    (wording.STRAIGHT_PATH, "it has no turn slip to measure"),
     (
-        notes.not_separable(-331.4, 0.97, 25.0),
+        wording.not_separable(-331.4, 0.97, 25.0),
         "If the force -331 N at (0, 0) were not turn slip, it would take 0.97 deg of misalignment",
     ),
-    (notes.not_separable(-331.4, None, 25.0), "an unknown angle (no sideslip sweep gives C_alpha) of"),
+    (wording.not_separable(-331.4, None, 25.0), "an unknown angle (no sideslip sweep gives C_alpha) of"),
     (
-        notes.several_paths((1.3, -1.3)),
+        wording.several_paths((1.3, -1.3)),
         "combines the zeros of 2 paths (disc's centre 1.3 m to the left, 1.3 m to the right)",
     ),
     (
-        notes.off_nominal_pressure(250.2e3, 290e3),
+        wording.off_nominal_pressure(250.2e3, 290e3),
         "holds at 250 kPa, that of most sweeps; the nominal pressure is 290 kPa",
     ),
     (
-        notes.camber_skew(Quantity(-0.1382, 0.0551, "deg")),
+        wording.camber_skew(Quantity(-0.1382, 0.0551, "deg")),
         "steers the wheel by -0.138 +- 0.055 deg times the sine",
     ),
     (
-        notes.aligned(ANGLE, AXIS, TYRE, 12.0, 0.04),
+        wording.aligned(ANGLE, AXIS, TYRE, 12.0, 0.04),
         "misalignment plus ply-steer alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move eps_gamma by 0.04. By usual "
         "sizes of both, misalignment is 0.070 +- 0.060 deg and ply-steer 0.180 +- 0.060 deg",
     ),
-    (notes.slip_beyond(ANGLE, AXIS, TYRE, 12.0, 0.04), "exceeds what the alignment is declared to leave"),
-    (notes.conicity_measured(Quantity(12.31, 2.04, "N")), "the conicity force is 12.3 +- 2.0 N"),
-    (notes.temperature(-15.04, 0.002, 0.033), "15.0 K colder in the camber sweep than at its zeros"),
-    (notes.secant_bias(0.0654, False), "by the secant is +0.065 from that by the slope at zero"),
-    (notes.secant_bias(0.0654, True), "the budget is that of the published procedure"),
-    (notes.ON_THE_PATH, "slopes at zero on the path of the measurement"),
-    (notes.load_slope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
-    (notes.ONE_LOAD, "one load was measured"),
-    (notes.slope_in_noise(0.05, 0.07), "the slope 0.050 per nominal load is within 2 u = 0.140"),
-    (notes.EPSILON_IN_NOISE, "within 2 u of zero"),
-    (notes.slope_too_steep(0.93), "would reach 0.93"),
-    (notes.STANDARD_UNCERTAINTIES, "k = 1"),
-    (notes.conicity(0.002, 3.0, 0.0096), "3 N (0.2 % of the load, u_conicity) would move eps_gamma by 0.010"),
+    (wording.slip_beyond(ANGLE, AXIS, TYRE, 12.0, 0.04), "exceeds what the alignment is declared to leave"),
+    (wording.conicity_measured(Quantity(12.31, 2.04, "N")), "the conicity force is 12.3 +- 2.0 N"),
+    (wording.temperature(-15.04, 0.002, 0.033), "15.0 K colder in the camber sweep than at its zeros"),
+    (wording.secant_bias(0.0654, False), "by the secant is +0.065 from that by the slope at zero"),
+    (wording.secant_bias(0.0654, True), "the budget is that of the published procedure"),
+    (wording.ON_THE_PATH, "slopes at zero on the path of the measurement"),
+    (wording.load_slope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
+    (wording.ONE_LOAD, "one load was measured"),
+    (wording.slope_in_noise(0.05, 0.07), "the slope 0.050 per nominal load is within 2 u = 0.140"),
+    (wording.EPSILON_IN_NOISE, "within 2 u of zero"),
+    (wording.slope_too_steep(0.93), "would reach 0.93"),
+    (wording.STANDARD_UNCERTAINTIES, "k = 1"),
     (
-        notes.axis_of_other_loads((900.0,), (1500.0, 2000.0)),
+        wording.conicity(0.002, 3.0, 0.0096),
+        "3 N (0.2 % of the load, u_conicity) would move eps_gamma by 0.010",
+    ),
+    (
+        wording.axis_of_other_loads((900.0,), (1500.0, 2000.0)),
         "No backward zeros at 900 N: its zeros are corrected with alpha_M of the zeros at 1500, 2000 N",
     ),
-    (notes.CONTACT_WANDERS, "R holds for the upright wheel"),
+    (wording.CONTACT_WANDERS, "R holds for the upright wheel"),
 ]
 WARNINGS = [
     (
-        notes.camber_skew_beyond(Quantity(0.4907, 0.0212, "deg"), 0.1),
+        wording.camber_skew_beyond(Quantity(0.4907, 0.0212, "deg"), 0.1),
         "a camber skew of 0.491 +- 0.021 deg, and 0.1 deg are declared (u_camber_skew_deg)",
     ),
-    (notes.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
-    (notes.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
+    (wording.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
+    (wording.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
     (
-        notes.nothing_measured(camber=False, zeros=True, radius=False),
+        wording.nothing_measured(camber=False, zeros=True, radius=False),
         "for lack of a camber sweep at zero sideslip and the rolling radius",
     ),
-    (notes.nothing_measured(camber=True, zeros=True, radius=True), "at different loads"),
+    (wording.nothing_measured(camber=True, zeros=True, radius=True), "at different loads"),
     (
-        notes.axis_off(900.0, 64.2, 50.0, 0.213),
+        wording.axis_off(900.0, 64.2, 50.0, 0.213),
         "differ by 64 N (the limit is 50 N): the sideslip axis is off by about 0.21",
     ),
     (
-        notes.paths_contradict(1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))),
+        wording.paths_contradict(
+            1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))
+        ),
         "51 +- 3 Nm (disc's centre 1.3 m to the left), -20 +- 4 Nm (disc's centre 1.3 m to the right); look for",
     ),
     (
-        notes.zeros_disagree(900.0, "backward", ("a", "b"), (-120.0, 310.0)),
+        wording.zeros_disagree(900.0, "backward", ("a", "b"), (-120.0, 310.0)),
         "at 900 N the backward zeros of a and b are -120 N and 310 N; these zeros cannot come from one path",
     ),
-    (notes.misaligned(ANGLE, AXIS, TYRE, -60.0, 0.2), "differ by 120 N"),
+    (wording.misaligned(ANGLE, AXIS, TYRE, -60.0, 0.2), "differ by 120 N"),
 ]
 
 
@@ -98,13 +103,22 @@ def test_a_warning_is_a_sentence_with_its_numbers(warning, words):
     assert words in warning
 
 
+OF_RESULTS = {"epsilon_values", "by_draws", "expanded", "advice"}
+OF_SETUPS = {
+    "several_setups", "one_setup_on_paths", "setup_without_zeros", "sweeps_without_setup", "last_is_aligned",
+    "setup_misaligned", "setup_scatter",
+}  # fmt: skip
+"""Tested with the records that they are about, and in test_setups."""
+
+
 def test_every_remark_is_tested():
-    public = [value for name, value in vars(notes).items() if not name.startswith("_")]
-    sentences = [x for x in public if isinstance(x, str)]
-    functions = [x for x in public if getattr(x, "__module__", "") == notes.__name__]
+    public = {name: value for name, value in vars(wording).items() if not name.startswith("_")}
+    sentences = [x for x in public.values() if isinstance(x, str)]
+    functions = [x for x in public.values() if getattr(x, "__module__", "") == wording.__name__]
+    remarks = {x.__name__ for x in functions} - OF_RESULTS - OF_SETUPS
     assert set(sentences) <= {text for text, _ in (*NOTES, *WARNINGS)}
     assert (
-        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(functions) + 3
+        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(remarks) + 3
     )  # three in two forms
 
 

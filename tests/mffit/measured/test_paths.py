@@ -11,11 +11,10 @@ from plain_tyre import NEWTON, Plain, R, settings
 from scipy.stats import chi2, norm
 from uncertainties import ufloat
 
-from mffit.measured import measure, notes
-from mffit.measured.paths import PathForce, turn_slip_stiffness
+from mffit.measured import measure, wording
+from mffit.measured.turning import PathForce, turn_slip_stiffness
 from mffit.parts import split
 from mffit.points.points import concatenate
-from mffit.rig_errors import AtZero
 
 OFFSET = 40.0  # N, of the load cell; four times what is declared
 U_OFFSET = 10.0
@@ -84,7 +83,7 @@ def test_conicity_and_misalignment_push_alike_on_both_sides():
     assert not any("Conicity" in note for note in both.notes)
     assert of_budget(both, "sideslip alignment") == pytest.approx(0.0, abs=2e-3)
     assert not any("cannot be separated" in note for note in both.notes)
-    assert notes.several_paths((R, -R)) in both.notes
+    assert wording.several_paths((R, -R)) in both.notes
 
 
 def test_the_usual_path_is_reported_as_before():
@@ -136,7 +135,7 @@ def force_of_path(sign: float, C_phit: float, u: float, radius: float = R) -> Pa
     """A turn-slip force that gives this stiffness and standard uncertainty [Nm], shared with no other path."""
     exact = ufloat(radius, 1e-12)
     force = ufloat(sign * C_phit / radius, u / radius)
-    return PathForce(sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force)
+    return PathForce(sign=sign, R=exact, force=force)
 
 
 @pytest.mark.parametrize(("apart", "contradictory"), [(3.25, False), (3.33, True)])
@@ -165,3 +164,12 @@ def test_the_surer_path_counts_more():
     assert found.weights == pytest.approx([0.9, 0.1])
     assert found.C_phit.nominal_value == pytest.approx(301.0)
     assert found.C_phit.std_dev == pytest.approx(math.sqrt(0.9))
+
+
+@pytest.mark.parametrize(("fall", "contradictory"), [(0.03, False), (0.3, True)])
+def test_a_stiffness_that_falls_with_spin_is_no_contradiction_of_two_radii(fall, contradictory):
+    """On a radius of 0.8 m the same tyre is softer by a share of 1/0.8^2 - 1/1.3^2 per m^2; tyres lose some 3 %."""
+    u, small = 0.3, 0.8
+    softer = 300.0 * (1.0 - fall * (1.0 / small**2 - 1.0 / R**2))
+    both = [force_of_path(-1.0, 300.0, u), force_of_path(-1.0, softer, u, radius=small)]
+    assert turn_slip_stiffness(both).contradictory == contradictory

@@ -168,3 +168,20 @@ def test_the_loads_that_contradict_each_other_are_the_ones_named(moved, named):
     assert {agreement.one.load, agreement.other.load} == named
     (sound,) = found(Plain(alpha_0=OFF).campaign(LOADS)).sideslip_zeros
     assert sound.chance > 0.5
+
+
+def test_alpha_M_is_that_of_the_first_set_up_that_ran_both_ways():
+    """The usual path was run forwards only, the other side of the disc both ways and in another set-up, whose axis is off."""
+    usual, other = Plain().campaign((1500.0,), backward=False), Plain(side=1, alpha_0=OFF).campaign((1500.0,))
+    result = found(in_setup(usual, "1"), in_setup(zeros(other), "2"))
+    assert result.nominal.paths[0] == usual.phi_t[0]
+    assert result.alpha_M.value == pytest.approx(OFF, rel=0.03)
+
+
+def test_driven_points_are_no_sideslip_sweep():
+    """A braked wheel has little side force left: its points would halve the cornering stiffness."""
+    usual = Plain().campaign((1500.0,))
+    braked = usual.replace(kappa=-0.1, Fy=0.3 * usual.Fy)
+    (alone,), (both,) = found(usual).per_load, found(usual, braked).per_load
+    assert both.C_alpha == alone.C_alpha
+    assert both.epsilon_gamma == alone.epsilon_gamma

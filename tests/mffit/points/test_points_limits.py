@@ -9,12 +9,11 @@ import pandas as pd
 import pytest
 
 from mffit.points import constants
-from mffit.points.choice import ROLLING_IN, chosen
+from mffit.points.choice import ROLLING_IN, chosen, settled
 from mffit.points.faulty import Fault, faults
 from mffit.points.lag import Lag, common, measure
 from mffit.points.remarks import driven, left_out, note
-from mffit.points.settling import settled
-from mffit.points.steady import SteadySettings
+from mffit.points.steady import SteadySettings, moves
 from mffit.points.stretch import SWEEP, Stretch
 
 RATE = 50.0
@@ -116,10 +115,10 @@ def test_a_spike_is_twelve_times_the_noise():
         assert bool(reasons(recording(Fy=spiky))) == found
 
 
-@pytest.mark.parametrize(("length", "found"), [(6, True), (5, False)])
+@pytest.mark.parametrize(("length", "found"), [(4, True), (2, False)])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_six_samples_at_the_end_of_the_range_are_clipped(length, found, side):
-    series = recording()
+def test_a_few_samples_at_the_end_of_a_fine_range_are_clipped(length, found, side):
+    """Of 500 samples of which hardly one in a hundred repeats, three in a row are chance once in a thousand recordings."""
     end = -300.0 + side * 20.0
     series = spoiled("Fy", slice(200, 200 + length), end)
     assert ("Fy clipped" in reasons(series)) == found
@@ -137,14 +136,7 @@ def test_half_a_second_of_one_value_is_stuck(length, found):
         assert fault.ends_stretch
 
 
-@pytest.mark.parametrize(("length", "found"), [(20, True), (19, False)])
-def test_at_a_low_rate_twenty_samples_are_stuck(length, found):
-    series = spoiled("Mz", slice(200, 200 + length), 9.01)
-    series.time = np.arange(N) / 10.0
-    assert ("Mz stuck" in reasons(series)) == found
-
-
-@pytest.mark.parametrize(("share", "found"), [(0.85, True), (0.70, False)])
+@pytest.mark.parametrize(("share", "found"), [(0.85, True), (0.4, False)])
 def test_a_channel_of_coarse_resolution_is_not_stuck(share, found):
     """A channel that mostly repeats its last sample says nothing by repeating it longer."""
     rng = np.random.default_rng(8)
@@ -154,9 +146,23 @@ def test_a_channel_of_coarse_resolution_is_not_stuck(share, found):
     assert ("Mz stuck" in reasons(recording(Mz=Mz))) == found
 
 
+@pytest.mark.parametrize("repeats", [0.1, 0.3])
+def test_sound_channels_of_any_resolution_are_hardly_ever_stuck_or_clipped(repeats):
+    """Noise that is rounded: the chance of a run is that of its repeats, so one recording in a thousand is conspicuous."""
+    rng = np.random.default_rng(5)
+    step = repeats * 2.0 * np.sqrt(np.pi)  # two normal numbers, rounded, are equal with about this chance
+    slow = np.arange(N) / 2.0  # half a second is one sample
+    rounded = (step * np.round(rng.standard_normal((100, N)) / step) for _ in range(3))
+    found = [
+        reasons(recording(Fy=-300.0 + Fy, Mz=9.0 + Mz, Fz=1500.0 + Fz, time=slow))
+        for Fy, Mz, Fz in zip(*rounded, strict=True)
+    ]
+    assert sum(map(bool, found)) <= 2
+
+
 @pytest.mark.parametrize(("moved", "found"), [(40.0, True), (10.0, False)])
 def test_a_still_angle_is_stuck_only_while_the_force_moves(moved, found):
-    """3 N of noise: a range of 12 times that is 36 N."""
+    """3 N of noise: a range of 12 times that is 36 N, whatever its memory."""
     rng = np.random.default_rng(9)
     alpha = 0.03 + 1e-4 * rng.standard_normal(N)
     alpha[100:150] = 0.03
@@ -270,6 +276,31 @@ def test_a_drift_is_dropped_from_its_harmless_size_on(change, dropped):
         assert found.begin == 250
 
 
+@pytest.mark.parametrize(("change", "dropped"), [(4.0, False), (30.0, True)])
+def test_a_drift_is_told_from_its_noise(change, dropped):
+    """500 samples of 10 N: the change along a line is known to 1.5 N; half of it may be cut off as a transient."""
+    noise = 10.0 * np.random.default_rng(6).standard_normal(500)
+    found = settled(
+        Stretch(0, 500), settings(500), [(noise + change * np.linspace(-0.5, 0.5, 500), 1.0, "N")]
+    )
+    assert bool(found.dropped) == dropped
+
+
+@pytest.mark.parametrize(("size", "begin"), [(3.0, 0), (13.0, 50)])
+def test_a_transient_is_told_from_its_noise(size, begin):
+    """The first 50 of 500 samples of 10 N are known to 1.5 N against the second half."""
+    x = 10.0 * np.random.default_rng(6).standard_normal(500)
+    x[:50] += size
+    assert settled(Stretch(0, 500), settings(500), [(x, 1e3, "N")]).begin == begin
+
+
+def test_noise_of_a_setting_is_no_move_however_large():
+    """Means of half a second of 1 deg of noise differ by more than the step of a set-point."""
+    rng = np.random.default_rng(6)
+    noisy = settings(2000)._replace(alpha=np.radians(rng.standard_normal(2000)))
+    assert not np.any(moves(noisy)["alpha"])
+
+
 def swept(n: int = 2000, T=None, Fz=None) -> Series:
     """Five sweeps of sideslip at 50 Hz, eight seconds each; the load is set for each."""
     time = np.arange(n) / RATE
@@ -355,6 +386,7 @@ def test_too_few_samples_or_one_way_alone_show_no_lag():
     assert np.isnan(measure(alpha[:31], Fy[:31], s[:31]).lag)
     assert np.isnan(measure(alpha[:200], Fy[:200], s[:200]).lag)
     assert np.isnan(measure(alpha, np.abs(Fy), s).lag)
+    assert np.isnan(measure(alpha, np.maximum(Fy, 0.0), s).lag)
 
 
 def test_the_common_lag_is_the_median_of_three_sweeps_or_the_mean_of_two():
@@ -367,4 +399,4 @@ def test_the_common_lag_is_the_median_of_three_sweeps_or_the_mean_of_two():
     # 1.4826 times the median of (0.04, 0, 0.16), as the error of a median of three
     assert u == pytest.approx(np.hypot(1.2533 * 1.4826 * 0.04 / np.sqrt(3.0), 0.01), rel=1e-4)
     assert np.isnan(common(lags[2:])[0])
-    assert constants.FEWEST_SWEEPS_OF_LAG == 3
+    assert constants.FEWEST_SWEEPS == 3

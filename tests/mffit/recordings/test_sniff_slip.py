@@ -67,3 +67,12 @@ def test_a_wheel_whose_speed_was_not_recorded_has_no_slip(table, tmp_path):
     (recording,) = found.recordings
     assert "kappa" not in recording.guesses
     assert "speed of the wheel was not recorded" in text.sniff_summary(found)
+
+
+def test_the_column_whose_zero_is_nearest_to_free_rolling_is_taken_whatever_its_name(
+    table, project, tmp_path
+):
+    swapped = table.rename(columns={"SL": "SR", "SR": "SL"})
+    found, entry, _ = started(write_mat73(swapped, tmp_path / "drive.mat"), tmp_path)
+    assert entry["column"] == "SR"
+    assert found.points.kappa == pytest.approx(project[0].points.kappa)

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.points import Points, make_points
 from mffit.suspicion import RULES, signatures
 from mffit.suspicion.slopes import SlopeWithError, slope
@@ -201,16 +202,20 @@ def test_moments_follow_the_force_with_half_the_radius_only_about_another_point(
         assert found("moments-about-another-point", other.replace(Mx=lever * other.Fy)) == 0
 
 
-def test_a_disc_needs_both_signs_and_a_zero_within_three_tenths_of_a_degree():
+def test_a_disc_needs_both_signs():
     assert found("one-sided-on-a-disc", SOUND) == 0
-    assert found("one-sided-on-a-disc", tyre(alpha=ALPHA[2:])) == 0
-    assert found("one-sided-on-a-disc", tyre(alpha=ALPHA[3:])) == 1
+    for side in (1.0, -1.0):
+        assert found("one-sided-on-a-disc", tyre(alpha=side * ALPHA[2:])) == 0
+        assert found("one-sided-on-a-disc", tyre(alpha=side * ALPHA[3:])) == 1
+        assert found("one-sided-on-a-disc", tyre(gamma=side * np.radians(np.arange(7.0)))) == 1
+
+
+def test_a_disc_needs_a_zero_that_is_straight_and_upright():
     assert found("no-zero-on-a-disc", SOUND) == 0
-    assert found("no-zero-on-a-disc", tyre(alpha=np.radians([-1.0, 0.29]))) == 0
-    assert found("no-zero-on-a-disc", tyre(alpha=np.radians([-1.0, 0.31]))) == 1
     assert found("no-zero-on-a-disc", SOUND.replace(direction=-1)) == 1
-    assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.49))) == 0
-    assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.51))) == 1
+    for share, missing in ((0.98, 0), (1.02, 1)):
+        assert found("no-zero-on-a-disc", tyre(alpha=np.array([-0.1, share * STRAIGHT.rad]))) == missing
+        assert found("no-zero-on-a-disc", tyre(gamma=share * UPRIGHT.rad)) == missing
 
 
 def sentence(rule: str, points: Points) -> str:

@@ -11,7 +11,7 @@ import pytest
 from mffit import config, virtual_rig
 from mffit.errors import InputError
 from mffit.virtual_rig import load_plan
-from mffit.virtual_rig.campaign import faults_of
+from mffit.virtual_rig.campaign import faults_in_setups
 from mffit.virtual_rig.settings import settings_of
 from mffit.virtual_rig.simulate import configuration_text
 from mffit.virtual_rig.truth import direct_truth
@@ -116,7 +116,7 @@ def test_a_seed_is_not_negative(run, seed):
 def test_drawn_faults_scatter_as_declared(content, folder, tyre):
     plan = load_plan(content | {"faults": DRAW}, folder=folder)
     rng = np.random.default_rng(0)
-    drawn = [faults_of(plan, tyre, rng) for _ in range(1500)]
+    drawn = [faults_in_setups(plan, tyre, rng)[plan.setups[0]] for _ in range(1500)]
     C_alpha = abs(tyre.state(1400.0, Vx=6.0).K_ya)
     expected = {
         "alpha_0_deg": (0.0, np.degrees(25.0 / C_alpha)),
@@ -134,7 +134,7 @@ def test_drawn_faults_scatter_as_declared(content, folder, tyre):
 def test_a_fault_that_is_given_is_not_drawn_and_leaves_the_others_alone(content, folder, tyre):
     def faults(**table):
         plan = load_plan(content | {"faults": DRAW | table}, folder=folder)
-        return faults_of(plan, tyre, np.random.default_rng(7))
+        return faults_in_setups(plan, tyre, np.random.default_rng(7))[plan.setups[0]]
 
     free, fixed = faults(), faults(gamma_0_deg=0.25, gain=1.02)
     assert fixed["gamma_0_deg"] == 0.25

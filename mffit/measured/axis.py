@@ -1,0 +1,211 @@
+"""The zero of the sideslip axis of a set-up: alpha_M, the sum of misalignment and ply-steer, and its parts.
+
+The zeros both ways at all loads of a set-up give it: the axis is off by one angle at every load of a set-up, ply-steer
+belongs to the tyre and may change with load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import UFloat
+
+from mffit.config import Config
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
+from mffit.measured import constants, wording
+from mffit.measured.result import LoadResult, SideslipReading, SideslipZeros, usual_ply_steer
+from mffit.measured.uncertain import combined, covariance, named, quantity
+
+
+class SlipStiffness(NamedTuple):
+    """Slope and bend of the side force over sideslip at its reading of zero; the slope is the usual one if none was measured."""
+
+    C_alpha: UFloat  #: [N/rad]
+    bend: UFloat | None  #: change of the slope with sideslip, on the usual side of the disc [N/rad^2]
+
+    def at(self, angle: UFloat) -> UFloat:
+        """Slope at true zero [N/rad], where the axis is off by an angle [rad]."""
+        return self.C_alpha if self.bend is None else self.C_alpha - self.bend * angle
+
+    def force(self, angle: UFloat, side: float) -> UFloat:
+        """Side force [N] that an angle [rad] adds to a forward reading of zero; ``side`` is 1, or -1 on the other side."""
+        linear = self.at(angle) * angle
+        return linear if self.bend is None else linear + 0.5 * side * self.bend * angle**2
+
+
+def slip_stiffness(C_alpha: UFloat | None, bend: UFloat | None, load: float) -> SlipStiffness:
+    """As measured, else the usual one at a load [N]."""
+    if C_alpha is not None:
+        return SlipStiffness(C_alpha, bend)
+    usual = USUAL_CORNERING_STIFFNESS * load
+    return SlipStiffness(
+        named(-usual, constants.GUESSED_STIFFNESS_U * usual, "usual cornering stiffness", "N/rad"), None
+    )
+
+
+class ZeroAngle(NamedTuple):
+    """alpha_M as the zeros both ways of one set-up, load and path give it."""
+
+    setup: str
+    load: float  #: [N]
+    phi_t: float  #: turn slip of the path [1/m]
+    angle: UFloat  #: [rad]
+
+
+class SetupAngle(NamedTuple):
+    """alpha_M of a set-up over load."""
+
+    nominal_load: float  #: [N]
+    angle: UFloat  #: at the nominal load [rad]
+    over_load: UFloat  #: its change per nominal load, by ply-steer [rad]
+
+    def at(self, load: float) -> UFloat:
+        """alpha_M at a load [rad]."""
+        return self.angle + (load / self.nominal_load - 1.0) * self.over_load
+
+
+def angles_of_setups(
+    readings: Sequence[ZeroAngle], nominal_load: float
+) -> tuple[dict[str, SetupAngle], tuple[SideslipZeros, ...]]:
+    """alpha_M of every set-up that was run both ways, and how well its readings agree.
+
+    Least squares over the loads of a set-up. What ply-steer may change over one nominal load is one more reading: zero, as
+    uncertain as ply-steer itself.
+    """
+    # One tyre: its change over load is common to the set-ups.
+    expected = named(0.0, usual_ply_steer(), "ply-steer over load", "rad")
+    found, agreements = {}, []
+    for setup in dict.fromkeys(reading.setup for reading in readings):
+        own = [reading for reading in readings if reading.setup == setup]
+        off = np.array([reading.load / nominal_load - 1.0 for reading in own])
+        y = [*(reading.angle for reading in own), expected]
+        law = combined(y, np.vstack([np.column_stack([np.ones(len(own)), off]), [0.0, 1.0]]))
+        found[setup] = SetupAngle(nominal_load, *law.numbers)
+        if len(own) > 1:
+            agreements.append(SideslipZeros(setup, law.chance, *_farthest_apart(own, off, covariance(y))))
+    return found, tuple(agreements)
+
+
+def _farthest_apart(
+    own: Sequence[ZeroAngle], off: np.ndarray, errors: np.ndarray
+) -> tuple[SideslipReading, SideslipReading]:
+    """The two readings whose difference is largest over its uncertainty, that of ply-steer over load included."""
+    n = len(own)
+    whole = errors[:n, :n] + errors[n, n] * np.outer(off, off)
+
+    def apart(pair: tuple[int, int]) -> float:
+        i, j = pair
+        square = whole[i, i] + whole[j, j] - 2.0 * whole[i, j]
+        return float((own[i].angle.nominal_value - own[j].angle.nominal_value) ** 2 / square)
+
+    i, j = max(combinations(range(n), 2), key=apart)
+    one, other = (SideslipReading(own[k].load, own[k].phi_t, quantity(own[k].angle, "rad")) for k in (i, j))
+    return one, other
+
+
+class ZeroSplit(NamedTuple):
+    """alpha_M split into its two parts [rad], each with the uncertainty that the other one leaves."""
+
+    misalignment: UFloat
+    ply_steer: UFloat
+
+    @property
+    def axis_is_clear(self) -> bool:
+        """Whether the misalignment differs clearly from zero."""
+        return _is_clear(self.misalignment.nominal_value, self.misalignment.std_dev)
+
+
+def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> ZeroSplit | None:
+    """The parts by their priors; None without both directions in the set-up.
+
+    Parameters
+    ----------
+    alpha_M : their sum [rad]
+    C_alpha : cornering stiffness [N/rad]
+    u_force : declared standard uncertainty of the alignment, as the side force that it causes [N]
+
+    Notes
+    -----
+    The sum is divided in the ratio of the prior variances. If it is far beyond both priors, the declared alignment is
+    contradicted, as ply-steer is a property of tyres and no tyre has so much: the axis then gets the variance that is missing.
+    """
+    if alpha_M is None:
+        return None
+    axis, tyre = u_force / abs(C_alpha), usual_ply_steer()
+    size = abs(alpha_M.nominal_value)
+    if size > COVERAGE_FACTOR_95 * math.hypot(axis, tyre):
+        axis = math.sqrt(size**2 - tyre**2)
+    both = math.hypot(axis, tyre)
+    share = (axis / both) ** 2
+    exchanged = named(0.0, axis * tyre / both, "split of misalignment and ply-steer", "rad")
+    return ZeroSplit(share * alpha_M + exchanged, (1.0 - share) * alpha_M - exchanged)
+
+
+def at_true_zero(
+    C_alpha: UFloat | None, bend: UFloat | None, split: ZeroSplit | None, u_force: float
+) -> UFloat | None:
+    """Cornering stiffness at zero sideslip [N/rad] from that at the reading of zero.
+
+    Parameters
+    ----------
+    C_alpha : slope at the reading of zero [N/rad]
+    bend : change of the slope with sideslip [N/rad^2]
+    split : the misalignment, if both directions were run
+    u_force : else the declared standard uncertainty of the alignment, as the side force that it causes [N]
+
+    Notes
+    -----
+    On a disc the curve is shifted by about a degree, so its slope changes even at zero.
+    """
+    if C_alpha is None or bend is None:
+        return C_alpha
+    if split is None:
+        off = named(0.0, u_force / abs(C_alpha.nominal_value), "sideslip alignment of the slope", "rad")
+    else:
+        off = split.misalignment
+    return C_alpha - bend * off
+
+
+def camber_at_true_zero(C_alpha: float, bend: UFloat, split: ZeroSplit) -> UFloat:
+    """Camber stiffness at true zero of sideslip over that at the reading of zero.
+
+    Camber that acts as sideslip loses its force with the bend of the sideslip curve, camber with a force of its own does not.
+    Every share between them is as likely: a rectangular distribution from 0 to 1 (JCGM 100, 4.3.7).
+    """
+    share = named(0.5, 1.0 / math.sqrt(12.0), "camber stiffness off true zero", "-")
+    return 1.0 - share * (bend / C_alpha) * split.misalignment
+
+
+class AlignmentVerdict(NamedTuple):
+    """Whether the slip force at zero exceeds what the rig's own alignment leaves."""
+
+    beyond: bool  #: the force exceeds it, and the fit corrects the readings
+    misaligned: bool  #: the split supports that the axis, and not the tyre, causes it
+    sentence: str  #: empty where both sides of the disc make the misalignment cancel
+
+
+def alignment_verdict(config: Config, row: LoadResult) -> AlignmentVerdict:
+    """The verdict at one load with a turn-slip force."""
+    assert row.F_phit is not None
+    force, left = row.F_phit.value, config.rig.u("alpha_0_deg")
+    if row.alpha_M is None and min(row.paths) < 0.0 < max(row.paths):
+        return AlignmentVerdict(False, False, "")
+    if row.alpha_M is None:
+        angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
+        return AlignmentVerdict(False, False, wording.not_separable(force, angle, left))
+    slip = row.slip_force(row.alpha_M.value)
+    beyond = abs(slip) > left
+    axis, tyre = row.misalignment, row.ply_steer
+    assert axis is not None
+    assert tyre is not None
+    clear = beyond and _is_clear(axis.value, axis.u)
+    sentence = wording.misaligned if clear else wording.slip_beyond if beyond else wording.aligned
+    return AlignmentVerdict(beyond, clear, sentence(row.alpha_M, axis, tyre, slip, row.shift_by(slip)))
+
+
+def _is_clear(misalignment: float, u: float) -> bool:
+    return bool(abs(misalignment) > COVERAGE_FACTOR_95 * u)

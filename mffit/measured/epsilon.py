@@ -1,0 +1,141 @@
+"""eps_gamma of one load: plain, corrected for finite spin, by random draws and from the moments; and its law over load."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import UFloat
+
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_U_MOMENT
+from mffit.measured import constants, wording
+from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
+from mffit.measured.evidence import DirectEvidence
+from mffit.measured.slopes import slope_at_zero
+from mffit.measured.stiffnesses import sweep
+from mffit.measured.turning import Turning
+from mffit.measured.uncertain import Draws, by_draws, combined
+from mffit.measured.zeros import LoadGroup, zeros
+from mffit.rig_errors import AtZero
+
+
+class Factor(NamedTuple):
+    """The estimates of eps_gamma from one camber stiffness."""
+
+    plain: UFloat  #: by (17), finite spin in its uncertainty
+    debiased: UFloat  #: corrected for finite spin
+    ratio: tuple[UFloat, UFloat]  #: numerator and denominator of (17), both over the path radius [N]
+
+    @property
+    def draws(self) -> Draws:
+        """u and 95 % interval of the plain value by random draws."""
+        return by_draws(*self.ratio, self.plain)
+
+
+def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloat, warmer: float) -> Factor:
+    """eps_gamma of one load.
+
+    Parameters
+    ----------
+    evidence : has the errors that are common to all loads
+    C_gamma : camber stiffness, less what the rig adds to it [N/rad]
+    found : turn-slip force and stiffness
+    r_e : effective radius [m]
+    warmer : how much warmer the tyre was in the camber sweep than at zero [K]
+
+    Notes
+    -----
+    A secant is the published procedure, whose budget has neither finite spin nor temperature.
+    """
+    assert evidence.rig is not None
+    R = evidence.rig.R
+    if not evidence.published:
+        C_gamma = C_gamma * (1.0 - warmer * evidence.warming)
+    ratio = camber_reduction(found.force, C_gamma, r_e, R, found.sign).epsilon_gamma
+    spin = (1.0 - ratio.nominal_value) * found.phi_t[0] ** 2
+    plain = ratio if evidence.published else ratio + spin * evidence.spin_left
+    return Factor(plain, ratio - spin * evidence.spin_known, (r_e / R * C_gamma, found.sign * found.force))
+
+
+def corrected(evidence: DirectEvidence, C_gamma: UFloat | None, C_alpha: UFloat | None) -> UFloat | None:
+    """A camber stiffness [N/rad] less what the rig errors add to it."""
+    if C_gamma is None or C_alpha is None or evidence.rig is None:
+        return C_gamma
+    at = AtZero(C_alpha.nominal_value, C_gamma.nominal_value, 0.0)
+    return true_camber_stiffness(C_gamma, evidence.rig.errors, at)
+
+
+def warmer_in_camber(evidence: DirectEvidence, group: LoadGroup) -> float:
+    """How much warmer the tyre was in the camber sweep than at its zeros [K]; 0 if it was not measured at both."""
+    points = evidence.points
+    leaning = points.T[sweep(points, points.Fy, group, "gamma", evidence.config)]
+    upright = points.T[np.concatenate([zeros(points, group, direction) for direction in (1, -1)])]
+    known = [T[np.isfinite(T)] for T in (leaning, upright)]
+    return float(np.mean(known[0]) - np.mean(known[1])) if all(map(len, known)) else 0.0
+
+
+def epsilon_from_moments(
+    evidence: DirectEvidence, group: LoadGroup, found: Turning, r_e: UFloat
+) -> float | None:
+    """The value from the self-aligning moments, without an uncertainty; None without a clear turn-slip moment.
+
+    Spin on a disc changes the trail far more than the side force, so the moments are not proportional to spin: on simulated
+    rigs the value is off by 0.3. No uncertainty of readings and rig states that, and the bias needs a model of the moment.
+    """
+    moment, parts, rig = found.zeros.moment, evidence.parts, evidence.rig
+    assert rig is not None
+    if moment is None or abs(moment.nominal_value) < COVERAGE_FACTOR_95 * moment.std_dev:
+        return None
+    u = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, USUAL_U_MOMENT / math.sqrt(2.0))
+    i = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
+    local, spread = constants.CUBIC_CAMBER.rad, float(constants.CURVATURE_SPREAD)
+    slope = slope_at_zero(evidence.points.gamma[i], parts.Mz_odd[i], u[i], local=local, curvature=spread)
+    return None if slope is None else float(1.0 + r_e.n * slope.value / (found.sign * moment.n * rig.R.n))
+
+
+class LoadDependence(NamedTuple):
+    """PECP1 and PECP2 of eps_gamma(Fz) = PECP1 (1 + PECP2 dfz)."""
+
+    pecp1: float
+    pecp2: float
+    u_pecp2: float | None
+    note: str
+
+
+def load_dependence(
+    loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float
+) -> LoadDependence:
+    """Fit the slope over load with eps_gamma at the nominal load held; rig errors common to all loads stay correlated.
+
+    Parameters
+    ----------
+    loads : [N]
+    epsilon : eps_gamma at each, with its correlations
+    nominal : which of them is the load nearest FNOMIN
+    Fz0 : FNOMIN [N]
+
+    Notes
+    -----
+    PECP2 is written only where slope and PECP1 are clearly not zero and eps_gamma stays below its limit within the loads.
+    """
+    at_nominal = epsilon[nominal]
+    pecp1 = float(at_nominal.nominal_value)
+    others = [i for i in range(len(loads)) if i != nominal]
+    if not others:
+        return LoadDependence(pecp1, 0.0, None, wording.ONE_LOAD)
+    x = np.array([[(loads[i] - loads[nominal]) / Fz0] for i in others])
+    (law,) = combined([epsilon[i] - at_nominal for i in others], x).numbers
+    slope, u = float(law.nominal_value), float(law.std_dev)
+    u_pecp2 = u / max(abs(pecp1), 1e-12)
+    most = max(pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads)
+    if abs(slope) <= COVERAGE_FACTOR_95 * u:
+        why = wording.slope_in_noise(slope, u)
+    elif abs(pecp1) <= COVERAGE_FACTOR_95 * at_nominal.std_dev:
+        why = wording.EPSILON_IN_NOISE
+    elif most >= constants.LARGEST_EPSILON:
+        why = wording.slope_too_steep(most)
+    else:
+        return LoadDependence(pecp1, slope / pecp1, u_pecp2, wording.load_slope(slope / pecp1, u_pecp2))
+    return LoadDependence(pecp1, 0.0, u_pecp2, why)

@@ -1,0 +1,215 @@
+"""Numbers that know the sources of their uncertainty: combined by least squares, and listed in a budget (JCGM 100, 101)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.special import chdtrc, ndtr, stdtrit
+from uncertainties import UFloat, ufloat
+
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.measured import constants
+from tir import Quantity
+
+COVERAGE = float(2.0 * ndtr(COVERAGE_FACTOR_95) - 1.0)
+"""Coverage probability of expanded uncertainties and intervals (JCGM 100, 6.2.2)."""
+LEAST_DOF = 3.0
+"""Fewest degrees of freedom that are drawn, as the t distribution has no variance below (JCGM 101, 6.4.9)."""
+
+
+class Source(NamedTuple):
+    """The origin of a standard uncertainty, in the terms of JCGM 100."""
+
+    name: str
+    unit: str  #: of the input quantity
+    kind: str = "B"  #: "A": evaluated from the scatter of readings; "B": by other means
+    dof: float = math.inf  #: degrees of freedom
+
+
+def named(value: float, u: float, source: str, unit: str, **more: Any) -> UFloat:
+    """An input quantity with its standard uncertainty; ``more`` are further fields of its :class:`Source`."""
+    return ufloat(value, max(u, 1e-12), Source(source, unit, **more))  # the propagation does not accept u = 0
+
+
+def quantity(x: UFloat, unit: str) -> Quantity:
+    """A number with uncertainty as the record that leaves this folder."""
+    return Quantity(float(x.nominal_value), float(x.std_dev), unit)
+
+
+def quantity_if(x: UFloat | None, unit: str) -> Quantity | None:
+    """The same of a number that may be missing."""
+    return None if x is None else quantity(x, unit)
+
+
+def covariance(numbers: Sequence[UFloat]) -> np.ndarray:
+    """Covariance (n, n) of numbers with uncertainty, their independent sources in order of first appearance.
+
+    ``uncertainties.covariance_matrix`` goes through the sources as a set, whose order, and with it the last digit of the
+    sums, differs from run to run.
+    """
+    sources = list(dict.fromkeys(source for number in numbers for source in number.derivatives))
+    slopes = np.array(
+        [[number.derivatives.get(source, 0.0) * source.std_dev for source in sources] for number in numbers]
+    )
+    return np.asarray(slopes @ slopes.T)
+
+
+class Combined(NamedTuple):
+    """Numbers found by generalised least squares."""
+
+    numbers: tuple[UFloat, ...]  #: (k,)
+    weights: np.ndarray  #: (k, n) of the readings in them
+    chance: float  #: probability that readings of such numbers differ by so much; 1 if nothing is left over
+
+
+def combined(
+    readings: Sequence[UFloat], design: np.ndarray | None = None, beside: np.ndarray | float = 0.0
+) -> Combined:
+    """The numbers of least uncertainty whose combination by ``design`` (n, k) the readings are; default their mean.
+
+    ``beside`` is a further covariance (n, n) of the readings; it counts for the chance only.
+    """
+    n = len(readings)
+    A, errors = np.ones((n, 1)) if design is None else design, covariance(readings)
+    said = np.array([reading.nominal_value for reading in readings])
+    weights = _estimator(A, errors)
+    numbers = tuple(sum(w * x for w, x in zip(row, readings, strict=True)) for row in weights.tolist())
+    errors = errors + beside
+    left, freedom = said - A @ (_estimator(A, errors) @ said), n - A.shape[1]
+    chance = float(chdtrc(freedom, left @ np.linalg.solve(_defined(errors), left))) if freedom else 1.0
+    return Combined(numbers, weights, chance)
+
+
+def _defined(errors: np.ndarray) -> np.ndarray:
+    """The covariance with a ridge, which keeps weights defined where all errors are shared."""
+    return np.asarray(errors + 1e-9 * np.diag(np.diag(errors)))
+
+
+def _estimator(A: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Weights (k, n) of least uncertainty."""
+    weighted = np.linalg.solve(_defined(errors), A)
+    return np.asarray(np.linalg.solve(A.T @ weighted, weighted.T))
+
+
+def agreed(declared: UFloat, measurements: Sequence[UFloat]) -> UFloat:
+    """The mean of a declared number and its measurements; of these alone if they contradict the declared uncertainty."""
+    (found,) = combined(measurements).numbers
+    difference = found - declared
+    if abs(difference.nominal_value) > COVERAGE_FACTOR_95 * difference.std_dev:
+        return found
+    return combined([declared, *measurements]).numbers[0]
+
+
+class Contribution(NamedTuple):
+    """One line of the budget, in the terms of JCGM 100."""
+
+    source: str
+    u: float  #: standard uncertainty of the input quantity, in its own unit
+    unit: str
+    contribution: float  #: to u(eps_gamma)
+    type: str = "B"  #: "A": evaluated from the scatter of readings; "B": by other means
+    distribution: str = "normal"
+    value: float = 0.0  #: estimate of the input quantity
+    sensitivity: float = math.nan  #: change of eps_gamma with the input quantity, per unit
+    dof: float = math.inf  #: degrees of freedom
+
+
+class Expanded(NamedTuple):
+    """The expanded uncertainty U = k u of eps_gamma."""
+
+    U: float
+    k: float  #: coverage factor, from the t distribution
+    dof: float  #: effective degrees of freedom by Welch and Satterthwaite
+    probability: float  #: that the interval +-U covers the true value
+
+
+class Draws(NamedTuple):
+    """u(eps_gamma) and its 95 % interval by random draws (JCGM 101)."""
+
+    u: float
+    interval: tuple[float, float]  #: 2.5 % and 97.5 % quantiles
+
+
+def budget(epsilon: UFloat) -> tuple[Contribution, ...]:
+    """What each source contributes to u(eps_gamma), largest first; variables of one source share a row."""
+    sources: dict[str, list[Any]] = {}
+    for variable in epsilon.derivatives:
+        sources.setdefault(variable.tag.name, []).append(variable)
+    rows = (_row(epsilon, variables) for variables in sources.values())
+    return tuple(sorted((row for row in rows if row.contribution > 1e-9), key=lambda row: -row.contribution))
+
+
+def _row(epsilon: UFloat, variables: Sequence[Any]) -> Contribution:
+    """The row of one source; of several variables the largest is shown, and the contribution is that of all."""
+    parts = epsilon.error_components()
+    largest = max(variables, key=lambda variable: parts[variable])
+    source, size = largest.tag, math.degrees(1.0) if largest.tag.unit == "rad" else 1.0
+    contribution = math.hypot(*(parts[variable] for variable in variables))
+    return Contribution(
+        source=source.name,
+        u=largest.std_dev * size,
+        unit="deg" if source.unit == "rad" else source.unit,
+        contribution=contribution,
+        type=source.kind,
+        value=largest.nominal_value * size,
+        sensitivity=math.copysign(contribution / largest.std_dev, epsilon.derivatives[largest]) / size,
+        dof=_effective_dof([(parts[variable], variable.tag.dof) for variable in variables]),
+    )
+
+
+def _effective_dof(parts: Sequence[tuple[float, float]]) -> float:
+    """Degrees of freedom of a sum (JCGM 100, G.2b) from the contribution and degrees of freedom of each part."""
+    weight = sum(u**4 / dof for u, dof in parts)
+    return math.hypot(*(u for u, _ in parts)) ** 4 / weight if weight > 0.0 else math.inf
+
+
+def expanded(rows: Sequence[Contribution]) -> Expanded:
+    """The expanded uncertainty for a coverage probability of 95 % from the rows of a budget."""
+    dof = _effective_dof([(row.contribution, row.dof) for row in rows])
+    # JCGM 100, G.4.1: the t distribution of the next lower whole number of degrees of freedom.
+    k = (
+        float(stdtrit(max(1.0, math.floor(dof + 1e-6)), 0.5 + COVERAGE / 2.0))
+        if math.isfinite(dof)
+        else float(COVERAGE_FACTOR_95)
+    )
+    return Expanded(k * math.hypot(*(row.contribution for row in rows)), k, dof, round(COVERAGE, 6))
+
+
+def by_draws(r_e_C_gamma: UFloat, C_phit: UFloat, epsilon: UFloat, seed: int = 1) -> Draws:
+    """u and 95 % interval of eps_gamma = 1 + r_e C_gamma / C_phit by random draws of all independent sources.
+
+    Parameters
+    ----------
+    r_e_C_gamma : numerator, over the path radius [N]
+    C_phit : denominator, over the path radius [N]
+    epsilon : the factor; sources that it has in addition to those of the ratio add to it
+    seed : of the draws
+
+    Notes
+    -----
+    Numerator and denominator are linear in their sources, but for products of two small numbers; their ratio is not, and
+    is taken draw by draw. The radius is taken out of both, as it cancels where r_e comes from a revolution of the disc.
+    u is half the distance between the 15.87 % and 84.13 % quantiles, because a ratio has heavy tails.
+    """
+    rng, count = np.random.default_rng(seed), int(constants.MONTE_CARLO_DRAWS)
+    beside = epsilon - (1.0 + r_e_C_gamma / C_phit)
+
+    def drawn(source: Source, u: float) -> np.ndarray:
+        if source.kind == "A" and math.isfinite(source.dof):
+            return u * rng.standard_t(max(source.dof, LEAST_DOF), count)
+        return u * rng.standard_normal(count)
+
+    variables = dict.fromkeys([*r_e_C_gamma.derivatives, *C_phit.derivatives, *beside.derivatives])
+    deviations = {variable: drawn(variable.tag, variable.std_dev) for variable in variables}
+
+    def sample(number: UFloat) -> np.ndarray:
+        parts = (slope * deviations[variable] for variable, slope in number.derivatives.items())
+        return np.asarray(number.nominal_value + sum(parts, np.zeros(count)))
+
+    values = 1.0 + sample(r_e_C_gamma) / sample(C_phit) + sample(beside)
+    tail = (1.0 - COVERAGE) / 2.0
+    low, under, above, high = np.quantile(values, [tail, ndtr(-1.0), ndtr(1.0), 1.0 - tail])
+    return Draws(u=float(above - under) / 2.0, interval=(float(low), float(high)))

@@ -1,0 +1,209 @@
+"""Points by load, path and set-up, and the forces and moments at zero sideslip and camber in them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import UFloat
+
+from mffit.config import Config, path_curvature
+from mffit.constants import (
+    SAME_SIDESLIP,
+    STRAIGHT,
+    UPRIGHT,
+    USUAL_CORNERING_STIFFNESS,
+    USUAL_U_FORCE,
+    USUAL_U_MOMENT,
+)
+from mffit.measured import constants, wording
+from mffit.measured.uncertain import named
+from mffit.points import Points, levels, main_pressure
+from mffit.scatter import ALARM
+
+USUAL_U = {"Fy": USUAL_U_FORCE, "Mz": USUAL_U_MOMENT}
+WAYS = {1: "forward", -1: "backward"}
+
+
+@dataclass(frozen=True, slots=True)
+class LoadGroup:
+    """The freely rolling points of one load at the main pressure, normal mount."""
+
+    load: float  #: mean load [N]
+    index: np.ndarray  #: (m,) into the points
+
+    def of(self, mask: np.ndarray) -> LoadGroup:
+        """Those of a mask (m,)."""
+        return LoadGroup(self.load, self.index[mask])
+
+
+def load_groups(points: Points) -> tuple[LoadGroup, ...]:
+    """Group the steady, freely rolling points at the programme's main pressure by load, rising; none between loads."""
+    used = np.flatnonzero(_usual(points) & (points.mount > 0))
+    level = levels.labels(points.Fz[used], levels.LOAD)
+    parts = [used[level == k] for k in range(level.max(initial=levels.NO_LEVEL) + 1)]
+    return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
+
+
+def _usual(points: Points) -> np.ndarray:
+    return np.asarray(main_pressure(points) & points.free_rolling & ~points.continuous)
+
+
+def flipped(points: Points, group: LoadGroup) -> LoadGroup:
+    """The points at the group's load and the main pressure with the tyre turned on its rim."""
+    used = np.flatnonzero(_usual(points) & (points.mount < 0))
+    near = np.abs(points.Fz[used] - group.load) < levels.LOAD.tolerance * group.load
+    return LoadGroup(group.load, used[near])
+
+
+def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
+    """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
+    i = group.index
+    size = np.abs(points.alpha[i])
+    near = (
+        (size < STRAIGHT.rad) & (np.abs(points.gamma[i]) < UPRIGHT.rad) & (points.direction[i] == direction)
+    )
+    return np.asarray(i[near & (size < np.min(size[near], initial=np.inf) + SAME_SIDESLIP.rad)])
+
+
+class PathInSetup(NamedTuple):
+    """The points of one load on one path in one set-up."""
+
+    phi_t: float  #: turn slip of the path [1/m]
+    setup: str  #: name of the set-up
+    group: LoadGroup
+
+
+def by_path(points: Points, group: LoadGroup, usual: float) -> list[PathInSetup]:
+    """The points of a load by path and set-up, those on the path with the ``usual`` turn slip [1/m] first."""
+    phi_t, setup = points.phi_t[group.index], points.setup[group.index]
+    found = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
+    return [
+        PathInSetup(path, points.setups[k], group.of((phi_t == path) & (setup == k))) for path, k in found
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class PathZeros:
+    """The forces and the moment at zero sideslip and camber of one load, path and set-up."""
+
+    phi_t: float  #: turn slip of the path [1/m]
+    setup: str  #: name of the set-up
+    group: LoadGroup  #: the points that they are from
+    forward: UFloat  #: [N], corrected for the sideslip of backlash
+    backward: UFloat | None  #: None without backward runs
+    moment: UFloat | None  #: turn-slip moment [Nm]
+    side_of_play: (
+        float  #: sign of the sideslip that backlash adds to a forward reading of zero; 0 without play
+    )
+
+    @property
+    def readings(self) -> tuple[UFloat, ...]:
+        """The forces forwards, and backwards if that was run [N]."""
+        return (self.forward,) if self.backward is None else (self.forward, self.backward)
+
+    def mean(self, *, both: bool) -> UFloat:
+        """Force at zero [N]: the mean of both directions, or that of the forward runs."""
+        readings = self.readings if both else (self.forward,)
+        return sum(readings) / len(readings)
+
+    @property
+    def slip(self) -> UFloat:
+        """Half the difference of both directions [N], the force of the sideslip zero."""
+        return (self.forward - self.backward) / 2.0
+
+
+def zeros_by_path(
+    points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
+) -> list[PathZeros]:
+    """The zeros of every path and set-up with forward zeros at this load, the usual path first."""
+    slope = _slope(C_alpha, group)
+    found = []
+    for phi_t, setup, part in by_path(points, group, path_curvature(config.rig)):
+        forward, backward = (
+            _at_zero(points, part, way, "Fy", f"noise of the {word} zeros", way * slope)
+            for way, word in WAYS.items()
+        )
+        moments = [
+            way * moment
+            for way in WAYS
+            if (moment := _at_zero(points, part, way, "Mz", "noise of the zero moment")) is not None
+        ]
+        if forward is None:
+            continue
+        side = (
+            float(np.sign(np.mean(points.alpha[zeros(points, part, 1)]))) if config.rig.backlash_deg else 0.0
+        )
+        moment = sum(moments) / len(moments) if moments else None
+        found.append(PathZeros(phi_t, setup, part, forward, backward, moment, side))
+    return found
+
+
+def u_of(points: Points, channel: str) -> np.ndarray:
+    """Standard uncertainty (n,) of Fy or Mz: as stated, else the usual one."""
+    u = points.u(channel)
+    return np.where(np.isfinite(u), u, USUAL_U[channel])
+
+
+def _slope(C_alpha: UFloat | None, group: LoadGroup) -> float:
+    """Cornering stiffness [N/rad]; the usual one where none was measured."""
+    return -USUAL_CORNERING_STIFFNESS * group.load if C_alpha is None else float(C_alpha.nominal_value)
+
+
+def _at_zero(
+    points: Points, group: LoadGroup, direction: int, channel: str, source: str, slope: float = 0.0
+) -> UFloat | None:
+    """Value at zero sideslip: a local parabola through five angles or more, else the mean of the zeros.
+
+    With ``slope``, zeros shifted by backlash are moved back. None if the direction was not run.
+    """
+    y, u, unit = points.channel(channel), u_of(points, channel), "N" if channel == "Fy" else "Nm"
+    i = zeros(points, group, direction)
+    i = i[np.isfinite(y[i])]
+    if not len(i):
+        return None
+    reach = constants.PARABOLA_SIDESLIP.rad
+    near = group.index
+    near = near[
+        (np.abs(points.alpha[near]) < reach)
+        & (np.abs(points.gamma[near]) < UPRIGHT.rad)
+        & (points.direction[near] == direction)
+        & np.isfinite(y[near])
+    ]
+    x = points.alpha[near]
+    angles = len(np.unique(np.round(x, 3)))
+    if angles >= constants.POINTS_FOR_PARABOLA and x.min() < -reach / 2 and x.max() > reach / 2:
+        found, errors = polynomial(x, y[near], u[near], 2)
+        return named(found[0], math.sqrt(errors[0, 0]), source, unit, kind="A")
+    mean = float(np.mean(y[i] - slope * points.alpha[i]))
+    return named(mean, float(np.linalg.norm(u[i])) / len(i), source, unit, kind="A")
+
+
+def polynomial(x: np.ndarray, y: np.ndarray, u: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients (degree + 1,) of rising powers through readings (n,), and their covariance."""
+    A = np.vander(x, degree + 1, increasing=True) / u[:, None]
+    errors = np.linalg.inv(A.T @ A)
+    return errors @ A.T @ (y / u), errors
+
+
+def force_at_zero(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
+    """By sweep, the mean force [N] of its zeros (m,), moved to zero sideslip with a stiffness [N/rad]."""
+    rows = rows[np.isfinite(points.Fy[rows])]
+    force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
+    return {int(k): float(np.mean(force[sweep == k])) for k in np.unique(sweep)}
+
+
+def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> list[str]:
+    """Warnings about sweeps of one load, path, set-up and direction whose zeros differ by more than noise explains."""
+    u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
+    out = []
+    for direction, word in WAYS.items():
+        found = force_at_zero(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
+        least, most = (f(found, key=lambda k: found[k], default=None) for f in (min, max))
+        if least is None or most is None or found[most] - found[least] <= ALARM * u_difference:
+            continue
+        names = (points.sweep_names[least], points.sweep_names[most])
+        out.append(wording.zeros_disagree(group.load, word, names, (found[least], found[most])))
+    return out

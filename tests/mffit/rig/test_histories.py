@@ -1,0 +1,24 @@
+"""The distance that a tyre has rolled when a point is taken."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.points import make_points
+from mffit.rig import distance_km
+
+
+@pytest.mark.parametrize("begins", [0.0, 100.0])
+def test_the_tyre_has_rolled_since_time_zero_even_if_its_first_point_comes_later(begins):
+    """36 km/h are 10 m/s, then the speed rises evenly to 72 km/h: the mean of both counts."""
+    t, V = begins + np.array([0.0, 50.0, 150.0]), np.array([10.0, 10.0, 20.0])
+    points = make_points(0.0, 0.0, 1500.0, p=250e3, V=V, phi_t=0.0, t=t)
+    before = 10.0 * begins
+    assert distance_km(points) == pytest.approx((before + np.array([0.0, 500.0, 2000.0])) / 1000.0)
+
+
+def test_a_clock_that_begins_below_zero_takes_nothing_off():
+    t = np.array([-20.0, 0.0, 20.0])
+    points = make_points(0.0, 0.0, 1500.0, p=250e3, V=10.0, phi_t=0.0, t=t)
+    assert distance_km(points) == pytest.approx([0.0, 0.2, 0.4])
