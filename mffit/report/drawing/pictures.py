@@ -51,14 +51,14 @@ ET.register_namespace("xlink", "http://www.w3.org/1999/xlink")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Picture:
+class Drawing:
     """A sheet as PNG, and as HTML whose panels a page arranges to its width."""
 
     png: bytes
     markup: str
 
 
-def draw(sheet: Sheet, name: str) -> Picture:
+def draw(sheet: Sheet, name: str) -> Drawing:
     """Draw the sheet; the same sheet and name give the same bytes. Names of the page's other pictures must differ."""
     with _settings(name):
         figure = figure_of(sheet)
@@ -66,7 +66,7 @@ def draw(sheet: Sheet, name: str) -> Picture:
         figure.set_layout_engine("none")  # both have the layout of the first
         svg = io.BytesIO()
         figure.savefig(svg, format="svg", transparent=True, metadata={"Date": None})
-        return Picture(png=drawn, markup=_markup(ET.fromstring(svg.getvalue()), figure, sheet))
+        return Drawing(png=drawn, markup=_markup(ET.fromstring(svg.getvalue()), figure, sheet))
 
 
 def save(sheet: Sheet, path: Path) -> None:
@@ -162,7 +162,7 @@ def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
     )
     axes.set_title(_text(title))
     for name in "xy":
-        _set_axis(axes, name, getattr(panel, name))
+        _set_axis(axes, name, getattr(panel, name), width)
     for span in panel.spans:
         axes.axvspan(
             span.first, span.last, color=span.look.colour, alpha=span.look.opacity, linewidth=0.0, zorder=0.7
@@ -188,14 +188,17 @@ def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
         )
 
 
-def _set_axis(axes: Axes, name: str, axis: Axis) -> None:
+def _set_axis(axes: Axes, name: str, axis: Axis, width: float) -> None:
     axes.set(**{f"{name}label": _text(axis.label)})
     if name == "y" and not axis.logarithmic:
         axes.locator_params("y", nbins=5)
     if axis.logarithmic:
         axes.set(**{f"{name}scale": "log", f"{name}lim": (axis.low, axis.high)})
     if axis.words is not None:
-        words = [_text(word) for word in axis.words.values()]
+        half = int(0.58 * width / style.LETTER)
+        words = [
+            textwrap.fill(_text(word), half) if name == "y" else _text(word) for word in axis.words.values()
+        ]
         axes.set(**{f"{name}ticks": [*axis.words], f"{name}ticklabels": words})
         axes.grid(False, axis=name)  # type: ignore[arg-type]
 

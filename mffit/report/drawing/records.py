@@ -24,7 +24,7 @@ class Look:
     opacity: float = 0.0  #: of an area, 0 to 1; 0 for none
 
 
-class Series:
+class Plotted:
     """Points in the units of a panel's axes."""
 
     __slots__ = ()
@@ -38,7 +38,7 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trace(Series):
+class Trace(Plotted):
     """Points (n,) with a line through them, markers on them, or both."""
 
     name: str
@@ -51,7 +51,7 @@ class Trace(Series):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Band(Series):
+class Band(Plotted):
     """The area between two curves; arrays (n,)."""
 
     name: str
@@ -78,7 +78,7 @@ def banded(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorBars(Series):
+class ErrorBars(Plotted):
     """Points (n,) with bars of one standard uncertainty, which may be NaN."""
 
     name: str
@@ -94,7 +94,7 @@ class ErrorBars(Series):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bars(Series):
+class Bars(Plotted):
     """Horizontal bars (n,) from zero, or from the left end of a logarithmic axis."""
 
     name: str
@@ -108,7 +108,7 @@ class Bars(Series):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Map(Series):
+class Map(Plotted):
     """Points (n,) whose colour shows a value; the scale ends at ± ``limit``."""
 
     name: str

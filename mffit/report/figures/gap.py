@@ -160,7 +160,7 @@ def evidence(view: DiagnosisView) -> Sheet:
     most = max(len(panel.y.words or {}) for panel in panels)
     present = {c.kind for step in steps for c in step.candidates}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
-    return Sheet(rows=in_rows(panels, columns=3), height=0.185 * most, key=key)
+    return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 
 
 def _candidates(step: RankedStep, number_of: int) -> Panel:

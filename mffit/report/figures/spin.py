@@ -49,7 +49,7 @@ def camber_reduction(view: BuildView) -> Sheet:
         "combined uncertainty": COMBINED,
         "PECP1, PECP2 of the file": OF_THE_FILE,
     }
-    return Sheet(rows=[panels], height=2.3, key=key)
+    return Sheet(rows=[panels], height=2.6, key=key)
 
 
 def _among_published(name: str, measured: Measured) -> Panel:
@@ -67,7 +67,7 @@ def _among_published(name: str, measured: Measured) -> Panel:
     sides = ((places < len(TYRES), "published", PUBLISHED), (places >= len(TYRES), "this tyre", OWN))
     return Panel(
         title="Among published tyres",
-        x=Axis(label=f"{labels.EPSILON.axis}, ± 1 u"),
+        x=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
         y=Axis(
             low=len(rows) - 0.4,
             high=-0.6,

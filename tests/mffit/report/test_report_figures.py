@@ -315,20 +315,18 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
 
 
 def boxes(part):
-    """Every text of a part of a figure with the box around its letters [pixels]."""
+    """Every text of a part of a figure with the box around its letters [pixels]; numbers beyond an axis are not drawn."""
+    undrawn = []
+    for axes in part.axes:
+        ends = axes.get_window_extent()
+        for label in axes.get_xticklabels():
+            box = label.get_window_extent()
+            undrawn += [] if ends.x0 - 1 <= 0.5 * (box.x0 + box.x1) <= ends.x1 + 1 else [label]
+        for label in axes.get_yticklabels():
+            box = label.get_window_extent()
+            undrawn += [] if ends.y0 - 1 <= 0.5 * (box.y0 + box.y1) <= ends.y1 + 1 else [label]
     texts = [text for text in part.findobj(Text) if text.get_text().strip() and text.get_visible()]
-    drawn = [text for text in texts if text.axes is None or _within(text)]
-    return [(text.get_text(), text.get_window_extent()) for text in drawn]
-
-
-def _within(text):
-    """Whether a text is drawn: matplotlib keeps numbers beyond the ends of an axis and does not draw them."""
-    box, axes = text.get_window_extent(), text.axes.get_window_extent()
-    if text in text.axes.get_xticklabels():
-        return axes.x0 - 1 <= 0.5 * (box.x0 + box.x1) <= axes.x1 + 1
-    if text in text.axes.get_yticklabels():
-        return axes.y0 - 1 <= 0.5 * (box.y0 + box.y1) <= axes.y1 + 1
-    return True
+    return [(text.get_text(), text.get_window_extent()) for text in texts if text not in undrawn]
 
 
 def crossing(found):
