@@ -8,7 +8,7 @@ POINTS_PER_SERIES = Count(
     4000, "-", "Most points of a series in a picture and its table: more lie on top of each other."
 )
 MOST_MARKS = Count(
-    300, "-", "Series with more marks are pixels in a page, which is then swift; their marks are small."
+    150, "-", "Panels with more marks show them small, and as pixels in a page, which is then swift."
 )
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
 MOST_ROWS = Count(

@@ -9,7 +9,7 @@ import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,8 @@ from mffit.report.drawing.records import (
 INCH = 72.0
 KEY_LINE = 13.0
 """Height of a line of the key [pt]."""
+MARKS, LINES = 1.8, 2.0
+"""Order of drawing; where marks are many, a page has them and what is below them as pixels."""
 KEY, PANEL = "key", "panel-{}"
 """Names of the parts of a drawing."""
 SVG = "{http://www.w3.org/2000/svg}"
@@ -65,7 +67,7 @@ def draw(sheet: Sheet, name: str) -> Drawing:
         drawn = _png(figure)
         figure.set_layout_engine("none")  # both have the layout of the first
         svg = io.BytesIO()
-        figure.savefig(svg, format="svg", transparent=True, metadata={"Date": None})
+        figure.savefig(svg, format="svg", dpi=160, transparent=True, metadata={"Date": None})
         return Drawing(png=drawn, markup=_markup(ET.fromstring(svg.getvalue()), figure, sheet))
 
 
@@ -170,8 +172,11 @@ def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
     for guide in panel.guides:
         across = axes.axvline if guide.axis == "x" else axes.axhline
         across(guide.at, zorder=1.5, **_line(guide.look))
+    dense = sum(len(s) for s in panel.series if isinstance(s, Map) or _marked(s)) > constants.MOST_MARKS
+    if dense:
+        axes.set_rasterization_zorder(LINES)
     for series in panel.series:
-        _draw_series(axes, series)
+        _draw_series(axes, series, 0.6 if dense else 1.0)
     for name in "xy":
         axis: Axis = getattr(panel, name)
         axes.set(**{f"{name}lim": (axis.low, axis.high)})
@@ -216,11 +221,16 @@ def _line(look: Look) -> dict[str, Any]:
     }
 
 
-def _draw_series(axes: Axes, series: DataSeries) -> None:
+def _marked(series: DataSeries) -> bool:
+    return isinstance(series, Trace) and bool(series.look.marker)
+
+
+def _draw_series(axes: Axes, series: DataSeries, size: float) -> None:
+    """Draw a series; ``size`` is that of its marks over the usual one."""
     match series:
         case Trace(x=x, y=y, look=look):
-            (drawn,) = axes.plot(x, y, **_line(look))
-            drawn.set_rasterized(bool(look.marker) and len(x) > constants.MOST_MARKS)
+            look = replace(look, size=size * look.size)
+            axes.plot(x, y, **_line(look), zorder=MARKS if look.marker else LINES)
         case Band(x=x, low=low, high=high, x_high=x_high, look=look):
             back = (x if x_high is None else x_high)[::-1], high[::-1]
             around = np.concatenate([x, back[0]]), np.concatenate([low, back[1]])
@@ -232,11 +242,17 @@ def _draw_series(axes: Axes, series: DataSeries) -> None:
             begin = axes.get_xlim()[0] if axes.get_xscale() == "log" else 0.0
             axes.barh(series.places, series.lengths - begin, series.height, begin, color=series.colours)
         case Map(x=x, y=y, values=values, limit=limit):
-            size, rasterized = (16.0, False) if len(x) < constants.MOST_MARKS else (6.0, True)
+            colours: dict[str, Any] = {"c": values, "cmap": style.DIVERGING, "vmin": -limit, "vmax": limit}
             axes.scatter(
-                x, y, s=size, c=values, marker="s", cmap=style.DIVERGING, vmin=-limit, vmax=limit,
-                linewidths=0.4, edgecolors=style.FAINT, rasterized=rasterized,
-            )  # fmt: skip
+                x,
+                y,
+                16.0 * size**2,
+                marker="s",
+                linewidths=0.4,
+                edgecolors=style.FAINT,
+                zorder=MARKS,
+                **colours,
+            )
 
 
 def _draw_frame(axes: Axes, frame: Frame) -> None:

@@ -55,7 +55,7 @@ def parts(view: BuildView) -> Sheet:
 
 def even_parts(view: BuildView) -> Sheet:
     """Even part of the same sweeps, measured and of the model."""
-    rows = []
+    rows: list[list[Panel]] = []
     for channel in view.channels:
 
         def series(curve: Curve, channel: ChannelRow = channel) -> list[DataSeries]:

@@ -17,10 +17,8 @@ def overview(view: BuildView) -> Sheet:
     chosen = {over: _nearest(view, over) for over in (*labels.ANGLES, "kappa")}
     panels = []
     for channel in view.channels:
-        over = (
-            "kappa" if channel.name == "Fx" and chosen["kappa"] else "alpha" if chosen["alpha"] else "gamma"
-        )
-        panels += [_panel(view, channel, chosen[over])] if chosen[over] else []
+        first = ("kappa", "alpha", "gamma") if channel.name == "Fx" else ("alpha", "gamma", "kappa")
+        panels += [_panel(view, channel, chosen[over]) for over in first if chosen[over]][:1]
     if len(panels) < len(chosen) and chosen["gamma"] and chosen["alpha"]:
         panels += [_panel(view, channel, chosen["gamma"]) for channel in view.channels[:1]]
     return Sheet(rows=in_rows(panels, columns=4), height=2.2, key={"measured": READINGS, "model": MODEL})

@@ -35,7 +35,7 @@ from tir.outputs import outputs_of
 EDGE = Look(colour=style.INK, line="-", width=1.1)
 BEYOND = Look(colour=style.INK, line=":", width=1.1)
 EDGE_NAME = "limit of the model"
-EDGE_NAME_RUN = "limit within the slips that were run together"
+EDGE_NAME_RUN = "limit as tested"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
