@@ -11,6 +11,7 @@ MOST_MARKS = Count(
     150, "-", "Panels with more marks show them small, and as pixels in a page, which is then swift."
 )
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
+MOST_FRAMES = Count(3, "-", "Most regions framed in a map; more frames would hide it.")
 MOST_ROWS = Count(
     12, "-", "Most bars of a picture, and rows of a table in a terminal where a file or page has all."
 )

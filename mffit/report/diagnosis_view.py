@@ -12,7 +12,7 @@ from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG
 from mffit.points import Points
-from mffit.report import words
+from mffit.report import constants, words
 from mffit.report.channel import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, conditions, curves
 from mffit.report.lines import CurveLine, model_lines
@@ -100,7 +100,7 @@ class DiagnosisView:
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""
         found = self.diagnosis.unexplained_where or self.diagnosis.where
-        return [region for region in found if region.channel == channel]
+        return [region for region in found if region.channel == channel][: constants.MOST_FRAMES]
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
