@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
+import io
 import json
 import re
 from pathlib import Path
@@ -16,7 +18,10 @@ import tir
 from mffit.effects import CATALOG, NEEDS
 from mffit.effects.effect import Effect
 from mffit.errors import InputError
+from mffit.report import page
+from mffit.report.build_view import view_of
 from mffit.rig_errors import RigError
+from tests.mffit.report.report_toys import made_result
 from tir.equations.stiffness import camber_stiffness
 from tir.parameters import BY_NAME
 
@@ -101,6 +106,17 @@ def test_the_exporter_writes_the_forces_of_the_tyre(examples, tmp_path):
     for row in rows[1:]:
         Fy = tyre(tyre["FNOMIN"], alpha=np.radians(float(row[0]))).Fy
         assert float(row[2]) == pytest.approx(Fy, rel=1e-5, abs=1e-3)
+
+
+def test_the_picture_is_drawn_where_it_appears_and_its_numbers_are_the_readings(examples, tmp_path):
+    view = view_of(made_result())
+    (planned,) = examples["LOAD_ORDER"].planned(view)
+    picture = page.draw(tmp_path, planned)
+    assert (tmp_path / "plots" / "loads.png").stat().st_size > 1000
+    rows = list(csv.DictReader(io.StringIO(picture.table)))
+    assert [float(row["y"]) for row in rows] == pytest.approx(view.points.Fz)
+    alike = view.points.replace(Fz=np.full(len(view.points), 900.0))
+    assert list(examples["LOAD_ORDER"].planned(dataclasses.replace(view, points=alike))) == []
 
 
 def test_the_command_prints_text_or_json(examples):

@@ -35,7 +35,7 @@ def _overview(view: BuildView, over: str) -> Panel:
         for c in view.curves
         if (c.over, c.load, c.held, c.pressure) == (over, load, 0.0, 250.0) and c.forward and len(c.index) > 8
     )
-    x, line = curve.angles(view.points), view.lines[curve.key]
+    x, line = curve.varied(view.points), view.lines[curve.key]
     rows = curve.index
     data = (
         (x, channel.measured[rows]),
@@ -57,16 +57,15 @@ def _overview(view: BuildView, over: str) -> Panel:
 
 def main() -> None:
     view = view_of(mffit.build(SAMPLE))
-    scaled = [(c.symbol, (c.measured - c.model) / c.u) for c in view.channels]
     sheets: dict[str, Callable[[], Sheet]] = {
         "build": partial(overview, view),
         "camber_reduction": partial(spin.camber_reduction, view),
         "alignment": partial(spin.alignment, view),
         "fit": partial(fit.model_against_points, view, view.channels[0]),
-        "residuals": partial(residuals.residual_maps, view.points, scaled, view.conditions, "u"),
+        "residuals": partial(residuals.of_rolling, view),
     }
     for name, sheet in sheets.items():
-        pictures.draw(sheet()).save(HERE / f"{name}.png")
+        pictures.save(sheet(), HERE / f"{name}.png")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mffit.cli.console import NOT_TRUSTED, Voice, out_option, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option, strict
 
 if TYPE_CHECKING:
     from mffit.results import BuildOutcome
@@ -16,7 +17,7 @@ FEWEST_TYRES_TO_COMPARE = 2
 
 
 @click.command()
-@click.argument("tyre_tomls", nargs=-1, type=click.Path(path_type=Path), metavar="TYRE_TOML...")
+@click.argument("tyre_tomls", nargs=-1, type=PATH, metavar="TYRE_TOML...")
 @out_option(
     "Folder to write to [default: out/ beside each TYRE_TOML]. With several tyres, each gets a folder of its name, and a page "
     "compares them."
@@ -37,16 +38,15 @@ FEWEST_TYRES_TO_COMPARE = 2
 )
 @click.option("--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries.")
 @click.option(
-    "--strict",
-    is_flag=True,
-    help="Exit code 3 also if the result is only in doubt, for automatic runs.",
+    "--explain", is_flag=True, help="Print everything that is said about the result, not one screen of it."
 )
+@strict
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
 @click.option(
     "--verify",
     "stored",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Instead of building, repeat the build of this folder and compare every number; nothing is written. Exit code 3 if "
     "a number does not come out again, 2 if an input was changed.",
@@ -58,6 +58,7 @@ def build(
     ensemble: int,
     coefficients: tuple[str, ...],
     no_report: bool,
+    explain: bool,
     strict: bool,
     jobs: int,
     dask: str | None,
@@ -84,7 +85,7 @@ def build(
             )
         _build_many(tyre_tomls, out, ensemble, not no_report, strict, jobs, dask, voice)
     else:
-        _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, strict, voice)
+        _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, explain, strict, voice)
 
 
 def _build(
@@ -93,6 +94,7 @@ def _build(
     ensemble: int,
     coefficients: tuple[str, ...],
     with_report: bool,
+    explain: bool,
     strict: bool,
     voice: Voice,
 ) -> None:
@@ -104,21 +106,18 @@ def _build(
     with voice.progress() as show:
         settings = config.load(tyre_toml, coefficients=coefficients)
         result = pipeline.build(settings, out, ensemble=ensemble, with_report=with_report, progress=show)
-    voice.warn(result.warnings)
-    voice.say(text.build_summary(result))
-    files = dict.fromkeys((result.tir_path, *result.files.values()))
-    drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
     tables = "report.html, result.json, points.csv, plots" if with_report else "result.json, points.csv"
-    voice.say(f"written to {out}: {', '.join(files)}, {tables}{drawn}")
+    drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
+    whole = explain or voice.quiet or voice.json
+    voice.warn(result.warnings if whole else text.few(result.warnings))
+    voice.say(text.build_summary(result, f"{out}: {tables}{drawn}"))
+    if explain:
+        voice.say("\n" + text.build_explained(result))
     voice.give(lambda: as_json.build(result))
     if not result.trusted:
-        click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust(f"{result.tir_path} is not to be trusted: see above")
     if strict and result.trust.doubts:
-        click.echo(
-            f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}", err=True
-        )
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust(f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}")
 
 
 def _verify(stored: Path, voice: Voice) -> None:
@@ -132,8 +131,7 @@ def _verify(stored: Path, voice: Voice) -> None:
     voice.say(text.verification_summary(found))
     voice.give(lambda: as_json.verification(found))
     if not found.same:
-        click.echo(f"mffit: {stored}: {found.headline}", err=True)
-        raise SystemExit(3)
+        voice.distrust(f"mffit: {stored}: {found.headline}")
 
 
 def _build_many(
@@ -211,16 +209,14 @@ def _end(finished: list[BuildOutcome], interrupted: bool, strict: bool, voice: V
         raise SystemExit(1)
     doubtful = [outcome.name for outcome in finished if not outcome.trusted]
     if doubtful:
-        click.echo(f"not to be trusted: {', '.join(doubtful)}", err=True)
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust(f"not to be trusted: {', '.join(doubtful)}")
     if strict and (in_doubt := [outcome for outcome in finished if outcome.in_doubt]):
         names = ", ".join(outcome.name for outcome in in_doubt)
-        click.echo(f"in doubt, and --strict asks for more: {names}: {in_doubt[0].in_doubt[0]}", err=True)
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust(f"in doubt, and --strict asks for more: {names}: {in_doubt[0].in_doubt[0]}")
 
 
 @click.command()
-@click.argument("folders", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="DIR...")
+@click.argument("folders", nargs=-1, required=True, type=PATH, metavar="DIR...")
 @out_option("Folder for fleet.html, fleet.json, fleet.csv and priors.json [default: only printed].")
 @voiced
 def fleet(folders: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
@@ -235,6 +231,5 @@ def fleet(folders: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     with voice.progress() as show:
         found = pipeline.fleet(folders, out, progress=show)
     voice.say(text.fleet_summary(found))
-    if out is not None:
-        voice.say(f"written to {out}: fleet.html, fleet.json, fleet.csv")
+    voice.written(out, "fleet.html", "fleet.json", "fleet.csv")
     voice.give(lambda: as_json.fleet(found))

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option
 
 
 @click.command()
-@click.argument("first", type=click.Path(path_type=Path), metavar="A.tir|FOLDER")
-@click.argument("second", type=click.Path(path_type=Path), metavar="B.tir|FOLDER|TYRE_TOML")
+@click.argument("first", type=PATH, metavar="A.tir|FOLDER")
+@click.argument("second", type=PATH, metavar="B.tir|FOLDER|TYRE_TOML")
 @out_option("Folder for compare.html and compare.json [default: nothing is written].")
 @click.option(
     "--turn-slip",
@@ -32,6 +33,5 @@ def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, 
     with voice.progress() as show:
         found = pipeline.compare(first, second, turn_slip=both, out=out, progress=show)
     voice.say(text.comparison_table(found))
-    if out is not None:
-        voice.say(f"written to {out}: compare.html, compare.json")
+    voice.written(out, "compare.html", "compare.json")
     voice.give(lambda: as_json.comparison(found))

@@ -1,4 +1,4 @@
-"""What all commands share: results as text or JSON, warnings, progress, common arguments, and closed pipes."""
+"""What all commands share: results as text or JSON, warnings, progress, and closed pipes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import click
 
@@ -15,26 +15,6 @@ from mffit.progress import Progress, silent
 
 NOT_TRUSTED = 3
 """Exit code of a command that is done, but whose result says that it is not to be trusted."""
-tyre_toml_argument = click.argument("tyre_toml", type=click.Path(path_type=Path))
-
-
-def out_option(help_text: str, *, is_file: bool = False, **settings: Any) -> Callable[..., Any]:
-    """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work."""
-
-    def usable(context: click.Context, option: click.Parameter, out: Path | None) -> Path | None:
-        from mffit.output import refuse_unusable
-
-        if out is not None and not context.resilient_parsing:
-            refuse_unusable(out, is_file=is_file)
-        return out
-
-    return click.option("--out", type=click.Path(path_type=Path), help=help_text, callback=usable, **settings)
-
-
-def warn(warnings: Iterable[str]) -> None:
-    """Print warnings to stderr, one line each."""
-    for sentence in warnings:
-        click.echo(f"warning: {sentence}", err=True)
 
 
 @contextmanager
@@ -64,6 +44,11 @@ class Voice:
         if not (self.json or self.quiet):
             click.echo(text + end, nl=False)
 
+    def written(self, out: Path | None, *files: str) -> None:
+        """Name the files that were written to a folder, if any."""
+        if out is not None:
+            self.say(f"written to {out}: {', '.join(files)}")
+
     def give(self, content: Callable[[], Any]) -> None:
         """Print the result for programs; ``content`` is called only if ``--json`` asks for it."""
         if self.json:
@@ -77,8 +62,14 @@ class Voice:
             click.echo(sentence, err=True)
 
     def warn(self, warnings: Iterable[str]) -> None:
-        """As :func:`warn`, even with ``--quiet``."""
-        warn(warnings)
+        """Print warnings to stderr, one line each, even with ``--quiet``."""
+        for sentence in warnings:
+            click.echo(f"warning: {sentence}", err=True)
+
+    def distrust(self, what: str) -> NoReturn:
+        """End with the exit code of a result that is not to be trusted."""
+        click.echo(what, err=True)
+        raise SystemExit(NOT_TRUSTED)
 
     def progress(self) -> AbstractContextManager[Progress]:
         """As :func:`progress`; nothing with ``--quiet``."""

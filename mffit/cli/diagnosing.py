@@ -6,14 +6,15 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import NOT_TRUSTED, Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option, tyre_toml
 
 
 @click.command()
-@tyre_toml_argument
+@tyre_toml
 @click.option(
     "--model",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="The simulation's .tir [default: that of the last build].",
 )
 @out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
@@ -34,9 +35,7 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    models = text.models_written(diagnosis)
-    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {models}, corrected.toml")
+    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis), "corrected.toml")
     voice.give(lambda: as_json.diagnosis(diagnosis))
     if not diagnosis.trusted:
-        click.echo(f"{diagnosis.model_after} is not to be trusted: see above", err=True)
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")

@@ -6,33 +6,12 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import click
 
-from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import code_options, out_option, tir_file, tyre_toml
 from mffit.errors import InputError
-
-
-def _code_options(command: Any) -> Any:
-    """The command with the arguments and options of all exports to code."""
-    for decorator in reversed(
-        (
-            click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir"),
-            out_option("Folder to write to.", default="export", show_default=True),
-            click.option(
-                "--name", default=None, help="Name in the code [default: made from the file's name]."
-            ),
-            click.option(
-                "--turn-slip/--no-turn-slip",
-                default=None,
-                help="Turn slip on or off [default: as the file's USE_MODE says].",
-            ),
-            click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
-        )
-    ):
-        command = decorator(command)
-    return command
 
 
 def _folder(out: Path, ending: str, *, named: bool = True) -> Path:
@@ -78,12 +57,9 @@ def export() -> None:
 
 
 @export.command()
-@_code_options
+@code_options
 @click.option(
     "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
-)
-@click.option(
-    "--transient", is_flag=True, help="Also functions for the lag of the contact, from slip speeds."
 )
 @voiced
 def c(
@@ -92,8 +68,8 @@ def c(
     name: str | None,
     turn_slip: bool | None,
     limits: bool,
-    tunable: bool,
     transient: bool,
+    tunable: bool,
     voice: Voice,
 ) -> None:
     """Export a property file as C99 code.
@@ -116,16 +92,13 @@ def c(
 
 
 @export.command()
-@_code_options
+@code_options
 @click.option(
     "--fmi",
     type=click.Choice(["2", "3"]),
     default="2",
     show_default=True,
     help="Version of the standard: FMI 2.0 or 3.0.",
-)
-@click.option(
-    "--transient", is_flag=True, help="With the lag of the contact, from slip speeds; for co-simulation only."
 )
 @click.option(
     "--sources-only", is_flag=True, help="Without a binary: the importing program compiles the sources."
@@ -163,7 +136,7 @@ def fmu(
 
 
 @export.command("tir")
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
+@tir_file
 @click.option(
     "--for", "targets", required=True, metavar="NAMES", help="Programs to write it for: mfeval,simscape,..."
 )
@@ -205,7 +178,7 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
 
 
 @export.command()
-@tyre_toml_argument
+@tyre_toml
 @out_option("Folder to write to [default: out/tydex/ beside TYRE_TOML].")
 @voiced
 def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import NOT_TRUSTED, Voice, out_option, voiced
+from mffit.cli.console import NOT_TRUSTED, Voice, voiced
+from mffit.cli.options import PATH, out_option, tir_file, unloaded_radius
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
+@tir_file
 @click.option(
     "--for",
     "targets",
@@ -41,9 +42,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 
 
 @click.command()
-@click.argument(
-    "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir... | tyre.toml"
-)
+@click.argument("files", type=PATH, nargs=-1, required=True, metavar="FILE.tir... | tyre.toml")
 @out_option("Page to write [default: FILE.html in the current folder].", is_file=True)
 @click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
 @voiced
@@ -67,9 +66,9 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 
 
 @click.command()
-@click.argument("old", type=click.Path(path_type=Path), metavar="OLD.tir")
+@click.argument("old", type=PATH, metavar="OLD.tir")
 @out_option("File to write.", is_file=True, required=True)
-@click.option("--unloaded-radius", type=float, metavar="M", help="UNLOADED_RADIUS [m] if the file lacks it.")
+@unloaded_radius
 @click.option(
     "--fittyp",
     type=click.Choice(["5", "6", "21"]),

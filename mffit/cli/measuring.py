@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import NOT_TRUSTED, Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
 
 
 @click.command()
-@tyre_toml_argument
+@tyre_toml
 @out_option("Folder to write to [default: out/ beside TYRE_TOML].")
 @voiced
 def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
@@ -29,21 +30,18 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
         measured = pipeline.spin(tyre_toml, out)
     voice.say(text.spin_summary(measured))
     voice.warn(measured.warnings)
-    voice.say(f"written to {out}: spin.json")
+    voice.written(out, "spin.json")
     voice.give(lambda: as_json.spin(measured))
     if not measured.trusted:
-        click.echo("the measurement is not to be trusted: see above", err=True)
-        raise SystemExit(NOT_TRUSTED)
+        voice.distrust("the measurement is not to be trusted: see above")
 
 
 @click.command()
-@click.argument("source", type=click.Path(path_type=Path), metavar="TYRE_TOML|FILE.csv")
+@click.argument("source", type=PATH, metavar="TYRE_TOML|FILE.csv")
 @click.option(
     "--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a CSV file without a tyre.toml."
 )
-@click.option(
-    "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc's centre for such a file."
-)
+@path_centre
 @click.option("--resolution", type=float, metavar="DEG", help="Smallest step of the steering axis.")
 @voiced
 def align(

@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH
 
 
 @click.command("open")
 @click.argument(
     "paths",
-    type=click.Path(path_type=Path),
+    type=PATH,
     nargs=-1,
     required=True,
     metavar="tyre.toml|FOLDER|FILE.tir...",

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import out_option, tyre_toml
 
 
 @click.command()
-@tyre_toml_argument
+@tyre_toml
 @click.option(
     "--goal",
     help="What to make more certain: eps_gamma, eps_gamma:joint, bands, bands:Mz, or tie:EFFECT "
@@ -52,6 +53,5 @@ def plan(
         )
     voice.say(text.plan_summary(found))
     inside = "sheets to fill in" if found.points else "what changes in tyre.toml"
-    sheets = f", runs ({inside})" if found.steps else ""
-    voice.say(f"written to {out}: plan.html, plan.json{sheets}")
+    voice.written(out, "plan.html", "plan.json", *([f"runs ({inside})"] if found.steps else []))
     voice.give(lambda: as_json.plan(found))

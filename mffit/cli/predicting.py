@@ -6,12 +6,13 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path), metavar="DIR")
-@click.argument("conditions", type=click.Path(path_type=Path), metavar="CONDITIONS.csv")
+@click.argument("folder", type=PATH, metavar="DIR")
+@click.argument("conditions", type=PATH, metavar="CONDITIONS.csv")
 @out_option("File to write.", is_file=True, required=True)
 @voiced
 def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:

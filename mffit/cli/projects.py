@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option, path_centre, unloaded_radius
 
 if TYPE_CHECKING:
     from mffit.recordings import DiscPath
 
 
 @click.command()
-@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @out_option("Folder for tyre.toml, stretches.csv and pictures [default: only printed].")
 @voiced
 def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
@@ -40,23 +41,19 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="[FILE...] DIR")
+@click.argument("paths", nargs=-1, required=True, type=PATH, metavar="[FILE...] DIR")
 @click.option("--from", "recorded", is_flag=True, help="From the recordings FILE... before DIR.")
 @click.option(
     "--sample",
     metavar="S",
     help="A copy of a sample: flat-track, flat-track-combined, front-120-70 or rear-190-55.",
 )
-@click.option("--unloaded-radius", type=float, metavar="M", help="With --from: of the tyre, in metres.")
+@unloaded_radius
 @click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
 @click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
 @click.option("--disc", is_flag=True, help="With --from: the path was that of a disc.")
 @click.option("--path-radius", type=float, metavar="M", help="With --disc: radius of the path, in metres.")
-@click.option(
-    "--path-centre",
-    type=click.Choice(["left", "right"]),
-    help="With --disc: side of its centre, rolling forwards.",
-)
+@path_centre
 @click.option(
     "--belt", is_flag=True, help="With --from: the path was straight, whatever the recordings look like."
 )

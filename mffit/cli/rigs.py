@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option
 
 
 @click.command()
-@click.argument("rig_toml", type=click.Path(path_type=Path))
+@click.argument("rig_toml", type=PATH)
 @out_option("Folder to write to.", required=True)
 @click.option(
     "--seed", type=int, default=None, help="Seed of noise and drawn rig errors [default: that of the file]."
@@ -26,5 +27,5 @@ def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
     with voice.progress() as show:
         show("simulating")
         truth = virtual_rig.simulate(rig_toml, out, seed=seed)
-    voice.say(f"written to {out}: sweeps, tyre.toml, truth.json")
+    voice.written(out, "sweeps", "tyre.toml", "truth.json")
     voice.give(truth.to_json)

@@ -149,4 +149,4 @@ def _picture(sniffed: Sniffed, k: int, path: Path) -> None:
     axes = sniffed.axes[0] if sniffed.axes else "iso"
     found = sweeps.load(configuration_of(sniffed.recordings[k : k + 1], axes)).sweeps
     notes = [n for n in sniffed.reading.stretches if n.file == found[0].file]
-    pictures.draw(recording(found[0], notes)).save(path)
+    pictures.save(recording(found[0], notes), path)

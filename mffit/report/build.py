@@ -1,27 +1,25 @@
-"""The build report: plots/*.png and report.html."""
+"""The build report: plots/*.png and report.html, and THE table of its pictures."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
 
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import constants as report_constants
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
-from mffit.report.drawing.records import Sheet
+from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
     bands,
     campaigns,
     decomposition,
     files,
     fit,
+    overview,
     radii,
     residuals,
     sister,
@@ -29,6 +27,7 @@ from mffit.report.figures import (
     spin,
     structure,
 )
+from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
@@ -43,36 +42,213 @@ PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on t
 """Uses for which a file that serves both is judged, beside the straight path without turn slip."""
 
 
-OF_CAMPAIGN = {
-    "fit": "%(channel)s at every load, pressure and camber.",
-    "slip": "%(channel)s over longitudinal slip, coloured by sideslip.",
-    "friction": "friction ellipse of the upright wheel, coloured by sideslip.",
-    "weights": "weights of combined slip, coloured by sideslip.",
-    "trail": "pneumatic trail and residual moment at three longitudinal slips.",
-    "radii": "radii of the freely rolling wheel.",
-}
-"""Captions of the pictures of another campaign, by the first word of their names."""
+BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = (
+    Picture(
+        name="overview",
+        title="Readings and fitted model of every channel at nominal load and pressure",
+        shows="Every channel at the load and pressure nearest to the nominal ones: readings, and the model as lines. The colour "
+        "is the angle that is held, dark to light from its smallest to its largest value.",
+        section="top",
+        draw=overview.overview,
+        when=lambda view: bool(view.curves),
+    ),
+    Picture(
+        name="files",
+        title="Side force and moment of both files and the fitted model on a straight path, over camber and over sideslip",
+        shows="The files and the fitted model (dots) on a straight path at nominal load, over camber at zero and some sideslip, "
+        "and over sideslip at three cambers. Dotted verticals are the ends of the tested range. Dashed curves have turn slip "
+        "off: without spin the formula cannot reproduce exactly how camber reduces grip.",
+        section="files",
+        draw=files.files_on_a_straight_path,
+        when=lambda view: view.several_files,
+    ),
+    Picture(
+        name="camber_reduction",
+        title="Camber reduction factor beside published tyres, its uncertainty budget and its course over load",
+        shows=f"Left: this tyre among the six that have been published ({published.SOURCE}). Middle: the contribution of each "
+        "source to u(eps_gamma); the orange line is the combined uncertainty with correlations. Right: eps_gamma at every load "
+        "and the line that the file carries.",
+        section="spin",
+        draw=spin.camber_reduction,
+        when=lambda view: view.on_disc,
+    ),
+    Picture(
+        name="alignment",
+        title="Side force rolling forwards and backwards around zero sideslip, one panel per load",
+        shows="The slip force vanishes where both lines cross; with an aligned axis they cross on the vertical line. The height "
+        "of the crossing is the turn-slip force. The points are raw readings. The table is corrected for the play of the axis "
+        "and, if five angles were run near zero, evaluates a parabola through them at zero; so its forces differ slightly.",
+        section="alignment",
+        draw=spin.alignment,
+        when=lambda view: view.on_disc and bool(spin.both_directions(view)),
+    ),
+    Picture(
+        name="parts",
+        title="Raw, odd and even curves of every channel at nominal load",
+        shows="Raw readings, odd and even part of the forward sweeps over one angle with the other at zero, at the load and the "
+        "pressure nearest to the nominal ones.",
+        draw=decomposition.parts,
+        when=lambda view: view.on_disc and bool(decomposition.pure_curves(view)),
+    ),
+    Picture(
+        name="even_parts",
+        title="Even part at nominal pressure, measured and of the model",
+        shows="The even part of the same sweeps, measured and of the fitted model. In MF-6.2 turn slip shifts the Fy curve "
+        "sideways, so its even part has the shape of the local cornering stiffness and is not flat. A misaligned sideslip axis "
+        "and ply-steer have nearly the same shape: a vertical gap here that follows the curve suggests one of them, a constant "
+        "gap a load-cell offset or conicity. A step near zero is backlash: the moment changes its sign there, and with it the "
+        "side on which the play is taken up. The model of the rig includes what is declared.",
+        section="parts",
+        draw=decomposition.even_parts,
+        when=lambda view: view.on_disc and bool(decomposition.pure_curves(view)),
+    ),
+    ChannelPicture(
+        name="fit_{channel}",
+        title="Model and points of {word} at every load, pressure and camber",
+        shows="{channel}: points, and the model as lines. The colour is the angle that is held.",
+        section="fit",
+        channels=lambda view: view.channels,
+        draw=fit.model_against_points,
+        when=lambda view, channel: bool(fit.varied(view.curves, fit.ANGLES)),
+    ),
+    ChannelPicture(
+        name="slip_{channel}",
+        title="Model and points of {word} over longitudinal slip at every load, pressure and camber",
+        shows="{channel} over longitudinal slip: points, and the model as lines. The colour is the sideslip.",
+        section="slip",
+        channels=lambda view: view.channels,
+        draw=lambda view, channel: fit.model_against_points(view, channel, fit.SLIP),
+        when=lambda view, channel: bool(fit.varied(view.curves, fit.SLIP)),
+    ),
+    Picture(
+        name="friction_ellipse",
+        title="Longitudinal over lateral force at every load, with the friction limit of the model",
+        shows="Friction ellipse of the upright wheel at the pressure nearest to the nominal one. Each colour is a sideslip, "
+        "along which slip goes from full braking to full drive. Points are readings less the fitted errors of the rig. The dark "
+        "line is the largest force of the model in every direction within the tested sideslip and slip; it is dotted where no "
+        "sweep combined as much sideslip with slip. Bands (95 %) are narrow where they cannot be seen.",
+        section="slip",
+        draw=slip.friction_ellipse,
+        when=slip.combined,
+    ),
+    Picture(
+        name="weights",
+        title="Weights of combined slip over longitudinal slip at every load",
+        shows="Weights of combined slip with 95 % bands: G_xa is the share of the longitudinal force that sideslip leaves, G_yk "
+        "the share of the side force that slip leaves. The points are the measured force over the model's force without the "
+        "other slip, shown where that force is large enough.",
+        section="slip",
+        draw=slip.weights,
+        when=slip.combined,
+    ),
+    Picture(
+        name="trail",
+        title="Pneumatic trail and residual moment over sideslip at several longitudinal slips",
+        shows="Pneumatic trail and residual moment of the model with 95 % bands, rolling freely and at two longitudinal slips.",
+        section="slip",
+        draw=slip.trail,
+        when=slip.combined,
+    ),
+    Picture(
+        name="radii",
+        title="Loaded radius and rolling radius over load at every pressure",
+        shows="Radii of the freely rolling wheel: means over the sweeps, and the file with 95 % bands from the scatter of these "
+        "means. Points include camber and speeds that the lines leave out.",
+        section="slip",
+        draw=radii.radii,
+        when=lambda view: bool(view.radii.rms),
+    ),
+    Picture(
+        name="campaigns",
+        title="Load over sideslip, camber and longitudinal slip of the points of every campaign",
+        shows="The points of every campaign. Each campaign is fitted by itself; the misfits above are those of these fits.",
+        section="campaigns",
+        draw=campaigns.where_run,
+        when=lambda view: bool(view.campaigns),
+    ),
+    Picture(
+        name="bands",
+        title="Forces and moments of the fitted model with 95 % bands at three loads",
+        shows="Uncertainty of the curves: the fitted model on a straight path, at the smallest, the nominal and the largest load "
+        "of the file. The bands contain the tyre's own curve with a probability of 95 %, if noise, errors of the rig and "
+        "unconstrained coefficients are the only errors. Dotted lines are the ends of the tested range. Beyond them a band "
+        "covers what the formula allows, not what a tyre may do.",
+        section="bands",
+        draw=bands.bands,
+        when=lambda view: view.files is not None,
+    ),
+    Picture(
+        name="borrowed_Fx",
+        title="Longitudinal force of the sister tyre, scaled, over longitudinal slip at three loads, with 95 % bands",
+        shows="Longitudinal force of the file over longitudinal slip, without and with sideslip, at the smallest, the nominal "
+        "and the largest load of the file. The bands contain the uncertainty of both ratios and the scatter of the shapes among "
+        "similar tyres.",
+        section="sister",
+        draw=sister.borrowed_force,
+        when=lambda view: view.files is not None and view.lent is not None,
+    ),
+    Picture(
+        name="residuals",
+        title="Residuals over sideslip and camber, one map per load and pressure",
+        shows="Measured minus model of the freely rolling wheel. A good fit shows pale colours without order. A patch of one "
+        "colour is structure that the model misses; mffit diagnose looks for its cause. Points with equal angles are drawn side "
+        "by side; a small dot marks a point that was run backwards.",
+        section="residuals",
+        draw=residuals.of_rolling,
+    ),
+    Picture(
+        name="residuals_slip",
+        title="Residuals over longitudinal slip and sideslip, one map per load and pressure",
+        shows="The same of the driven and braked wheel, over longitudinal slip and sideslip. Cambers lie side by side.",
+        section="residuals",
+        draw=residuals.of_driven,
+        when=lambda view: bool(residuals.driven(view.points, view.conditions)),
+    ),
+    Picture(
+        name="structure",
+        title="Mean residuals over the conditions over which they are not random",
+        shows="Mean of measured minus model over bins of each condition, in units of the point's uncertainty; bars show one "
+        "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
+        "Only what chance does not explain is drawn, the number of comparisons accounted for.",
+        section="structure",
+        draw=lambda view: structure.residual_means(view.remains.structure),
+        when=lambda view: bool(view.remains.structure.found),
+    ),
+)
+"""Every picture of the report, in its order."""
+
+
+def planned(view: BuildView) -> Iterator[Planned]:
+    """The pictures that the report of a build shows."""
+    opening = "camber_reduction" if view.on_disc else "bands"
+    for one in (one for picture in BUILD for one in picture.planned(view)):
+        yield replace(one, section="top") if one.name == opening else one
+    own = {f"fit_{channel.name}" for channel in view.channels}
+    for number, other in enumerate(view.campaigns, 1):
+        for one in (one for picture in BUILD for one in picture.planned(other.build)):
+            if one.section in ("fit", "slip") and one.name not in own:
+                yield replace(
+                    one,
+                    name=f"campaign{number}_{one.name}",
+                    title=f"{other.name}: {one.title}",
+                    shows=f"{other.name}: {one.shows} Points, lines and bands are of its own fit, on its surface.",
+                    section=f"campaign{number}",
+                )
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
-    """Write ``plots/*.png`` and ``report.html`` of a build.
-
-    Parameters
-    ----------
-    result : the result of the build
-    folder : existing folder to write to
-    """
+    """Write ``plots/*.png`` and ``report.html`` of a build to an existing folder."""
     view = view_of(result)
     page.write(
         "build.html.j2",
         folder / "report.html",
-        _figures(view),
-        readings="points.csv",
+        planned(view),
         view=view,
+        verdict=verdict(result),
+        headlines=headlines(result),
+        purposes=purposes(result),
         sections=_by_section(view),
         statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
-        residual_unit=residual_unit(view),
-        published=published,
         channels=CHANNELS,
         places=PLACES,
         epsilon_values=wording.epsilon_values(result.measured),
@@ -84,83 +260,9 @@ def write_build(result: BuildResult, folder: Path) -> None:
         aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
         of_setups=wording.setup_scatter,
-        radians=math.radians(1.0),
         meanings=MEANINGS,
         units=UNITS,
-        captions=OF_CAMPAIGN,
-        least_pure=report_constants.LEAST_PURE_FORCE,
     )
-
-
-def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
-    """The figures in the order of the page."""
-    out: dict[str, Callable[[], Sheet]] = {}
-    if view.several_files:
-        out["files"] = partial(files.files_on_a_straight_path, view)
-    if view.on_disc:
-        out["camber_reduction"] = partial(spin.camber_reduction, view)
-        if spin.both_directions(view):
-            out["alignment"] = partial(spin.alignment, view)
-        for channel in view.channels:
-            if decomposition.worth_drawing(view.curves, channel):
-                out[f"parts_{channel.name}"] = partial(decomposition.decomposition, view, channel)
-        if decomposition.pure_curves(view):
-            out["even_parts"] = partial(decomposition.even_parts, view)
-    if any(curve.over != "kappa" for curve in view.curves):
-        for channel in view.channels:
-            out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
-    out |= _under_slip(view)
-    for number, other in enumerate(view.campaigns, 1):
-        own = {channel.name for channel in view.channels}
-        theirs: dict[str, Callable[[], Sheet]] = {
-            f"fit_{channel.name}": partial(fit.model_against_points, other.build, channel)
-            for channel in other.build.channels
-            if channel.name not in own and any(curve.over != "kappa" for curve in other.build.curves)
-        }
-        theirs |= _under_slip(other.build)
-        out |= {f"campaign{number}_{name}": make for name, make in theirs.items()}
-    if view.campaigns:
-        out["campaigns"] = partial(campaigns.where_run, view)
-    if view.files is not None:
-        out["bands"] = partial(bands.bands, view)
-    if view.files is not None and view.lent is not None:
-        out["borrowed_Fx"] = partial(sister.borrowed_force, view)
-    scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
-    rolling, driven = (which(view.points, view.conditions) for which in (residuals.rolling, residuals.driven))
-    maps = partial(residuals.residual_maps, view.points, scaled)
-    out["residuals"] = partial(maps, rolling, residual_unit(view))
-    if driven:
-        out["residuals_slip"] = partial(maps, driven, residual_unit(view), over=residuals.SLIPS)
-    if any(c.bins for c in view.remains.structure.comparisons):
-        out["structure"] = partial(structure.residual_means, view.remains.structure)
-    return out
-
-
-def _under_slip(view: BuildView) -> dict[str, Callable[[], Sheet]]:
-    """The figures of longitudinal slip and of radii."""
-    out: dict[str, Callable[[], Sheet]] = {}
-    if slip.slip_curves(view.curves):
-        for channel in view.channels:
-            out[f"slip_{channel.name}"] = partial(slip.over_slip, view, channel)
-    if slip.combined(view) and {"Fx", "Fy"} <= {channel.name for channel in view.channels}:
-        out["friction_ellipse"] = partial(slip.friction_ellipse, view)
-        out["weights"] = partial(slip.weights, view)
-        out["trail"] = partial(slip.trail, view)
-    if view.radii.rms:
-        out["radii"] = partial(radii.radii, view)
-    return out
-
-
-def _scale(view: BuildView, channel: ChannelRow) -> np.ndarray | float:
-    """The noise of each point, or the misfit of the channel where no noise is known."""
-    if residual_unit(view) == "u":
-        return np.where(np.isfinite(channel.u), channel.u, channel.noise)
-    return view.agreement[channel.name].rmse
-
-
-def residual_unit(view: BuildView) -> str:
-    """The unit of the residuals: the point's uncertainty if every channel states one, else the rms misfit."""
-    return "u" if all(np.isfinite(c.noise) for c in view.channels) else "rms misfit"
 
 
 def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:

@@ -179,6 +179,21 @@ class BuildView:
         return len(self.points) - sum(len(curve.index) for curve in self.curves)
 
     @property
+    def residual_unit(self) -> str:
+        """Unit of the residuals: the point's uncertainty if every channel states one, else the rms misfit."""
+        return "u" if all(np.isfinite(c.noise) for c in self.channels) else "rms misfit"
+
+    @property
+    def scaled(self) -> list[tuple[str, np.ndarray]]:
+        """Symbol and residuals (n,) of every channel in that unit."""
+        found = []
+        for c in self.channels:
+            u = np.where(np.isfinite(c.u), c.u, c.noise)
+            scale = u if self.residual_unit == "u" else self.agreement[c.name].rmse
+            found.append((c.symbol, (c.measured - c.model) / scale))
+        return found
+
+    @property
     def on_disc(self) -> bool:
         return self.measured.epsilon_gamma is not None
 

@@ -1,18 +1,54 @@
-"""The diagnosis page: plots/*.png and diagnosis.html."""
+"""The diagnosis page: plots/*.png and diagnosis.html, and THE table of its pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.quantities import CHANNELS
 from mffit.report import page
+from mffit.report.catalogue import Picture
 from mffit.report.diagnosis_view import DiagnosisView, shown_steps, view_of
-from mffit.report.drawing.records import Sheet
 from mffit.report.figures import gap
+
+DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
+    Picture(
+        name="gap",
+        title="Rms gap of each channel and chi-squared before and after, all points and held-out conditions",
+        shows="Measured minus simulated: grey bars are the simulation as given, blue bars include the effects below. The dashed "
+        "line is the gap that noise alone would leave. Held out means predicted by a fit that had not seen those conditions: "
+        "only an effect that reduces this gap, too, is more than a better fit.",
+        draw=gap.gap_bars,
+    ),
+    Picture(
+        name="curves",
+        title="The worst and the typical sweep: measured, simulated as given and with what was found",
+        shows="The sweeps with the largest and with the median misfit of the simulation, in units of the noise. Dashed lines are "
+        "the simulation as given, blue lines include the effects below, errors of the rig among them.",
+        draw=gap.curves_before_after,
+        when=lambda view: bool(view.shown),
+    ),
+    Picture(
+        name="evidence",
+        title="Gain in log evidence of every candidate effect in each forward step",
+        shows="Every effect that these data could show was refitted beside the effects accepted before. An effect is named if "
+        "its bar passes the dashed line, which allows for the number of effects tried. The number at a bar is its distance to "
+        f"the best in log evidence: within {TIED_EVIDENCE:g} the data do not tell them apart. The scale is logarithmic.",
+        draw=gap.evidence,
+        when=lambda view: bool(shown_steps(view)),
+    ),
+    Picture(
+        name="gap_maps",
+        title="Maps of the residuals over sideslip and camber before and after, a row per load and pressure",
+        shows="Measured minus simulated in units of each point's noise, all on one scale. Frames in the maps before mark the "
+        "regions of the list below. Noise alone is pale and without order, and so should be the maps afterwards. A small dot "
+        "marks a point that was run backwards. Maps of the driven and braked wheel are over slip and sideslip.",
+        draw=gap.residuals_before_after,
+        when=lambda view: bool(view.channels),
+    ),
+)
+"""Every picture of the page."""
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
@@ -21,21 +57,9 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     page.write(
         "diagnosis.html.j2",
         folder / "diagnosis.html",
-        _figures(view),
+        (one for picture in DIAGNOSIS for one in picture.planned(view)),
         view=view,
         d=diagnosis,
         say=wording,
-        tie=TIED_EVIDENCE,
         channels=CHANNELS,
     )
-
-
-def _figures(view: DiagnosisView) -> dict[str, Callable[[], Sheet]]:
-    out: dict[str, Callable[[], Sheet]] = {"gap": partial(gap.gap_bars, view)}
-    if view.shown:
-        out["curves"] = partial(gap.curves_before_after, view)
-    if shown_steps(view):
-        out["evidence"] = partial(gap.evidence, view)
-    if view.channels:
-        out["gap_maps"] = partial(gap.residuals_before_after, view)
-    return out

@@ -99,10 +99,8 @@ class DiagnosisView:
 
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""
-        all_regions = (*self.diagnosis.unexplained_where, *self.diagnosis.where)
-        return [region for region in all_regions if region.channel == channel][
-            : constants.MOST_FRAMES_PER_MAP
-        ]
+        found = self.diagnosis.unexplained_where or self.diagnosis.where
+        return [region for region in found if region.channel == channel][: constants.MOST_FRAMES]
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
@@ -170,5 +168,5 @@ def _ranked(step: ForwardStep) -> RankedStep:
 
 
 def shown_steps(view: DiagnosisView) -> Sequence[RankedStep]:
-    """The first steps that have candidates."""
-    return [step for step in view.steps if step.candidates][: constants.MOST_STEPS_DRAWN]
+    """The steps that have candidates."""
+    return [step for step in view.steps if step.candidates]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from mffit.constants import ZERO_CAMBER
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, MODEL
-from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import Axis
 from mffit.rounding import number
@@ -32,7 +32,7 @@ def held(curve: Curve) -> str:
 
 def held_unless_zero(curve: Curve) -> str:
     """The same behind a comma; empty for a curve that holds zero."""
-    return f", {held(curve)}" if abs(curve.held) >= constants.UPRIGHT_ENOUGH_TO_DRAW else ""
+    return f", {held(curve)}" if abs(curve.held) >= ZERO_CAMBER else ""
 
 
 def typeset(text: str) -> str:
@@ -40,6 +40,11 @@ def typeset(text: str) -> str:
     return re.sub(rf"\b({'|'.join(CHANNELS)})\b", lambda m: CHANNELS[m[0]].mathtext, text)
 
 
+def plain(text: str) -> str:
+    """The text with subscripts as a table shows them: ``F_y``."""
+    return re.sub(r"\$_\{(\w+)\}\$", r"_\1", text)
+
+
 def places_of(angles: Iterable[float]) -> int:
     """Decimals with which angles [deg] are written: none if all are whole."""
-    return 0 if all(abs(x - round(x)) < constants.WHOLE_DEGREES for x in angles) else 1
+    return 0 if all(round(x, 1) == round(x) for x in angles) else 1

@@ -43,7 +43,7 @@ def model_lines(
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
     here, there = (simulation.readings(p, channels) for p in (grid, mirrored))
-    steps = constants.STEPS_OF_MODEL_LINE
+    steps = constants.STEPS_OF_LINE
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * steps, (i + 1) * steps)
@@ -57,7 +57,7 @@ def model_lines(
 
 def _along(points: Points, curves: Sequence[Curve]) -> Points:
     """Points at equal distances along each curve's range."""
-    steps = constants.STEPS_OF_MODEL_LINE
+    steps = constants.STEPS_OF_LINE
     columns: dict[str, list[np.ndarray]] = {name: [] for name in VARIED}
     for curve in curves:
         for name, values in columns.items():

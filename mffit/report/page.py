@@ -5,99 +5,79 @@ from __future__ import annotations
 import base64
 import io
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
+from typing import TYPE_CHECKING
 
 from mffit import rounding
 from mffit.errors import shortened
+from mffit.made import COMPUTING, libraries, made
 from mffit.points.left_out import together
-from mffit.report import constants, left_undrawn, making, numbers, typeset
-from mffit.report.drawing.records import Sheet, long, with_shorter_series
+from mffit.report import constants, numbers, typeset
+from mffit.report.catalogue import Planned
+from mffit.report.drawing.records import with_fewer_rows, with_shorter_series
 from mffit.templates import environment
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PagePicture:
-    """A picture on disk and in the page."""
+    """A picture in the page."""
 
-    name: str  #: file stem
+    name: str  #: file stem of its PNG
+    title: str
+    caption: str
+    section: str
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
-    left_out: str  #: what is not drawn, in sentences for the caption
-
-    @property
-    def is_packed(self) -> bool:
-        """Whether the table is a ZIP archive of its file, because it is long."""
-        return len(self.table) > constants.LARGEST_PLAIN_TABLE
 
     @property
     def link(self) -> str:
-        """The table, or the archive with it, as a data address; of a table in the shorter of both encodings."""
-        if self.is_packed:
-            return f"data:application/zip;base64,{base64.b64encode(self._archive()).decode('ascii')}"
-        quoted = {ord(mark): quote(mark, safe=",;:.+-=()[]/_") for mark in set(self.table)}
-        plain = "," + self.table.translate(quoted)
-        packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
-        return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
-
-    def _archive(self) -> bytes:
+        """A ZIP archive of the table, as a data address; the same table gives the same bytes."""
         buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-            # With the default date the same table gives the same bytes.
+        with zipfile.ZipFile(buffer, "w") as archive:
             archive.writestr(zipfile.ZipInfo(f"{self.name}.csv"), self.table, zipfile.ZIP_DEFLATED)
-        return buffer.getvalue()
+        return f"data:application/zip;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"
 
 
-def write(
-    template: str,
-    path: Path,
-    figures: Mapping[str, Callable[[], Sheet]],
-    *,
-    readings: str = "",
-    **content: Any,
-) -> None:
-    """Draw the figures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8.
-
-    ``readings`` is the file beside the page that has every reading, if there is one.
-    """
-    pictures = draw(path.parent, figures, readings)
+def write(template: str, path: Path, planned: Iterable[Planned], **content: object) -> None:
+    """Draw the pictures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
+    pictures = {one.name: draw(path.parent, one) for one in planned}
     filled = _environment().get_template(template)
-    html = filled.render(made=making.made(), pictures=pictures, **content)
+    known = made()
+    foot = {
+        "date": known.day,
+        "version": known.version,
+        "method": known.method,
+        "with": ", ".join(
+            f"{name} {number}" for name, number in libraries((*COMPUTING, "matplotlib")).items()
+        ),
+    }
+    html = filled.render(made=foot, pictures=pictures, **content)
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(
-    folder: Path, figures: Mapping[str, Callable[[], Sheet]], readings: str = ""
-) -> dict[str, PagePicture]:
-    """Draw every figure into ``folder/plots/<name>.png``; returns the pictures for the page by name."""
+def draw(folder: Path, planned: Planned) -> PagePicture:
+    """Draw a picture into ``folder/plots/<name>.png``, and as it stands in the page."""
     from mffit.report.drawing import pictures
 
-    plots = folder / "plots"
-    plots.mkdir(parents=True, exist_ok=True)
-    found = {}
-    for name, make in figures.items():
-        sheet = make()
-        most = int(constants.POINTS_PER_SERIES_DRAWN)
-        picture = pictures.draw(with_shorter_series(sheet, most))
-        picture.save(plots / f"{name}.png")
-        shorter = left_undrawn.long_series(most) if long(sheet, most) else ""
-        left_out = " ".join(filter(None, [sheet.left_out, shorter]))
-        if left_out and readings:
-            left_out = f"{left_out} {readings} has every reading."
-        found[name] = PagePicture(
-            name=name,
-            drawing=picture.markup(),
-            table=numbers.table(sheet),
-            left_out=left_out,
-        )
-    return found
+    (folder / "plots").mkdir(parents=True, exist_ok=True)
+    whole = with_shorter_series(planned.make(), int(constants.POINTS_PER_SERIES))
+    sheet = with_fewer_rows(whole, int(constants.MOST_PANELS))
+    picture = pictures.draw(sheet, planned.name)
+    (folder / "plots" / f"{planned.name}.png").write_bytes(picture.png)
+    return PagePicture(
+        name=planned.name,
+        title=planned.title,
+        caption=f"{planned.shows} {sheet.remark}".strip(),
+        section=planned.section,
+        drawing=picture.markup,
+        table=numbers.table(whole),
+    )
 
 
 @cache

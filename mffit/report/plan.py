@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import constants, page
+from mffit.report.catalogue import Picture
 from mffit.report.figures import planned
+
+PLAN: Picture[Plan] = Picture(
+    name="plan",
+    title="Uncertainty of the goal now and after every run of the list",
+    shows="What the plan makes smaller, now and after each added run; an uncertainty is one standard deviation.",
+    draw=planned.u_against_runs,
+    when=lambda plan: bool(plan.steps),
+)
 
 
 def write_plan(plan: Plan, folder: Path) -> None:
@@ -16,9 +24,9 @@ def write_plan(plan: Plan, folder: Path) -> None:
     page.write(
         "plan.html.j2",
         folder / "plan.html",
-        {"plan": partial(planned.u_against_runs, plan)} if plan.steps else {},
+        PLAN.planned(plan),
         plan=plan,
         say=wording,
         epsilon=DIRECT["epsilon_gamma"].html,
-        trials=plan.trials[: constants.MOST_CANDIDATE_RUNS_IN_PAGE],
+        trials=plan.trials[: constants.MOST_ROWS],
     )

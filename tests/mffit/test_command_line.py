@@ -301,6 +301,23 @@ def test_spin_of_the_paper_tables_prints_no_nan(case, tmp_path, capsys):
     assert "nan" not in (said.out + said.err).lower()
 
 
+def test_build_prints_one_screen_and_everything_on_request(tmp_path, capsys):
+    project = disc(tmp_path).write()
+    assert mffit("build", project) == 0
+    said = capsys.readouterr()
+    lines = [*said.out.splitlines(), *said.err.splitlines()]
+    assert len(lines) <= 25
+    assert lines[0].startswith("toy.tir is ")
+    assert f"written to {tmp_path / 'out'}: report.html, result.json, points.csv, plots" in said.out
+    assert "toy-normal.tir: for simulators without turn slip" in said.out
+    assert mffit("build", project, "--explain") == 0
+    whole = capsys.readouterr()
+    assert "Tested: " in whole.out
+    assert "Tested: " not in said.out
+    warnings = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["warnings"]
+    assert all(f"warning: {sentence}" in whole.err for sentence in warnings)
+
+
 def test_spin_on_a_flat_track_explains_why_there_is_no_factor(tmp_path, capsys):
     project = disc_project(tmp_path / "rig")
     project.config |= {"rig": {"type": "flat-track", "axes": "iso"}, "rolling_radius": [], "sweep": []}

@@ -141,7 +141,7 @@ def test_the_page_has_a_section_of_records(built, result):
 
 
 def test_the_terminal_says_what_was_left_out_by_hand(finished):
-    said = " ".join(text.build_summary(finished).split())
+    said = " ".join(text.build_explained(finished).split())
     assert f"left out by hand: 3 readings: sideslip_1400.csv:{LINES} ({WHY})" in said
 
 

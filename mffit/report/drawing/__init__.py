@@ -1,5 +1,4 @@
-"""Pictures as records: figures describe panels, and matplotlib draws each once for the page and for the PNG beside it.
+"""Pictures as records, and matplotlib's drawing of them: ``records`` say what is shown, ``pictures`` makes SVG and PNG.
 
-``records`` say what is shown, ``panels`` draws a record into axes, ``pictures`` makes SVG and PNG of the same figures.
-``panels`` and ``pictures`` load matplotlib, so other modules import them inside functions.
+``pictures`` loads matplotlib, so other modules import it inside functions.
 """

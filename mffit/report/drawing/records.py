@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from mffit.report import constants, style
+from mffit.report import style
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,18 +24,21 @@ class Look:
     opacity: float = 0.0  #: of an area, 0 to 1; 0 for none
 
 
-class TableRow(NamedTuple):
-    """A row of the table behind a picture; NaN where there is nothing."""
+class Plotted:
+    """Points in the units of a panel's axes."""
 
-    x: float
-    y: float
-    lower: float = float("nan")
-    upper: float = float("nan")
-    value: float = float("nan")
+    __slots__ = ()
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Columns (n,) of the table behind the picture."""
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return len(self.columns()["x"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trace:
+class Trace(Plotted):
     """Points (n,) with a line through them, markers on them, or both."""
 
     name: str
@@ -43,15 +46,12 @@ class Trace:
     y: np.ndarray
     look: Look
 
-    def rows(self) -> Iterator[TableRow]:
-        return (TableRow(x, y) for x, y in zip(self.x, self.y, strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.x, self.y
+    def columns(self) -> dict[str, np.ndarray]:
+        return {"x": self.x, "y": self.y}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Band:
+class Band(Plotted):
     """The area between two curves; arrays (n,)."""
 
     name: str
@@ -59,20 +59,18 @@ class Band:
     low: np.ndarray
     high: np.ndarray
     look: Look
+    x_high: np.ndarray | None = None  #: of the second curve; None: that of the first
 
-    def rows(self) -> Iterator[TableRow]:
-        nan = float("nan")
-        return (TableRow(x, nan, low, high) for x, low, high in zip(self.x, self.low, self.high, strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.x, np.concatenate([self.low, self.high])
+    def columns(self) -> dict[str, np.ndarray]:
+        one = {"x": self.x, "lower": self.low, "upper": self.high}
+        return one if self.x_high is None else {**one, "x of upper": self.x_high}
 
 
 def banded(
     name: str, x: np.ndarray, line: np.ndarray, half: np.ndarray, look: Look, line_name: str = ""
 ) -> list[Band | Trace]:
     """A line with a band of its colour, ``half`` wide to both sides; arrays (n,)."""
-    shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
+    shade = Look(colour=look.colour, opacity=style.SHADE)
     return [
         Band(name=name, x=x, low=line - half, high=line + half, look=shade),
         Trace(name=line_name or name, x=x, y=line, look=look),
@@ -80,7 +78,7 @@ def banded(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorBars:
+class ErrorBars(Plotted):
     """Points (n,) with bars of one standard uncertainty, which may be NaN."""
 
     name: str
@@ -89,23 +87,14 @@ class ErrorBars:
     u: np.ndarray
     look: Look
     along: str = "y"  #: the axis of the uncertainty
-    cap: float = 0.0  #: half the length of the stroke at the ends [pt]
 
-    def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper end of each bar, on the axis ``along``."""
+    def columns(self) -> dict[str, np.ndarray]:
         middle = self.x if self.along == "x" else self.y
-        return middle - self.u, middle + self.u
-
-    def rows(self) -> Iterator[TableRow]:
-        return (TableRow(*row) for row in zip(self.x, self.y, *self.ends(), strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        ends = np.concatenate([*self.ends(), self.x if self.along == "x" else self.y])
-        return (ends, self.y) if self.along == "x" else (self.x, ends)
+        return {"x": self.x, "y": self.y, "lower": middle - self.u, "upper": middle + self.u}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bars:
+class Bars(Plotted):
     """Horizontal bars (n,) from zero, or from the left end of a logarithmic axis."""
 
     name: str
@@ -114,15 +103,12 @@ class Bars:
     colours: Sequence[str]
     height: float = 0.62  #: in units of the vertical axis
 
-    def rows(self) -> Iterator[TableRow]:
-        return (TableRow(x, y) for x, y in zip(self.lengths, self.places, strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        return np.append(self.lengths, 0.0), self.places
+    def columns(self) -> dict[str, np.ndarray]:
+        return {"x": self.lengths, "y": self.places}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Map:
+class Map(Plotted):
     """Points (n,) whose colour shows a value; the scale ends at ± ``limit``."""
 
     name: str
@@ -130,40 +116,12 @@ class Map:
     y: np.ndarray
     values: np.ndarray
     limit: float
-    size: float  #: side of a square [pt]
 
-    def rows(self) -> Iterator[TableRow]:
-        nan = float("nan")
-        return (TableRow(x, y, nan, nan, v) for x, y, v in zip(self.x, self.y, self.values, strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.x, self.y
+    def columns(self) -> dict[str, np.ndarray]:
+        return {"x": self.x, "y": self.y, "value": self.values}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ribbon:
-    """The area on both sides of a path (n,), which may close; arrays (n,)."""
-
-    name: str
-    x: np.ndarray
-    y: np.ndarray
-    dx: np.ndarray  #: from the path to its one side; the other side lies opposite
-    dy: np.ndarray
-    look: Look
-
-    def sides(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
-        """Both edges as (x, y)."""
-        return (self.x + self.dx, self.y + self.dy), (self.x - self.dx, self.y - self.dy)
-
-    def rows(self) -> Iterator[TableRow]:
-        return (TableRow(x, y) for side in self.sides() for x, y in zip(*side, strict=True))
-
-    def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        one, other = self.sides()
-        return np.concatenate([one[0], other[0]]), np.concatenate([one[1], other[1]])
-
-
-DataSeries = Trace | Band | Ribbon | ErrorBars | Bars | Map
+DataSeries = Trace | Band | ErrorBars | Bars | Map
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,14 +152,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
-    """A text at a place in a panel."""
+    """A text behind a place in a panel."""
 
     x: float
     y: float
     text: str
     colour: str = style.INK
-    size: float = 7.5  #: [pt]
-    turned: bool = False  #: upwards, left of the place, beginning at it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,11 +168,7 @@ class Axis:
     low: float | None = None  #: None: where the data begin
     high: float | None = None  #: below ``low`` for an axis that runs backwards
     words: Mapping[float, str] | None = None  #: names in place of numbers
-    bold: str = ""  #: the word among them to stress
     logarithmic: bool = False
-    ticks: int = constants.MOST_TICKS
-    numbered: bool = True
-    room: float = constants.AXIS_ROOM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -249,56 +201,58 @@ class Sheet:
     height: float  #: of a panel's data area [inch]
     key: Mapping[str, Look] = field(default_factory=dict)
     scale: ColourScale | None = None
-    panel_width: float | None = (
-        None  #: of a panel with its labels [pt]; None: what the number of columns leaves
-    )
-    left_out: str = ""  #: what is not drawn, in sentences for the caption
+    wide: bool = False  #: whether a sole panel takes the whole width
+    remark: str = ""  #: what holds for these data only and what is not drawn, in sentences for the caption
 
     @property
     def panels(self) -> list[Panel]:
         return [panel for row in self.rows for panel in row]
 
+    @property
+    def columns(self) -> int:
+        """Panels that the width has room for; a sole one is half as wide as the picture."""
+        return max(*map(len, self.rows), 1 if self.wide else 2)
 
-def in_rows(*groups: Sequence[Panel], columns: int) -> list[list[Panel]]:
+
+def in_rows(*groups: Sequence[Panel], columns: int = 5) -> list[list[Panel]]:
     """Rows of at most ``columns`` panels; every group starts a new row."""
     return [
         list(group[start : start + columns]) for group in groups for start in range(0, len(group), columns)
     ]
 
 
-def thinned(panels: Sequence[Panel], most: int) -> list[Panel]:
-    """At most so many of the panels, evenly chosen, both ends among them."""
-    if len(panels) <= most:
-        return list(panels)
-    return [panels[k] for k in np.linspace(0, len(panels) - 1, most).round().astype(int)]
+def of_one_range(row: Sequence[Panel]) -> list[Panel]:
+    """The panels with one vertical range, so that heights can be compared."""
+    found = [c.columns() for panel in row for c in panel.series]
+    values = np.concatenate(
+        [x for columns in found for name, x in columns.items() if not name.startswith("x")]
+    )
+    low, high = float(np.nanmin(values, initial=0.0)), float(np.nanmax(values, initial=0.0))
+    room = 0.05 * (high - low)
+    return [replace(panel, y=replace(panel.y, low=low - room, high=high + room)) for panel in row]
 
 
-def long(sheet: Sheet, most: int) -> bool:
-    """Whether any series has more points than ``most``."""
-    return any(_points(series) > most for panel in sheet.panels for series in panel.series)
+def with_fewer_rows(sheet: Sheet, most: int) -> Sheet:
+    """The sheet with at most so many panels: rows evenly chosen, both ends among them."""
+    if len(sheet.panels) <= most:
+        return sheet
+    chosen = np.linspace(0, len(sheet.rows) - 1, max(1, most // sheet.columns)).round().astype(int)
+    rows = [sheet.rows[k] for k in chosen]
+    said = f"{len(sheet.panels) - sum(map(len, rows))} more panels are not drawn, for lack of room; the numbers have them."
+    return replace(sheet, rows=rows, remark=" ".join(filter(None, (sheet.remark, said))))
 
 
 def with_shorter_series(sheet: Sheet, most: int) -> Sheet:
-    """The sheet with at most so many points, evenly chosen, of every series."""
-    rows = [
-        [replace(panel, series=[shorter(series, most)[0] for series in panel.series]) for panel in row]
-        for row in sheet.rows
-    ]
-    return replace(sheet, rows=rows)
+    """The sheet with every so many of its points of each longer series, so that they are at most ``most``."""
+    if all(len(series) <= most for panel in sheet.panels for series in panel.series):
+        return sheet
+    rows = [[replace(p, series=[_shorter(s, most) for s in p.series]) for p in row] for row in sheet.rows]
+    said = f"Of longer series at most {most} points, evenly spaced, are drawn and listed."
+    return replace(sheet, rows=rows, remark=" ".join(filter(None, (sheet.remark, said))))
 
 
-def shorter(series: DataSeries, most: int) -> tuple[DataSeries, int]:
-    """The series with every so many of its points, so that they are at most ``most``, and that stride."""
-    n = _points(series)
-    every = -(-n // most)
-    if every < 2:
-        return series, 1
-    arrays = ((field.name, getattr(series, field.name)) for field in fields(series))
-    kept: dict[str, Any] = {
-        name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n
-    }
-    return replace(series, **kept), every
-
-
-def _points(series: DataSeries) -> int:
-    return len(series.lengths if isinstance(series, Bars) else series.x)
+def _shorter(series: DataSeries, most: int) -> DataSeries:
+    every = -(-len(series) // most)
+    arrays = ((f.name, getattr(series, f.name)) for f in fields(series))
+    kept: dict[str, Any] = {name: x[::every] for name, x in arrays if isinstance(x, np.ndarray)}
+    return replace(series, **kept)

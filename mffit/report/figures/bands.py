@@ -71,10 +71,10 @@ def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
     """Values [rad, -] (m,) over the range of the file, and the ends of the tested range."""
     if over != "kappa":
         end = files.written[LIMITS[over]]
-        return np.linspace(-end, end, constants.STEPS_OF_FILE_CURVE), tested_edges(files.tested[LIMITS[over]])
+        return np.linspace(-end, end, constants.STEPS_OF_LINE), tested_edges(files.tested[LIMITS[over]])
     low, high = (files.written.get(key, files.tested[key]) for key in SLIP_LIMITS)
     guides = [Guide(axis="x", at=files.tested[key], look=DOTTED) for key in SLIP_LIMITS]
-    return np.linspace(low, high, constants.STEPS_OF_FILE_CURVE), guides
+    return np.linspace(low, high, constants.STEPS_OF_LINE), guides
 
 
 def model_curve(

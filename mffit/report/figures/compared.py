@@ -20,7 +20,7 @@ def curves(found: Comparison, channel: str) -> Sheet:
     """Both curves with their 95 % bands over sideslip and camber, or over slip, a panel per load."""
     gaps = sorted((gap for gap in found.curves if gap.channel == channel), key=lambda gap: gap.load)
     groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in (*labels.ANGLES, "kappa")]
-    rows = in_rows(*groups, columns=max(map(len, groups)))
+    rows = in_rows(*groups)
     return Sheet(rows=rows, height=1.9, key={found.first: FIRST, found.second: SECOND})
 
 
@@ -46,7 +46,7 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
 
 def differences(found: Comparison) -> Sheet:
     """The largest differences of numbers over their standard uncertainties."""
-    rows = [row for row in found.numbers if row.z is not None][: constants.MOST_DIFFERENCES_DRAWN]
+    rows = [row for row in found.numbers if row.z is not None][: constants.MOST_ROWS]
     z = np.array([float(row.z or 0.0) for row in rows])
     edge = Look(colour=style.MUTED, line="--", width=0.8)
     bars = Bars(
@@ -65,4 +65,4 @@ def differences(found: Comparison) -> Sheet:
         series=[bars],
         guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )
-    return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
+    return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)

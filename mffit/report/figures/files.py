@@ -17,8 +17,6 @@ LOOKS = {
     "both": Look(colour=style.MUTED, line=":", width=1.2),
 }
 MODEL = Look(colour=style.INK, marker=".", size=2.0)
-HELD = {"gamma": constants.HELD_SIDESLIP_SHARES, "alpha": constants.HELD_CAMBER_SHARES}
-"""By varied angle, where the other one is held, as shares of its tested range."""
 
 
 def files_on_a_straight_path(view: BuildView) -> Sheet:
@@ -34,9 +32,9 @@ def _panel(view: BuildView, channel: str, over: str) -> Panel:
     assert files is not None
     load = float(files.by_use["normal"].tyre["FNOMIN"])
     end, other = LIMITS[over], labels.OTHER[over]
-    x = np.linspace(-files.written[end], files.written[end], constants.STEPS_OF_FILE_CURVE)
+    x = np.linspace(-files.written[end], files.written[end], constants.STEPS_OF_LINE)
     series = []
-    for share in HELD[over]:
+    for share in constants.HELD_SHARES[:2] if over == "gamma" else constants.HELD_SHARES:
         held = np.full_like(x, share * files.tested[LIMITS[other]])
         alpha, gamma = (held, x) if over == "gamma" else (x, held)
         at = f"{labels.ANGLES[other].symbol} = {number(np.degrees(held[0]), 1)}°"

@@ -32,7 +32,9 @@ def epsilon_of_all(found: Fleet) -> Sheet:
         for k, (key, words) in enumerate(EPSILON.items())
     ]
     panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
-    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()})
+    return Sheet(
+        rows=[[panel]], wide=True, height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()}
+    )
 
 
 def numbers_of_all(found: Fleet) -> Sheet:
@@ -59,7 +61,7 @@ def _names(found: Fleet, columns: int = 1) -> Axis:
     """The tyres' names if they fit side by side below one of ``columns`` panels, else their numbers in the table."""
     n = len(found.rows)
     names = [row.specimen.name for row in found.rows]
-    if n * (2 + max(map(len, names))) <= constants.CHARACTERS_BELOW_A_SHEET // columns:
+    if n * (2 + max(map(len, names))) * style.LETTER <= style.WIDTH / columns:
         return Axis(low=-0.6, high=n - 0.4, words={float(k): name for k, name in enumerate(names)})
-    step = max(1, n // constants.MOST_TYRE_NUMBERS_AT_AXIS)
+    step = max(1, n // constants.MOST_ROWS)
     return Axis(low=-0.6, high=n - 0.4, words={float(k): str(k + 1) for k in range(0, n, step)})

@@ -8,10 +8,11 @@ from operator import attrgetter, methodcaller
 
 import numpy as np
 
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.diagnosis import Gap
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.where import Region
-from mffit.report import constants, labels, left_undrawn, style
+from mffit.report import constants, labels, style
 from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
 from mffit.report.drawing.records import (
     Axis,
@@ -30,12 +31,14 @@ from mffit.report.figures.residuals import (
     ANGLES,
     SLIPS,
     driven,
-    most_populated,
     residual_map,
     rolling,
 )
 from mffit.rounding import number
+from mffit.scatter import rms
 
+SMALLEST_GAIN = 1.0
+"""Left end of the logarithmic scale of log evidence."""
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
 GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
@@ -97,7 +100,7 @@ def curves_before_after(view: DiagnosisView) -> Sheet:
     key = {"measured": MEASURED, "simulated as given": GIVEN}
     if view.changed:
         key["with what was found"] = FOUND
-    return Sheet(rows=in_rows(panels, columns=4), height=2.1, key=key)
+    return Sheet(rows=in_rows(panels, columns=4), height=1.9, key=key)
 
 
 def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
@@ -127,12 +130,8 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
     limit = colour_limit(view.channels)
     rows = []
-    left_out = 0
     for which, over in ((rolling, ANGLES), (driven, SLIPS)):
-        conditions = which(view.points, view.conditions)
-        shown = most_populated(conditions)
-        left_out += (len(conditions) - len(shown)) * len(view.channels)
-        for condition in shown:
+        for condition in which(view.points, view.conditions):
             maps = []
             for channel in view.channels:
                 frames = _frames(view.frames(channel.name), condition.load) if over == ANGLES else []
@@ -144,15 +143,14 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
             rows.append(maps)
     label = "measured − simulated [noise of a point]"
     scale = ColourScale(limit=limit, label=label)
-    return Sheet(rows=rows, height=1.40, scale=scale, left_out=left_undrawn.panels(left_out))
+    return Sheet(rows=rows, height=1.40, scale=scale)
 
 
 def colour_limit(channels: Sequence[GapChannel]) -> float:
-    """End of the scale: it holds nearly all residuals before, between the fixed limits."""
-    smallest, largest = constants.SMALLEST_GAP_SCALE, constants.LARGEST_GAP_SCALE
-    sizes = np.concatenate([np.abs(c.before[np.isfinite(c.before)]) for c in channels])
-    wanted = float(np.percentile(sizes, constants.GAP_SCALE_PERCENTILE)) if len(sizes) else smallest
-    return float(np.clip(np.ceil(wanted), smallest, largest))
+    """End of the scale: it holds nearly all residuals before, and noise looks plain."""
+    sizes = np.concatenate([c.before[np.isfinite(c.before)] for c in channels])
+    wanted = np.ceil(COVERAGE_FACTOR_95 * rms(sizes))
+    return float(np.clip(wanted, constants.RESIDUAL_SCALE, constants.LARGEST_GAP_SCALE))
 
 
 def evidence(view: DiagnosisView) -> Sheet:
@@ -162,12 +160,12 @@ def evidence(view: DiagnosisView) -> Sheet:
     most = max(len(panel.y.words or {}) for panel in panels)
     present = {c.kind for step in steps for c in step.candidates}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
-    return Sheet(rows=[panels], height=0.185 * most, key=key, panel_width=257.0)
+    return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 
 
 def _candidates(step: RankedStep, number_of: int) -> Panel:
-    rows = step.candidates[: constants.MOST_CANDIDATES_DRAWN]
-    gains = np.array([max(c.gain, constants.SMALLEST_GAIN_DRAWN) for c in rows])
+    rows = step.candidates[: constants.MOST_ROWS]
+    gains = np.array([max(c.gain, SMALLEST_GAIN) for c in rows])
     names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
     after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
     title = f"Step {number_of}{'' if step.passed else ', nothing passes'}: {after}"
@@ -175,7 +173,7 @@ def _candidates(step: RankedStep, number_of: int) -> Panel:
         title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
         x=Axis(
             label="gain in log evidence",
-            low=constants.SMALLEST_GAIN_DRAWN,
+            low=SMALLEST_GAIN,
             high=12.0 * max(10.0, *gains),
             logarithmic=True,
         ),
@@ -200,17 +198,17 @@ def _distances(rows: Sequence[Candidate], gains: np.ndarray) -> list[Note]:
         behind = rows[0].gain - candidate.gain
         text = "best" if place == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
         colour = style.INK if behind < TIED_EVIDENCE else style.MUTED
-        notes.append(Note(x=float(gain), y=place, text=text, size=7.0, colour=colour))
+        notes.append(Note(x=float(gain), y=place, text=text, colour=colour))
     return notes
 
 
 def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
     """A frame around every region at this load; none for a range of slip, over which the maps are not drawn."""
-    found, near = [], constants.LOAD_TOLERANCE_OF_FRAME
+    found = []
     for region in (item.region for item in regions):
-        low, high = region.get("Fz_N", (-np.inf, np.inf))
+        (low, high), step = region.get("Fz_N", (-np.inf, np.inf)), constants.LOAD_ROUNDING
         if "kappa" in region:
             continue
-        if {"alpha_deg", "gamma_deg"} & region.keys() and low * (1.0 - near) <= load <= high * (1.0 + near):
+        if {"alpha_deg", "gamma_deg"} & region.keys() and low - step <= load <= high + step:
             found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
     return found

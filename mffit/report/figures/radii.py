@@ -44,7 +44,7 @@ def _panel(
 ) -> Panel:
     known = Posterior(tuple(view.radii.numbers), view.radii.covariance)
     series: list[Band | Trace] = []
-    read, steps = rolling.radius(channel), constants.STEPS_OF_MODEL_LINE
+    read, steps = rolling.radius(channel), constants.STEPS_OF_LINE
     speed = float(np.median(rolling.V))
     for p, colour in colours.items():
         rows = (pressure == p) & np.isfinite(read)

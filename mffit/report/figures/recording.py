@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE, StretchNote
-from mffit.report import constants, style
+from mffit.report import style
 from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Span, Trace
 from mffit.sweeps import Sweep
 
@@ -37,16 +37,13 @@ def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
     measured = {name: values for name, values in channels.items() if np.any(np.isfinite(values))}
     clock = _clock(sweep.time)
     spans = _spans(sweep.time, clock, notes)
-    some = np.linspace(0, len(sweep) - 1, min(len(sweep), constants.MOST_SAMPLES_DRAWN)).astype(int)
-    broken = np.searchsorted(some, gaps(sweep.time))
-    x = np.insert(clock[some], broken, clock[some][broken.clip(max=len(some) - 1)])
+    broken = gaps(sweep.time)
+    x = np.insert(clock, broken, clock[broken])
     panels = [
         Panel(
-            x=Axis(label="time, gaps closed [s]", numbered=name == [*measured][-1], room=0.005, ticks=10),
+            x=Axis(label="time, gaps closed [s]"),
             y=Axis(label=name),
-            series=[
-                Trace(name=name, x=x, y=np.insert(values[some].astype(float), broken, np.nan), look=LINE)
-            ],
+            series=[Trace(name=name, x=x, y=np.insert(values.astype(float), broken, np.nan), look=LINE)],
             spans=spans,
         )
         for name, values in measured.items()
@@ -58,7 +55,7 @@ def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
             f"{sum(note.points > 0 for note in notes)} stretches give points": KEPT,
             f"{sum(note.points == 0 for note in notes)} stretches give none": DROPPED,
         },
-        panel_width=constants.PICTURE_WIDTH,
+        wide=True,
     )
 
 
@@ -75,9 +72,7 @@ def _spans(time: np.ndarray, clock: np.ndarray, notes: Sequence[StretchNote]) ->
 
 
 def _clock(time: np.ndarray) -> np.ndarray:
-    """Time (n,) from zero with every gap closed to a sliver."""
+    """Time (n,) from zero with every gap closed to a step."""
     steps = np.diff(time)
-    at = gaps(time) - 1
-    held = float(np.sum(steps) - np.sum(steps[at]))
-    steps[at] = constants.GAP_IN_TIME_DRAWN * held
+    steps[gaps(time) - 1] = np.median(steps)
     return np.r_[0.0, np.cumsum(steps)]

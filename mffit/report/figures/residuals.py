@@ -8,19 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.points import Points
-from mffit.report import constants, labels, left_undrawn, style
+from mffit.report import constants, labels, style
+from mffit.report.build_view import BuildView
 from mffit.report.curves import CurveCondition, shown_values
 from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace, in_rows
 
 ANGLES = ("alpha", "gamma")
 SLIPS = ("kappa", "alpha")
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
-
-
-def most_populated(conditions: Sequence[CurveCondition], most: int | None = None) -> list[CurveCondition]:
-    """The conditions with most points, in their order; ``most`` of them, by default as many as fit side by side."""
-    kept = sorted(conditions, key=lambda c: -len(c.index))[: most or constants.MOST_MAPS_PER_CHANNEL]
-    return [c for c in conditions if c in kept]
 
 
 def rolling(points: Points, conditions: Sequence[CurveCondition]) -> list[CurveCondition]:
@@ -38,6 +33,17 @@ def _kept(conditions: Sequence[CurveCondition], which: np.ndarray) -> list[Curve
     return [c for c in found if len(c.index)]
 
 
+def of_rolling(view: BuildView) -> Sheet:
+    """Maps of every channel over sideslip and camber, of the freely rolling wheel."""
+    return residual_maps(view.points, view.scaled, rolling(view.points, view.conditions), view.residual_unit)
+
+
+def of_driven(view: BuildView) -> Sheet:
+    """Maps of every channel over slip and sideslip, of the driven and braked wheel."""
+    found = driven(view.points, view.conditions)
+    return residual_maps(view.points, view.scaled, found, view.residual_unit, over=SLIPS)
+
+
 def residual_maps(
     points: Points,
     residuals: Sequence[tuple[str, np.ndarray]],
@@ -49,19 +55,18 @@ def residual_maps(
 
     ``over`` names what lies at the axes, ``("alpha", "gamma")`` or ``("kappa", "alpha")``.
     """
-    limit, shown = constants.RESIDUAL_SCALE, most_populated(conditions, constants.MOST_MAPS_OF_BUILD)
+    limit = constants.RESIDUAL_SCALE
     groups = [
         [
             residual_map(points, values, condition, limit, f"{name}: {condition.title}", over=over)
-            for condition in shown
+            for condition in conditions
         ]
         for name, values in residuals
     ]
     return Sheet(
-        rows=in_rows(*groups, columns=min(len(shown), constants.MAPS_PER_ROW)),
+        rows=in_rows(*groups),
         height=1.45,
         scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"),
-        left_out=left_undrawn.panels(len(residuals) * (len(conditions) - len(shown))),
     )
 
 
@@ -79,10 +84,7 @@ def residual_map(
     x, y = (shown_values(points, name)[rows] for name in over)
     (left, right), (low, high) = (_all_points(points, name) for name in over)
     y = y + _apart(points, over, x, y, low, high)
-    size = 4.5 if len(rows) < constants.CROWDED_MAP else 2.6
-    series: list[Map | Trace] = [
-        Map(name="measured − model", x=x, y=y, values=np.clip(values[rows], -limit, limit), limit=limit, size=size)
-    ]  # fmt: skip
+    series: list[Map | Trace] = [Map(name="measured − model", x=x, y=y, values=values[rows], limit=limit)]
     backward = points.direction[rows] < 0
     if backward.any():
         series.append(Trace(name="run backwards", x=x[backward], y=y[backward], look=BACKWARD))
@@ -90,7 +92,7 @@ def residual_map(
     return Panel(
         title=title,
         x=Axis(label=x_axis, low=left, high=right),
-        y=Axis(label=y_axis, low=low, high=high, ticks=4),
+        y=Axis(label=y_axis, low=low, high=high),
         series=series,
         frames=frames,
     )
@@ -99,15 +101,11 @@ def residual_map(
 def _apart(
     points: Points, over: tuple[str, str], x: np.ndarray, y: np.ndarray, low: float, high: float
 ) -> np.ndarray:
-    """Shift upwards (k,) that keeps points at one place from covering each other, within the axis and away from its ends."""
-    steps = beside(x / (constants.SLIP_SHOWN_APART if over[0] == "kappa" else 1.0), y)
+    """Shift upwards (k,) that keeps points at one place from covering each other, within the axis."""
+    steps = beside(10.0 * x if over[0] == "kappa" else x, y)
     step = constants.NEIGHBOUR_SHIFT * max(float(np.ptp(shown_values(points, over[1]))), 1.0)
     room = np.where(steps > 0.0, high - y, y - low)
-    needed = np.abs(steps) * step
-    crowded = needed > room
-    if crowded.any():
-        step *= constants.SHARE_OF_ROOM * float(np.min((room / np.maximum(needed, 1e-9))[crowded]))
-    return steps * step
+    return steps * min(step, *(0.9 * room / np.maximum(np.abs(steps), 1.0)))
 
 
 def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:

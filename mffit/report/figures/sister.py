@@ -13,8 +13,9 @@ from mffit.report.figures.bands import key_of_loads, model_curve, three_loads
 
 def borrowed_force(view: BuildView) -> Sheet:
     """Fx over longitudinal slip with 95 % bands at three loads, with and without sideslip, on a straight path."""
+    assert view.files is not None
     colours = three_loads(view)
-    kappa = np.linspace(-1.0, 1.0, constants.STEPS_OF_FILE_CURVE) * constants.LARGEST_SLIP_TO_DRAW
+    kappa = np.linspace(-1.0, 1.0, constants.STEPS_OF_LINE) * constants.LARGEST_SLIP_TO_DRAW
     panels = [
         Panel(
             title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {sideslip:.0f}°",
@@ -28,6 +29,8 @@ def borrowed_force(view: BuildView) -> Sheet:
                 )
             ],
         )
-        for sideslip in constants.SIDESLIPS_OF_BORROWED_FORCE
+        for sideslip in (
+            share * np.degrees(view.files.tested["ALPMAX"]) for share in constants.HELD_SHARES[:2]
+        )
     ]
     return Sheet(rows=[panels], height=2.1, key=key_of_loads(colours))

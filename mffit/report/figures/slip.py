@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from mffit.constants import ZERO_CAMBER
 from mffit.points import Points
 from mffit.quantities import CHANNELS, MODEL
-from mffit.report import constants, labels, left_undrawn, style
-from mffit.report.build_view import BuildView, ChannelRow
+from mffit.report import constants, labels, style
+from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
     Axis,
@@ -19,15 +20,13 @@ from mffit.report.drawing.records import (
     Guide,
     Look,
     Panel,
-    Ribbon,
     Sheet,
     Trace,
     banded,
     in_rows,
-    thinned,
 )
 from mffit.report.figures.fit import MODEL as LINE
-from mffit.report.figures.fit import READINGS, Overlaid, curve_traces, mark_key
+from mffit.report.figures.fit import READINGS, SLIP, held_key, varied
 from mffit.report.with_band import Banded, several_with_band
 from mffit.rounding import number
 from tir.equations import lateral, longitudinal, normalise
@@ -36,7 +35,7 @@ from tir.outputs import outputs_of
 EDGE = Look(colour=style.INK, line="-", width=1.1)
 BEYOND = Look(colour=style.INK, line=":", width=1.1)
 EDGE_NAME = "limit of the model"
-EDGE_NAME_RUN = "limit within the slips that were run together"
+EDGE_NAME_RUN = "limit as tested"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
@@ -45,60 +44,13 @@ WEIGHTS = (
 """Force, name and equation of each weight of combined slip."""
 
 
-def slip_curves(curves: Iterable[Curve]) -> list[Curve]:
-    """The curves over longitudinal slip."""
-    return [c for c in curves if c.over == "kappa"]
-
-
-def over_slip(view: Overlaid, channel: ChannelRow) -> Sheet:
-    """A channel over longitudinal slip: one panel per load, pressure and camber, coloured by sideslip."""
-    conditions: dict[tuple[float, float, float], list[Curve]] = {}
-    for curve in slip_curves(view.curves):
-        if np.isfinite(channel.measured[curve.index]).any():
-            conditions.setdefault((curve.load, curve.pressure, curve.camber), []).append(curve)
-    colours = _colours(curve for members in conditions.values() for curve in members)
-    several = len({camber for *_, camber in conditions}) > 1
-    panels = [
-        Panel(
-            title=members[0].condition + (f", {_camber(members[0].camber)}" if several else ""),
-            x=Axis(label=labels.SLIP.axis),
-            y=Axis(label=channel.label),
-            series=[s for c in members for s in curve_traces(view, channel, c, colours[c.held])],
-            guides=ZEROS,
-        )
-        for _, members in sorted(conditions.items())
-    ]
-    kept = thinned(panels, constants.MOST_PANELS_OF_FIT)
-    return Sheet(
-        rows=in_rows(kept, columns=5 if len(kept) > 4 else 4),
-        height=1.75,
-        key={"measured": READINGS, "model": LINE, **mark_key(view, channel), **_sideslip_key(colours)},
-        left_out=left_undrawn.panels(len(panels) - len(kept)),
-    )
-
-
-def _camber(camber: float) -> str:
-    return f"{labels.ANGLES['gamma'].symbol} = {number(camber, 0)}°"
-
-
 def _colours(curves: Iterable[Curve]) -> dict[float, str]:
     return style.ramp({curve.held for curve in curves})
 
 
-def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
-    symbol = labels.ANGLES["alpha"].symbol
-    places = labels.places_of(colours)
-    return {
-        f"{symbol} = {number(sideslip, places)}°": Look(colour=colour, line="-", width=3.0)
-        for sideslip, colour in colours.items()
-    }
-
-
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
-    upright = [
-        c for c in slip_curves(view.curves) if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
-    ]
+    upright = [c for c in varied(view.curves, SLIP) if c.forward and abs(c.camber) < ZERO_CAMBER]
     nominal = view.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
     found: dict[float, list[Curve]] = {}
@@ -109,9 +61,10 @@ def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
 
 
 def combined(view: BuildView) -> bool:
-    """Whether slip was run with sideslip of the upright wheel."""
+    """Whether both forces were measured at slip with sideslip of the upright wheel."""
     members = [c for curves in main_slip_curves(view).values() for c in curves]
-    return any(abs(c.held) >= constants.UPRIGHT_ENOUGH_TO_DRAW for c in members)
+    both = {"Fx", "Fy"} <= {channel.name for channel in view.channels}
+    return both and any(abs(c.held) >= ZERO_CAMBER for c in members)
 
 
 def slip_range(view: BuildView) -> tuple[float, float]:
@@ -129,7 +82,7 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
 def _beyond_combined(view: BuildView, alpha: np.ndarray) -> np.ndarray:
     """Mask (m,) of the sideslips [rad] that are larger than any at which longitudinal slip was run, to the same side."""
     run = view.felt.alpha[~view.points.free_rolling]
-    room = constants.UPRIGHT_ENOUGH_TO_DRAW.rad
+    room = ZERO_CAMBER.rad
     return (alpha < np.min(run, initial=0.0) - room) | (alpha > np.max(run, initial=0.0) + room)
 
 
@@ -140,14 +93,14 @@ def friction_ellipse(view: BuildView) -> Sheet:
     panels = [_ellipse(view, load, members, colours) for load, members in sorted(groups.items())]
     edges = (EDGE_NAME, EDGE_NAME_RUN)
     drawn = {s.name: s.look for p in panels for s in p.series if isinstance(s, Trace) and s.name in edges}
-    key = {"measured": READINGS, "model": LINE, **drawn, **_sideslip_key(colours)}
-    return Sheet(rows=in_rows(panels, columns=min(4, max(3, len(panels)))), height=2.6, key=key)
+    key = {"measured": READINGS, "model": LINE, **drawn, **held_key("alpha", colours)}
+    return Sheet(rows=in_rows(panels, columns=3), height=2.6, key=key)
 
 
 def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: dict[float, str]) -> Panel:
     Fx, Fy = (view.felt.channel(name) for name in ("Fx", "Fy"))
-    series: list[Ribbon | Trace] = []
-    slip = np.linspace(*slip_range(view), constants.STEPS_OF_FILE_CURVE)
+    series: list[Band | Trace] = []
+    slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
     for curve in members:
         look = Look(colour=colours[curve.held], line="-", width=1.0)
         name = f"{labels.held(curve)}"
@@ -156,12 +109,11 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
         dots = Look(colour=colours[curve.held], marker=".", size=1.6)
         series.append(Trace(name=f"measured, {name}", x=Fy[curve.index], y=Fx[curve.index], look=dots))
     series += _limit(view, members[0])
-    largest = max(float(np.nanmax(np.abs(part))) for s in series for part in s.extent())
-    end = (1.0 + constants.AXIS_ROOM) * largest
+    end = 1.05 * max(float(np.nanmax(np.abs(part))) for s in series for part in s.columns().values())
     return Panel(
         title=f"{labels.LOAD.of(load)}",
-        x=Axis(label=CHANNELS["Fy"].axis, low=-end, high=end, ticks=4),
-        y=Axis(label=CHANNELS["Fx"].axis, low=-end, high=end, ticks=4),
+        x=Axis(label=CHANNELS["Fy"].axis, low=-end, high=end),
+        y=Axis(label=CHANNELS["Fx"].axis, low=-end, high=end),
         series=series,
         guides=ZEROS,
     )
@@ -169,7 +121,7 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
-    steps = int(constants.STEPS_OF_FILE_CURVE)
+    steps = int(constants.STEPS_OF_LINE)
     kappa, alpha = (
         grid.ravel()
         for grid in np.meshgrid(
@@ -190,7 +142,7 @@ def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
     return outputs_of(("Fx", "Fy"), tyre, where, turn_slip=view.on_disc)
 
 
-def _limit(view: BuildView, curve: Curve) -> list[Ribbon | Trace]:
+def _limit(view: BuildView, curve: Curve) -> list[Band | Trace]:
     """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
     ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
@@ -212,7 +164,7 @@ def _path(
     name: str,
     look: Look,
     across: np.ndarray | None = None,
-) -> tuple[Ribbon, Trace]:
+) -> tuple[Band, Trace]:
     """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
@@ -228,9 +180,9 @@ def _path(
 
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
     dx, dy = across_y * band.half, across_x * band.half
-    shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
+    shade = Look(colour=look.colour, opacity=style.SHADE)
     return (
-        Ribbon(name=name, x=Fy, y=Fx, dx=dx, dy=dy, look=shade),
+        Band(name=name, x=Fy + dx, low=Fx + dy, x_high=Fy - dx, high=Fx - dy, look=shade),
         Trace(name=name, x=Fy, y=Fx, look=look),
     )
 
@@ -257,22 +209,24 @@ def weights(view: BuildView) -> Sheet:
         for load, members in groups:
             series: list[Band | Trace] = []
             for curve in members:
-                if channel == "Fy" and abs(curve.held) < constants.UPRIGHT_ENOUGH_TO_DRAW:
+                if channel == "Fy" and abs(curve.held) < ZERO_CAMBER:
                     continue
                 series += _weight(view, curve, channel, weight, colours[curve.held])
-            largest = max((float(np.nanmax(s.extent()[1])) for s in series), default=1.0)
+            largest = max(
+                (float(np.nanmax(s.columns()["upper"])) for s in series if isinstance(s, Band)), default=1.0
+            )
             panels.append(
                 Panel(
                     title=labels.LOAD.of(load),
                     x=Axis(label=labels.SLIP.axis),
-                    y=Axis(label=label, ticks=4, low=-0.05, high=max(1.3, 1.05 * largest)),
+                    y=Axis(label=label, low=-0.05, high=max(1.3, 1.05 * largest)),
                     series=series,
                     guides=[Guide(axis="y", at=1.0), Guide(axis="y", at=0.0)],
                 )
             )
         rows += in_rows(panels, columns=4)
     key = {"measured force over the model's without the other slip": READINGS, "model": LINE}
-    return Sheet(rows=rows, height=1.75, key={**key, **_sideslip_key(colours)})
+    return Sheet(rows=rows, height=1.75, key={**key, **held_key("alpha", colours)})
 
 
 def _weight(
@@ -281,7 +235,7 @@ def _weight(
     """The model's weight with its band, and the one that the readings show where the pure force is large enough."""
     name = labels.held(curve)
     alpha = float(np.median(view.felt.alpha[curve.index]))
-    slip = np.linspace(*slip_range(view), constants.STEPS_OF_FILE_CURVE)
+    slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
     line, half = _weights_at(view, curve, slip, np.full_like(slip, alpha), weight)
     read = view.felt.kappa[curve.index]
     at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
@@ -321,9 +275,9 @@ def trail(view: BuildView) -> Sheet:
     """Pneumatic trail and residual moment over sideslip with bands, at several longitudinal slips: a column per load."""
     low, high = slip_range(view)
     end = high if high > -low else low
-    slips = [share * end for share in constants.HELD_SLIP_SHARES]
+    slips = [share * end for share in constants.HELD_SHARES]
     colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
-    x = np.linspace(*sideslip_range(view), constants.STEPS_OF_FILE_CURVE)
+    x = np.linspace(*sideslip_range(view), constants.STEPS_OF_LINE)
     quantities = (
         ("trail", MODEL["trail"].axis, 1e3),
         ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),
@@ -347,7 +301,7 @@ def trail(view: BuildView) -> Sheet:
                 Panel(
                     title=labels.LOAD.of(load),
                     x=labels.angle_axis("alpha"),
-                    y=Axis(label=label, ticks=4),
+                    y=Axis(label=label),
                     series=drawn,
                     guides=ZEROS,
                 )

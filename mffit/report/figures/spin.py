@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import ZERO_CAMBER
 from mffit.measured import Measured
 from mffit.points import main_path
 from mffit.quantities import CHANNELS
@@ -47,51 +49,49 @@ def camber_reduction(view: BuildView) -> Sheet:
         "combined uncertainty": COMBINED,
         "PECP1, PECP2 of the file": OF_THE_FILE,
     }
-    return Sheet(rows=[panels], height=2.3, key=key)
+    return Sheet(rows=[panels], height=2.6, key=key)
 
 
 def _among_published(name: str, measured: Measured) -> Panel:
     rows = [(tyre.name, tyre.epsilon_gamma, tyre.u) for tyre in TYRES]
-    own = shortened(name)
     if measured.epsilon_gamma is not None:
-        rows.append((own, measured.epsilon_gamma.value, measured.epsilon_gamma.u))
+        rows.append(
+            (
+                textwrap.shorten(name, 24, placeholder="…"),
+                measured.epsilon_gamma.value,
+                measured.epsilon_gamma.u,
+            )
+        )
     places = np.arange(len(rows))
     values, u = (np.array([row[k] for row in rows]) for k in (1, 2))
     sides = ((places < len(TYRES), "published", PUBLISHED), (places >= len(TYRES), "this tyre", OWN))
     return Panel(
-        title="This tyre among published ones",
-        x=Axis(label=f"{labels.EPSILON.axis}, ± 1 u"),
+        title="Among published tyres",
+        x=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
         y=Axis(
             low=len(rows) - 0.4,
             high=-0.6,
             words={float(k): row[0] for k, row in enumerate(rows)},
-            bold=own,
         ),
         series=[
-            ErrorBars(name=said, x=values[which], y=places[which], u=u[which], look=look, along="x", cap=3.0)
+            ErrorBars(name=said, x=values[which], y=places[which], u=u[which], look=look, along="x")
             for which, said, look in sides
         ],
         guides=[Guide(axis="x", at=0.0)],
     )
 
 
-def shortened(name: str) -> str:
-    """A name that fits beside a panel."""
-    longest = constants.LONGEST_NAME_AT_AXIS
-    return name if len(name) <= longest else f"{name[: longest - 1]}…"
-
-
 def _budget(measured: Measured) -> Panel:
-    lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_BUDGET_BARS]
+    lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_ROWS]
     widths = np.array([abs(line.contribution) for line in lines])
     total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
     last = len(lines) - 1
     return Panel(
-        title="What its uncertainty consists of",
+        title="Its uncertainty budget",
         x=Axis(
             label=f"contribution to u({labels.EPSILON.mathtext}) [–]",
             low=0.0,
-            high=1.12 * max([total, *widths]),
+            high=1.25 * max([total, *widths]),
         ),
         y=Axis(low=last + 0.6, high=-0.6, words={float(k): line.source for k, line in enumerate(lines)}),
         series=[
@@ -103,7 +103,7 @@ def _budget(measured: Measured) -> Panel:
             )
         ],
         guides=[Guide(axis="x", at=total, look=COMBINED)],
-        notes=[Note(x=total, y=last + 0.4, text=f"total {total:.3f}", colour=style.CONTRAST, turned=True)],
+        notes=[Note(x=total, y=float(last), text=f"{total:.3f}", colour=style.CONTRAST)],
     )
 
 
@@ -112,7 +112,7 @@ def _over_load(view: BuildView) -> Panel:
     found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
     load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
     series: list[ErrorBars | Trace] = [
-        ErrorBars(name="this tyre", x=load, y=value, u=u, look=replace(OWN, size=4.5, width=1.4), cap=3.0)
+        ErrorBars(name="this tyre", x=load, y=value, u=u, look=replace(OWN, size=4.5, width=1.4))
     ]
     if measured.pecp1 is not None:
         over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
@@ -120,7 +120,7 @@ def _over_load(view: BuildView) -> Panel:
         series.insert(0, Trace(name="PECP1, PECP2 of the file", x=over, y=line, look=OF_THE_FILE))
     return Panel(
         title="Over the load",
-        x=Axis(label=labels.LOAD.axis, room=0.08),
+        x=Axis(label=labels.LOAD.axis),
         y=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
         series=series,
         guides=[Guide(axis="y", at=0.0)],
@@ -140,7 +140,7 @@ def alignment(view: BuildView) -> Sheet:
         for load, members in both_directions(view)
     ]
     key = {"rolling forwards": FORWARDS, "rolling backwards": BACKWARDS}
-    return Sheet(rows=in_rows(panels, columns=len(panels)), height=1.7, key=key)
+    return Sheet(rows=in_rows(panels), height=1.7, key=key)
 
 
 def _near_zero(view: BuildView, curve: Curve) -> Trace:
@@ -161,11 +161,11 @@ def both_directions(view: BuildView) -> list[tuple[float, list[Curve]]]:
         for c in view.curves
         if view.points.phi_t[c.index[0]] == main_path(view.points)
         and c.over == "alpha"
-        and abs(c.held) < constants.UPRIGHT_ENOUGH_TO_DRAW
+        and abs(c.held) < ZERO_CAMBER
         and c.mount > 0
     ]
     backward = {(c.load, c.pressure) for c in upright if not c.forward}
-    loads = sorted({load for load, _ in backward})[: constants.MOST_LOADS_SIDE_BY_SIDE]
     return [
-        (load, [c for c in upright if c.load == load and (load, c.pressure) in backward]) for load in loads
+        (load, [c for c in upright if c.load == load and (load, c.pressure) in backward])
+        for load in sorted({load for load, _ in backward})
     ]

@@ -1,6 +1,6 @@
 """Plain text for a terminal: functions of records that return str."""
 
-from mffit.report.text.build import build_summary
+from mffit.report.text.build import build_explained, build_summary, few
 from mffit.report.text.compare import comparison_table
 from mffit.report.text.convert import conversion_summary
 from mffit.report.text.diagnosis import diagnosis_summary, models_written
@@ -15,10 +15,12 @@ from mffit.report.text.verification import verification_summary
 __all__ = [
     "alignment_table",
     "budget_table",
+    "build_explained",
     "build_summary",
     "comparison_table",
     "conversion_summary",
     "diagnosis_summary",
+    "few",
     "fleet_summary",
     "lacking",
     "many_line",

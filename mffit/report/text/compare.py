@@ -14,15 +14,13 @@ def comparison_table(found: Comparison) -> str:
     parts = [wrapped(wording.headline(found))]
     if found.numbers:
         head = ("number", "load", found.first, found.second, "difference", "in u")
-        parts.append(
-            table(head, [_number(row) for row in found.numbers[: constants.MOST_ROWS_IN_TERMINAL]], left=2)
-        )
+        parts.append(table(head, [_number(row) for row in found.numbers[: constants.MOST_ROWS]], left=2))
     if found.coefficients:
         of_coefficients = ("coefficient", found.first, found.second, "difference", "in u")
         parts.append(
             table(
                 of_coefficients,
-                [_coefficient(row) for row in found.coefficients[: constants.MOST_ROWS_IN_TERMINAL]],
+                [_coefficient(row) for row in found.coefficients[: constants.MOST_ROWS]],
             )
         )
     if found.sweeps:
@@ -34,7 +32,7 @@ def comparison_table(found: Comparison) -> str:
                 f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
                 number(gap.over_noise, digits=3) if gap.over_noise else "–",
             )
-            for gap in found.sweeps[: constants.MOST_ROWS_IN_TERMINAL]
+            for gap in found.sweeps[: constants.MOST_ROWS]
         ]
         mean = f"mean, {found.second} less {found.first}"
         parts.append(table(("sweep", "channel", "rms", mean, "rms over noise"), rows, left=2))

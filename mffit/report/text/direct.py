@@ -14,6 +14,8 @@ from mffit.rounding import as_good_as, number, stated, with_u
 
 NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "C_alpha_straight", "r_e", "R")
 """Results at the load nearest to the nominal one, in this order."""
+MAIN = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha")
+"""Those that a user came for."""
 EXPLAINED = {
     "C_gamma": " (slope on the path)",
     "C_alpha": " (slope on the path)",
@@ -52,7 +54,7 @@ def spin_summary(measured: Measured) -> str:
         return blocks([*against, _per_load(known) if known else "", paragraphs(sentences)])
     parts = [
         *against,
-        spin_numbers(measured),
+        "\n".join(filter(None, (spin_numbers(measured), estimates(measured)))),
         budget_table(measured.budget, measured.epsilon_gamma.u),
         "\n".join(text for text in (wording.expanded(measured), wording.by_draws(measured)) if text),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
@@ -89,12 +91,12 @@ def alignment_table(alignment: Alignment) -> str:
     return blocks([table(head, rows, left=0), *map(wrapped, wording.advice(alignment))])
 
 
-def spin_numbers(measured: Measured) -> str:
+def spin_numbers(measured: Measured, names: Sequence[str] = NUMBERS) -> str:
     """The results at the load nearest to the nominal one, one per line."""
     row = measured.nominal
     if row is None:
         return ""
-    found = [(name, DIRECT[name], getattr(row, name)) for name in NUMBERS]
+    found = [(name, DIRECT[name], getattr(row, name)) for name in names]
     load = CONDITIONS["Fz_N"].of(row.load)
     explained = {**EXPLAINED, "epsilon_gamma": f" at {load}"}
     lines = [
@@ -102,9 +104,14 @@ def spin_numbers(measured: Measured) -> str:
         for name, q, value in found
         if value is not None
     ]
-    others = _other_estimates(measured, row)
-    if others:
-        lines.append(f"{'from':<10} {', '.join(others)}")
+    return "\n".join(lines)
+
+
+def estimates(measured: Measured) -> str:
+    """eps_gamma by other methods, and what the file carries."""
+    row = measured.nominal
+    found = _other_estimates(measured, row) if row is not None else []
+    lines = [f"{'from':<10} {', '.join(found)}"] if found else []
     if measured.pecp1 is not None:
         lines.append(f"{'file':<10} PECP1 {number(measured.pecp1, 4)}, PECP2 {number(measured.pecp2, 4)}")
     return "\n".join(lines)

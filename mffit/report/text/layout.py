@@ -36,3 +36,10 @@ def paragraphs(sentences: Sequence[str]) -> str:
 def wrapped(sentence: str, first: str = "", others: str = "") -> str:
     """A sentence in lines of the terminal's width; ``first`` and ``others`` are indents."""
     return textwrap.fill(sentence, TERMINAL_WIDTH, initial_indent=first, subsequent_indent=others)
+
+
+def cut(sentence: str, lines: int, indent: str = "") -> str:
+    """A sentence in at most so many lines, which leave room for an indent."""
+    return textwrap.fill(
+        sentence, TERMINAL_WIDTH - len(indent), subsequent_indent=indent, max_lines=lines, placeholder=" ..."
+    )

@@ -26,7 +26,7 @@ def plan_summary(plan: Plan) -> str:
             wording.shown(plan, plan.now),
             wording.shown(plan, trial.u),
         )
-        for trial in plan.trials[: constants.MOST_CANDIDATE_RUNS_IN_TERMINAL]
+        for trial in plan.trials[: constants.MOST_ROWS]
         if trial.u < plan.now
     ]
     reasons = [f"{wording.title(step.run)}: {step.run.addition.reason}" for step in plan.steps]

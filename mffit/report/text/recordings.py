@@ -138,7 +138,7 @@ def _stretches(sniffed: Sniffed) -> str:
     other = sorted((note for note in lost if note.kind != MOVE), key=lambda note: note.begin_s)
     rows = [
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)
-        for note in other[: constants.MOST_ROWS_IN_TERMINAL]
+        for note in other[: constants.MOST_ROWS]
     ]
     shown = (
         table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2)

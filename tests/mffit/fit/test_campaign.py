@@ -13,7 +13,7 @@ import mffit
 import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
-from mffit.report.build import _figures
+from mffit.report.build import planned
 from mffit.report.build_view import view_of
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "front-120-70"
@@ -134,7 +134,7 @@ def test_the_report_shows_every_campaign_and_what_it_gave(built):
     assert {"Fx", "Fy", "Mz"} <= set(belt.build.agreement)
     assert {"PCX1", "PDX1", "RBY1"} <= {row.name for row in belt.rows}
     assert {row.stage for row in view.rows if row.status == "campaign"} == {"belt/tyre.toml"}
-    drawn = _figures(view)
+    drawn = {one.name: one.make for one in planned(view)}
     assert {"campaign1_slip_Fx", "campaign1_friction_ellipse", "campaign1_weights", "campaigns"} <= set(drawn)
     slip = drawn["campaigns"]().rows[0][-1]
     run = {trace.name: trace.x for trace in slip.series}

@@ -22,7 +22,7 @@ from mffit.pipeline.inputs import read_points
 from mffit.pipeline.provenance import rig_of_build
 from mffit.pipeline.refining import finite_spin_bias
 from mffit.quantities import SIDEWAYS
-from mffit.report.text import build_summary, spin_summary
+from mffit.report.text import build_explained, spin_summary
 from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS, number_of
 from mffit.suspicion.prediction import _common
@@ -187,7 +187,7 @@ def test_the_bias_of_finite_spin_does_not_contain_the_zeros(result):
 
 
 def test_the_terminal_shows_what_every_set_up_gives_by_itself(result):
-    for text in (build_summary(result), spin_summary(result.measured)):
+    for text in (build_explained(result), spin_summary(result.measured)):
         lines = [line for line in text.splitlines() if " m to the " in line and line[0] not in "- "]
         rows = {line.split()[0]: line for line in lines}
         assert set(rows) == set(FAULTS)

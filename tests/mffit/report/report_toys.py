@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -182,7 +184,8 @@ class PageReader(HTMLParser):
         if attributes.get("role") == "img":
             self.drawings.append(attributes["aria-label"])
         if "download" in attributes:
-            self.tables[attributes["download"].removesuffix(".csv")] = content(attributes["href"])
+            name = attributes["download"].removesuffix(".zip")
+            self.tables[name] = content(attributes["href"], f"{name}.csv")
         if "id" in attributes:
             self.ids.append(attributes["id"])
         self.references += [v for k, v in attributes.items() if k in ("src", "href") and v]
@@ -201,10 +204,10 @@ class PageReader(HTMLParser):
             self.text += " "
 
 
-def content(address: str) -> str:
-    """The content of an address that begins with ``data:``."""
-    with urlopen(address) as answer:
-        return answer.read().decode()
+def content(address: str, name: str) -> str:
+    """The file in an archive whose address begins with ``data:``."""
+    with urlopen(address) as answer, zipfile.ZipFile(io.BytesIO(answer.read())) as archive:
+        return archive.read(name).decode()
 
 
 def read_page(path: Path) -> PageReader:

@@ -37,7 +37,7 @@ def page(written):
 
 def test_pictures_are_on_disk_and_in_the_page(written, page):
     drawn = {
-        "camber_reduction", "alignment", "parts_Fy", "parts_Mz", "even_parts", "fit_Fy", "fit_Mz",
+        "overview", "camber_reduction", "alignment", "parts", "even_parts", "fit_Fy", "fit_Mz",
         "residuals",
     }  # fmt: skip
     assert {path.stem for path in (written / "plots").glob("*.png")} == set(page.tables) == drawn
@@ -75,8 +75,21 @@ def test_every_picture_is_described_in_words(page):
     assert all(len(said) > 20 for said in page.drawings)
 
 
-def test_warnings_come_before_the_results(page):
-    assert page.text.index("short & noisy") < page.text.index("Camber reduction factor ε")
+def test_the_page_begins_with_the_verdict_the_numbers_and_two_pictures_then_the_files(written, page):
+    html = (written / "report.html").read_text(encoding="utf-8")
+    order = [
+        'class="headline"',
+        "1 warning</a>",
+        'class="card main"',
+        "<figure",
+        "Which file goes where",
+        "<details",
+    ]
+    assert [html.index(mark) for mark in order] == sorted(html.index(mark) for mark in order)
+    assert html[: html.index("Which file goes where")].count("<figure") == 2
+    assert 4 <= html.count('<div class="card') <= 5
+    assert "is sound: 115 points are fitted to" in page.text
+    assert "short & noisy" in page.text
 
 
 def test_input_text_is_escaped(written):
@@ -109,13 +122,13 @@ def test_a_flat_track_has_no_spin_and_no_parts(tmp_path):
     page = read_page(tmp_path / "report.html")
     assert "on a flat track" in page.text
     assert "Camber reduction factor" not in page.text
-    assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"fit_Fy", "fit_Mz", "residuals"}
+    assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"overview", "fit_Fy", "fit_Mz", "residuals"}
 
 
 def test_without_moment_only_side_force_is_shown(tmp_path):
     write_build(made_result(moment=False), tmp_path)
     assert not [p for p in (tmp_path / "plots").iterdir() if "Mz" in p.stem]
-    assert "Mz misfit" not in read_page(tmp_path / "report.html").text
+    assert "Misfit of Mz" not in read_page(tmp_path / "report.html").text
 
 
 def test_without_stated_noise_residuals_are_in_units_of_the_misfit(tmp_path):
@@ -133,7 +146,7 @@ def test_importing_loads_no_plot_library_and_drawing_opens_no_window(tmp_path):
         "from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace\n"
         "one = Trace(name='one', x=np.arange(2.0), y=np.arange(2.0), look=Look(line='-'))\n"
         "panel = Panel(x=Axis(), y=Axis(), series=[one])\n"
-        "pictures.draw(Sheet(rows=[[panel]], height=1.0)).save(pathlib.Path(sys.argv[1]))\n"
+        "pictures.save(Sheet(rows=[[panel]], height=1.0), pathlib.Path(sys.argv[1]))\n"
         "assert not {'matplotlib.pyplot', 'tkinter'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code, str(tmp_path / "a.png")], check=True)
@@ -164,7 +177,7 @@ def test_the_headings_of_tables_are_repeated_on_the_next_sheet(written):
 def test_folded_coefficients_show_when_opened_and_on_paper(browser):
     look(browser)
     fold = browser.find_element("css selector", ".fold")
-    table, label = (fold.find_element("css selector", name) for name in (".folded", "label"))
+    table, label = (fold.find_element("css selector", name) for name in (".folded", "summary"))
     assert not table.is_displayed()
     label.click()
     assert table.is_displayed()

@@ -132,7 +132,7 @@ def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
-    assert gap.colour_limit(view_of(clean).channels) == constants.SMALLEST_GAP_SCALE
+    assert gap.colour_limit(view_of(clean).channels) == constants.RESIDUAL_SCALE
     loud = gap.GapChannel(name="Fy", before=np.full(9, 500.0), after=np.zeros(9), noise=6.0)
     assert gap.colour_limit([loud]) == constants.LARGEST_GAP_SCALE
 

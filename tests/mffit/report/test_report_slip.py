@@ -14,8 +14,8 @@ from mffit.fit.coverage import coverage
 from mffit.fit.posterior import Posterior
 from mffit.report import build, constants, page
 from mffit.report.build_view import view_of
-from mffit.report.drawing.records import Map, Ribbon, Trace
-from mffit.report.figures import residuals, slip
+from mffit.report.drawing.records import Band, Map, Trace
+from mffit.report.figures import fit, residuals, slip
 from mffit.report.with_band import with_band
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
@@ -65,15 +65,15 @@ def test_every_reading_is_on_one_curve_over_an_angle_or_over_slip(view):
 def test_panels_over_slip_hold_every_driven_reading_of_each_channel(view):
     driven = sum(len(c.index) for c in view.curves if c.over == "kappa")
     for channel in view.channels:
-        sheet = slip.over_slip(view, channel)
+        sheet = fit.model_against_points(view, channel, fit.SLIP)
         assert len(sheet.panels) == 3 * 2 + 2 * 2
-        assert sheet.left_out == ""
+        assert sheet.remark == ""
         assert sum(len(s.x) for p in sheet.panels for s in named(p, Trace, "sweep")) == driven
 
 
 def test_lines_over_slip_drive_forwards_and_go_through_the_readings(view):
     (Fx,) = (channel for channel in view.channels if channel.name == "Fx")
-    for curve in slip.slip_curves(view.curves):
+    for curve in fit.varied(view.curves, fit.SLIP):
         line = view.lines[curve.key]
         assert np.all(line.raw["Fx"][line.x > 0.02] > 0.0)
         apart = Fx.measured[curve.index] - np.interp(curve.varied(view.points), line.x, line.raw["Fx"])
@@ -102,7 +102,7 @@ def test_the_friction_limit_is_closed_convex_and_holds_the_readings(view):
             places = np.column_stack([read.x, read.y])
             beyond = np.max(np.einsum("ij,kij->ki", outwards, places[:, None] - start), axis=1)
             assert np.max(beyond) < 4.0 * belt.NOISE["Fx"]
-        assert named(panel, Ribbon, slip.EDGE_NAME)
+        assert named(panel, Band, slip.EDGE_NAME)
 
 
 def test_the_friction_limit_is_dotted_where_no_sweep_combined_as_much(view):
@@ -163,16 +163,18 @@ def test_maps_hold_every_reading_inside_their_axes(view):
 
 
 def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
-    monkeypatch.setattr(constants, "MOST_PANELS_OF_FIT", 2)
-    (Fx, *_) = view.channels
-    (picture,) = page.draw(tmp_path, {"slip_Fx": lambda: slip.over_slip(view, Fx)}, "points.csv").values()
-    assert picture.left_out == "8 more panels are not drawn. points.csv has every reading."
+    monkeypatch.setattr(constants, "MOST_PANELS", 5)
+    planned = next(one for one in build.planned(view) if one.name == "slip_Fx")
+    picture = page.draw(tmp_path, planned)
+    assert picture.drawing.count("<title") == 5
+    assert "5 more panels are not drawn, for lack of room; the numbers have them." in picture.caption
+    assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves if c.over == "kappa")
     macro = page._environment().get_template("macros.html.j2").module
-    assert "8 more panels are not drawn" in macro.figure(picture, "words", caller=lambda: "Caption.")
+    assert "5 more panels are not drawn" in macro.figure(picture)
 
 
 def test_pictures_of_slip_are_drawn_only_where_slip_was_run(view, result):
-    names = set(build._figures(view))
+    names = {one.name for one in build.planned(view)}
     own = {f"slip_{name}" for name in belt.NOISE} | {"friction_ellipse", "weights", "trail", "residuals_slip"}
     assert own <= names
-    assert not own & set(build._figures(view_of(result)))
+    assert not own & {one.name for one in build.planned(view_of(result))}

@@ -9,6 +9,7 @@ from mffit.measured import Contribution, align
 from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
 from mffit.rounding import ascii_only, decimals_of, stated
+from mffit.suspicion import Trust
 from tir import Quantity
 
 BUDGET = [
@@ -52,15 +53,41 @@ def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result
     assert f"{alignment.correction_deg:+.3f} +- {alignment.u_deg:.3f} deg" in table
 
 
-def test_build_summary_gives_misfits_and_statuses(result):
-    summary = text.build_summary(result)
-    assert f"{result.fit.channels['Fy'].rmse:.2f}" in summary
-    assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound or limit: PHYP2" in summary
-    assert "turn slip on" in summary
+def test_build_summary_begins_with_the_verdict_and_fits_a_screen(result):
+    summary = text.build_summary(result, "out: report.html")
+    assert summary.startswith("front-1.tir is sound: 115 points are fitted to")
+    assert f"{result.fit.channels['Fy'].rmse:.2f} N in Fy" in summary
+    assert "front-1.tir: for simulators that compute turn slip (USE_MODE" in summary
+    assert len(summary.splitlines()) <= 25
+
+
+def test_what_is_explained_has_statuses_and_what_the_files_are(result):
+    said = text.build_explained(result)
+    assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound or limit: PHYP2" in said
+    assert "turn slip on" in said
+
+
+def test_a_result_that_is_not_to_be_trusted_says_so_and_why_first(result):
+    reasons = [f"reason {k} " + "with many words " * 40 for k in range(5)]
+    lines = text.build_summary(replace(result, trust=Trust(reasons=tuple(reasons)))).splitlines()
+    assert "NOT TO BE TRUSTED" in lines[0]
+    assert len(lines) <= 25
+    assert any(line.startswith("NOT TO BE TRUSTED: reason 0") for line in lines)
+
+
+def test_warnings_are_few_and_the_rest_is_counted():
+    said = text.few([f"warning {k} " + "with many words " * 40 for k in range(5)])
+    assert len("\n".join(said).splitlines()) == 5
+    assert said[-1].startswith("3 more")
+    assert text.few(["one"]) == ["one"]
 
 
 def test_terminal_text_is_ascii_and_fits_a_line(result):
-    for summary in (text.spin_summary(result.measured), text.build_summary(result)):
+    for summary in (
+        text.spin_summary(result.measured),
+        text.build_summary(result),
+        text.build_explained(result),
+    ):
         assert summary.isascii()
         assert max(map(len, summary.splitlines())) <= 120
 

@@ -1,0 +1,64 @@
+"""Arguments and options that several commands share, each in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+PATH = click.Path(path_type=Path)
+
+tyre_toml = click.argument("tyre_toml", type=PATH)
+tir_file = click.argument("file", type=PATH, metavar="FILE.tir")
+path_centre = click.option(
+    "--path-centre",
+    type=click.Choice(["left", "right"]),
+    help="Side of the disc's centre, rolling forwards, where no tyre.toml states it.",
+)
+unloaded_radius = click.option(
+    "--unloaded-radius", type=float, metavar="M", help="Of the tyre, in metres, if the files lack it."
+)
+strict = click.option(
+    "--strict", is_flag=True, help="Exit code 3 also if the result is only in doubt, for automatic runs."
+)
+transient = click.option(
+    "--transient",
+    is_flag=True,
+    help="With the lag of the contact, from slip speeds; an FMU then co-simulates only.",
+)
+
+
+def out_option(help_text: str, *, is_file: bool = False, **settings: Any) -> Callable[[Command], Command]:
+    """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work."""
+
+    def usable(context: click.Context, option: click.Parameter, out: Path | None) -> Path | None:
+        from mffit.output import refuse_unusable
+
+        if out is not None and not context.resilient_parsing:
+            refuse_unusable(out, is_file=is_file)
+        return out
+
+    return click.option("--out", type=PATH, help=help_text, callback=usable, **settings)
+
+
+def code_options(command: Command) -> Command:
+    """The arguments and options of all exports to code."""
+    for option in reversed(
+        (
+            tir_file,
+            out_option("Folder to write to.", default="export", show_default=True),
+            click.option("--name", help="Name in the code [default: made from the file's name]."),
+            click.option(
+                "--turn-slip/--no-turn-slip",
+                default=None,
+                help="Turn slip on or off [default: as the file's USE_MODE says].",
+            ),
+            click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
+            transient,
+        )
+    ):
+        command = option(command)
+    return command
