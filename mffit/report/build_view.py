@@ -25,7 +25,7 @@ from mffit.points import Points
 from mffit.points.left_out import LeftOut
 from mffit.report import words
 from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, conditions, curves
+from mffit.report.curves import Curve, CurveCondition, CurveKey, conditions, curves
 from mffit.report.lines import CurveLine, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
@@ -129,7 +129,7 @@ class BuildView:
     )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
-    lines: Mapping[tuple, CurveLine]
+    lines: Mapping[CurveKey, CurveLine]
     conditions: tuple[CurveCondition, ...]
     measured: Measured
     agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points

@@ -16,7 +16,7 @@ from mffit.report import constants, page
 from mffit.report.build_view import ChannelRow
 from mffit.report.catalogue import ChannelPicture, Picture
 from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, curves
+from mffit.report.curves import Curve, CurveKey, curves
 from mffit.report.figures import compared, fit
 from mffit.report.lines import CurveLine, model_lines
 
@@ -27,7 +27,7 @@ class Overlay:
 
     points: Points
     curves: Sequence[Curve]
-    lines: Mapping[tuple, CurveLine]
+    lines: Mapping[CurveKey, CurveLine]
     channels: Sequence[ChannelRow]
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:

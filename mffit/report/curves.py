@@ -17,6 +17,10 @@ def condition(load: float, pressure: float) -> str:
     return f"{CONDITIONS['Fz_N'].of(load)}, {CONDITIONS['p_kPa'].of(pressure)}"
 
 
+CurveKey = tuple[str, str, float, float, float, bool, int, float]
+"""Sweep, what varies, load, pressure, the held angle, forward, mount, camber."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """Points of one sweep that differ in one angle, or in longitudinal slip, only."""
@@ -32,7 +36,7 @@ class Curve:
     camber: float = 0.0  #: of a curve over longitudinal slip [deg]
 
     @property
-    def key(self) -> tuple[str, str, float, float, float, bool, int, float]:
+    def key(self) -> CurveKey:
         """Identifies this curve among all."""
         return (
             self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount, self.camber,
@@ -44,7 +48,8 @@ class Curve:
 
     def varied(self, points: Points) -> np.ndarray:
         """What varies (k,): an angle [deg] or longitudinal slip [-]."""
-        return shown_values(points, self.over)[self.index]
+        varied: np.ndarray = shown_values(points, self.over)[self.index]
+        return varied
 
 
 def shown_values(points: Points, over: str) -> np.ndarray:

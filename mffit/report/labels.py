@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from mffit.constants import ZERO_CAMBER
+from mffit.constants import UPRIGHT
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, MODEL
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import Axis
@@ -32,7 +32,7 @@ def held(curve: Curve) -> str:
 
 def held_unless_zero(curve: Curve) -> str:
     """The same behind a comma; empty for a curve that holds zero."""
-    return f", {held(curve)}" if abs(curve.held) >= ZERO_CAMBER else ""
+    return f", {held(curve)}" if abs(curve.held) >= UPRIGHT else ""
 
 
 def typeset(text: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.report import constants
-from mffit.report.curves import Curve, shown_values
+from mffit.report.curves import Curve, CurveKey, shown_values
 from mffit.rig import Simulation
 
 VARIED = ("alpha", "gamma", "kappa", "Fz", "p", "V")
@@ -28,7 +28,7 @@ class CurveLine:
 
 def model_lines(
     simulation: Simulation, points: Points, curves: Sequence[Curve], channels: Iterable[str] = SIDEWAYS
-) -> dict[tuple, CurveLine]:
+) -> dict[CurveKey, CurveLine]:
     """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from mffit.constants import ZERO_CAMBER
+from mffit.constants import UPRIGHT
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
@@ -94,5 +94,5 @@ def pure_curves(view: BuildView) -> list[Curve]:
     """Forward sweeps over one angle with the other at zero, at the pressure nearest to the nominal one."""
     nominal = view.config.tyre.nominal_pressure
     pressure = min((c.pressure for c in view.curves), key=lambda value: abs(value - nominal), default=0.0)
-    pure = [c for c in view.curves if c.forward and c.over != "kappa" and abs(c.held) < ZERO_CAMBER]
+    pure = [c for c in view.curves if c.forward and c.over != "kappa" and abs(c.held) < UPRIGHT]
     return [c for c in pure if c.pressure == pressure]

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.report import labels, style
 from mffit.report.build_view import ChannelRow
-from mffit.report.curves import Curve
+from mffit.report.curves import Curve, CurveKey
 from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.lines import CurveLine
 from mffit.rounding import number
@@ -25,7 +25,7 @@ class Overlaid(Protocol):
     @property
     def curves(self) -> Sequence[Curve]: ...
     @property
-    def lines(self) -> Mapping[tuple, CurveLine]: ...
+    def lines(self) -> Mapping[CurveKey, CurveLine]: ...
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of readings without weight, and of the points of doubtful sweeps."""
 

@@ -75,4 +75,5 @@ def _clock(time: np.ndarray) -> np.ndarray:
     """Time (n,) from zero with every gap closed to a step."""
     steps = np.diff(time)
     steps[gaps(time) - 1] = np.median(steps)
-    return np.r_[0.0, np.cumsum(steps)]
+    closed: np.ndarray = np.r_[0.0, np.cumsum(steps)]
+    return closed

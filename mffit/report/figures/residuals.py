@@ -105,7 +105,8 @@ def _apart(
     steps = beside(10.0 * x if over[0] == "kappa" else x, y)
     step = constants.NEIGHBOUR_SHIFT * max(float(np.ptp(shown_values(points, over[1]))), 1.0)
     room = np.where(steps > 0.0, high - y, y - low)
-    return steps * min(step, *(0.9 * room / np.maximum(np.abs(steps), 1.0)))
+    shift: np.ndarray = steps * min(step, *(0.9 * room / np.maximum(np.abs(steps), 1.0)))
+    return shift
 
 
 def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import ZERO_CAMBER
+from mffit.constants import UPRIGHT
 from mffit.points import Points
 from mffit.quantities import CHANNELS, MODEL
 from mffit.report import constants, labels, style
@@ -50,7 +50,7 @@ def _colours(curves: Iterable[Curve]) -> dict[float, str]:
 
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
-    upright = [c for c in varied(view.curves, SLIP) if c.forward and abs(c.camber) < ZERO_CAMBER]
+    upright = [c for c in varied(view.curves, SLIP) if c.forward and abs(c.camber) < UPRIGHT]
     nominal = view.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
     found: dict[float, list[Curve]] = {}
@@ -64,7 +64,7 @@ def combined(view: BuildView) -> bool:
     """Whether both forces were measured at slip with sideslip of the upright wheel."""
     members = [c for curves in main_slip_curves(view).values() for c in curves]
     both = {"Fx", "Fy"} <= {channel.name for channel in view.channels}
-    return both and any(abs(c.held) >= ZERO_CAMBER for c in members)
+    return both and any(abs(c.held) >= UPRIGHT for c in members)
 
 
 def slip_range(view: BuildView) -> tuple[float, float]:
@@ -82,8 +82,9 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
 def _beyond_combined(view: BuildView, alpha: np.ndarray) -> np.ndarray:
     """Mask (m,) of the sideslips [rad] that are larger than any at which longitudinal slip was run, to the same side."""
     run = view.felt.alpha[~view.points.free_rolling]
-    room = ZERO_CAMBER.rad
-    return (alpha < np.min(run, initial=0.0) - room) | (alpha > np.max(run, initial=0.0) + room)
+    room = UPRIGHT.rad
+    beyond: np.ndarray = (alpha < np.min(run, initial=0.0) - room) | (alpha > np.max(run, initial=0.0) + room)
+    return beyond
 
 
 def friction_ellipse(view: BuildView) -> Sheet:
@@ -209,7 +210,7 @@ def weights(view: BuildView) -> Sheet:
         for load, members in groups:
             series: list[Band | Trace] = []
             for curve in members:
-                if channel == "Fy" and abs(curve.held) < ZERO_CAMBER:
+                if channel == "Fy" and abs(curve.held) < UPRIGHT:
                     continue
                 series += _weight(view, curve, channel, weight, colours[curve.held])
             largest = max(

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import ZERO_CAMBER
+from mffit.constants import UPRIGHT
 from mffit.measured import Measured
 from mffit.points import main_path
 from mffit.quantities import CHANNELS
@@ -161,7 +161,7 @@ def both_directions(view: BuildView) -> list[tuple[float, list[Curve]]]:
         for c in view.curves
         if view.points.phi_t[c.index[0]] == main_path(view.points)
         and c.over == "alpha"
-        and abs(c.held) < ZERO_CAMBER
+        and abs(c.held) < UPRIGHT
         and c.mount > 0
     ]
     backward = {(c.load, c.pressure) for c in upright if not c.forward}
