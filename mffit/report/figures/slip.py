@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import UPRIGHT
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.quantities import CHANNELS, MODEL
 from mffit.report import constants, labels, style
@@ -82,7 +82,7 @@ def sideslip_range(view: BuildView) -> tuple[float, float]:
 def _beyond_combined(view: BuildView, alpha: np.ndarray) -> np.ndarray:
     """Mask (m,) of the sideslips [rad] that are larger than any at which longitudinal slip was run, to the same side."""
     run = view.felt.alpha[~view.points.free_rolling]
-    room = UPRIGHT.rad
+    room = STRAIGHT.rad
     beyond: np.ndarray = (alpha < np.min(run, initial=0.0) - room) | (alpha > np.max(run, initial=0.0) + room)
     return beyond
 

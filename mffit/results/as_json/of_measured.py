@@ -6,7 +6,7 @@ SI units, ISO signs, u with k = 1. ``spin.json`` has ``made`` and the judgement,
 from __future__ import annotations
 
 from mffit.measured import KEYS, Alignment, LoadResult, Measured, SetupResult, SetupScatter
-from mffit.measured.budget_rows import Expanded
+from mffit.measured.uncertain import Expanded
 from mffit.results.values import keys, with_u
 
 keys(
