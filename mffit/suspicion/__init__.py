@@ -1,6 +1,7 @@
 """Which readings are suspected, and what follows: ``rules`` lists all suspicions, ``applying`` runs them."""
 
 from mffit.suspicion.applying import after_the_fit, before_the_fit
+from mffit.suspicion.contradiction import Contradiction, contradictions_of
 from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread, misread
 from mffit.suspicion.others import Doubt, JudgedSweeps
@@ -24,6 +25,7 @@ __all__ = [
     "RULES",
     "SOUND",
     "CamberReduction",
+    "Contradiction",
     "Doubt",
     "FinishedFit",
     "FittedModel",
@@ -39,6 +41,7 @@ __all__ = [
     "after_the_fit",
     "before_the_fit",
     "contradictions",
+    "contradictions_of",
     "judge",
     "marks",
     "misread",

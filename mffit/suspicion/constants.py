@@ -133,16 +133,11 @@ DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )
 FEWEST_SWEEPS_OF_A_FORMULA = Count(5, "-", "Fewest sweeps whose prediction says what limits a model.")
-PREDICTED_AS_WELL_AS_FITTED = Real(
-    1.1,
+AGAINST_THE_OTHERS = Real(
+    2.0,
     "-",
-    "Error of left-out sweeps over that of fitted ones up to which a misfit is the formula's; mistakes in some sweeps exceed it.",
-)
-UNEVEN_SWEEPS = Real(
-    2.0, "-", "Misfit of the worst sweep over the median sweep's up to which all sweeps share the misfit."
-)
-SHARE_OF_A_GOOD_FORMULA = Real(
-    0.95, "-", "Share of the variance that a formula explains whose misfit is its own and not a mistake's."
+    "Error of a sweep over what its prediction by the others leaves open from which it contradicts them; sound sweeps at the "
+    "edge of the tested loads of a brush tyre reach 1.7.",
 )
 SHARE_OF_A_BOUND = Real(0.05, "-", "Share of the misfit from which a bound matters that holds a coefficient.")
 LEAST_PUBLISHED_EPSILON = Real(
