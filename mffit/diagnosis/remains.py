@@ -12,7 +12,7 @@ from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
 from mffit.linearised import LinearisedFit
-from mffit.suspicion import Contradiction, HeldNumber, LeftOutSweeps
+from mffit.suspicion import HeldNumber, LeftOutSweeps, SweepAgainstOthers
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Remains:
 
     structure: Structure
     effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none can be seen
-    sweep: Contradiction | None = None  #: the sweep that contradicts the others most
+    sweep: SweepAgainstOthers | None = None  #: the sweep that contradicts the others most
     held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit
     left_out: Mapping[str, LeftOutSweeps] = field(
         default_factory=dict

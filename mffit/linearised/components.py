@@ -81,8 +81,14 @@ def variances(x: np.ndarray, smooth: Smooth) -> tuple[Variances, np.ndarray, np.
     return Variances(2.0 * x[0] + share, own, 2.0 * float(x[-1])), by_common, by_own
 
 
-def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) -> Components:
-    """The components of the largest evidence, near their first guess; residuals are of size ``unit``."""
+def most_probable(
+    model: Mixed, smooth: Smooth, first: Components, unit: float, others: float = 1.0
+) -> Components:
+    """The components of the largest evidence, near their first guess; residuals are of size ``unit``.
+
+    Shared numbers beside those of ``smooth`` have the variance ``others``.
+    """
+    functions = len(smooth.orders)
     begin = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
     held = np.ones(len(begin))
@@ -90,8 +96,8 @@ def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) 
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
-        found = model.evidence(given)
-        slope = found.common @ by_common + found.own @ by_own
+        found = model.evidence(given._replace(common=beside(given.common, model, others)))
+        slope = found.common[:functions] @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
         far = held * (x - begin) / usual
         return -found.value + 0.5 * float(far @ far), -slope + far / usual
@@ -109,6 +115,11 @@ def most_probable(model: Mixed, smooth: Smooth, first: Components, unit: float) 
         },
     )
     return Components.of_logarithms(found.x)
+
+
+def beside(log_variance: np.ndarray, model: Mixed, others: float) -> np.ndarray:
+    """Logarithms of the variances of all shared numbers: those given, and ``others`` of the rest."""
+    return np.append(log_variance, np.full(model.common.shape[1] - len(log_variance), np.log(others)))
 
 
 def _bounds(smooth: Smooth, unit: float) -> list[tuple[float, float]]:

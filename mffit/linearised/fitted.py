@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.least_squares import inverse, root
 from mffit.linearised import constants
-from mffit.linearised.components import Components, most_probable, own_columns, variances
+from mffit.linearised.components import Components, beside, most_probable, own_columns, variances
 from mffit.linearised.inputs import along, inputs_of, settings_of
 from mffit.linearised.mixed import Mixed, Posterior, Predicted, Variances
 from mffit.linearised.smooth import Smooth
@@ -84,40 +84,37 @@ class LinearisedChannel:
         return [self._in_its_unit(one) for one in self.model.left_out(self.variances, which)]
 
     def by_the_others(self, group: int) -> Predicted:
-        """A group as the others predict it, which alone say how much the formula misses and runs differ.
+        """A group as the others predict it, which alone say where the numbers of the fit are and what is usual beside it.
 
-        A run that is far off would otherwise widen what counts as usual, and hide in it. Between the settings of a condition that
-        no run sweeps, such as the load, few runs say how fast the miss changes: it may change from one to the next.
+        A run that is far off would otherwise bend the fit, widen what counts as usual, and hide in it. Between the settings of
+        a condition that no run sweeps, such as the load, few runs say how fast the miss changes: it may change from one to the
+        next.
         """
         rest = [rows for k, rows in enumerate(self.model.groups) if k != group]
-        found = _found(self._alone(groups=rest), self.smooth, self.unit)
+        others = Mixed(self.model.residual, self.model.common, self.model.own, rest)
+        found = _found(others, self.smooth, self.unit, constants.FITTED_ANEW)
         lengths = tuple(
             min(length, one.spacing) if one.is_held else length
             for one, length in zip(self.smooth.inputs, found.lengths, strict=True)
         )
         given, _, _ = variances(replace(found, lengths=lengths).logarithms, self.smooth)
-        common = np.append(given.common, self.variances.common[len(self.missed) :])
+        common = beside(given.common, self.model, constants.FITTED_ANEW)
         (one,) = self.model.left_out(given._replace(common=common), [np.array([group])])
         return self._in_its_unit(one)
 
     def gain(self, change: np.ndarray) -> float:
         """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
-        without = self._alone(residual=self.model.residual - change / self.unit)
+        without = self._alone(self.model.residual - change / self.unit)
         found = _found(without, self.smooth, self.unit)
         before, after = (
             alone.evidence(variances(of.logarithms, self.smooth)[0]).value
-            for alone, of in ((self._alone(), self.components), (without, found))
+            for alone, of in ((self._alone(self.model.residual), self.components), (without, found))
         )
         return self.stride * (after - before)
 
-    def _alone(self, residual: np.ndarray | None = None, groups: Sequence[np.ndarray] | None = None) -> Mixed:
-        """The model with the numbers of the fit as they are."""
-        return Mixed(
-            self.model.residual if residual is None else residual,
-            self.model.common[:, : len(self.missed)],
-            self.model.own,
-            self.model.groups if groups is None else groups,
-        )
+    def _alone(self, residual: np.ndarray) -> Mixed:
+        """The model of some residuals (n,) with the numbers of the fit as they are."""
+        return Mixed(residual, self.model.common[:, : len(self.missed)], self.model.own, self.model.groups)
 
     def _in_its_unit(self, one: Predicted) -> Predicted:
         unit = self.unit[one.rows]
@@ -221,8 +218,8 @@ def _channel(
     )
 
 
-def _found(alone: Mixed, smooth: Smooth, unit: np.ndarray) -> Components:
-    """The components of residuals over ``unit`` (n,)."""
-    rows = np.concatenate(list(alone.groups))
-    size = max(rms((alone.residual * unit)[rows]), 1e-12)
-    return most_probable(alone, smooth, Components.guess(smooth, size), size)
+def _found(model: Mixed, smooth: Smooth, unit: np.ndarray, others: float = 1.0) -> Components:
+    """The components of residuals over ``unit`` (n,); ``others`` is the variance of further shared numbers."""
+    rows = np.concatenate(list(model.groups))
+    size = max(rms((model.residual * unit)[rows]), 1e-12)
+    return most_probable(model, smooth, Components.guess(smooth, size), size, others)

@@ -22,12 +22,12 @@ from mffit.points import Points
 from mffit.rig import Readings
 from mffit.suspicion import (
     CamberReduction,
-    Contradiction,
     Doubt,
     FinishedFit,
     JudgedMeasurement,
     LeftOutSweeps,
     Outlier,
+    SweepAgainstOthers,
     Trust,
     contradictions_of,
     judge,
@@ -78,7 +78,7 @@ def judged(
     finished = replace(
         finished,
         against=against,
-        cause=_cause(fitted.doubts, against, left),
+        cause=_cause(fitted.doubts, [one for one in against if one.looks or not effect], left),
         cause_is_certain=bool(fitted.doubts or against or effect),
     )
     left = replace(left, sweep=against[0] if against else None)
@@ -139,13 +139,13 @@ def _stranger(diagnosis: Diagnosis, finished: FinishedFit) -> str:
     return ""
 
 
-def _cause(doubts: Sequence[Doubt], against: Sequence[Contradiction], left: Remains) -> str:
+def _cause(doubts: Sequence[Doubt], against: Sequence[SweepAgainstOthers], left: Remains) -> str:
     """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none can be seen."""
     worst = max(doubts, key=lambda doubt: doubt.ratio, default=None)
     odd = [(one.name, one.looks) for one in against if one.looks]
     if worst is not None and (worst.looks or not odd):
         odd.insert(0, (worst.sweep, worst.looks))
-    odd += [(one.name, "") for one in against]
+    odd += [(one.name, "") for one in against if not one.looks]
     if odd:
         sweep, looks = odd[0]
         return f"{sweep} contradicts the other sweeps{f' and looks like {looks}' if looks else ''}"

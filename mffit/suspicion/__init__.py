@@ -1,7 +1,7 @@
 """Which readings are suspected, and what follows: ``rules`` lists all suspicions, ``applying`` runs them."""
 
 from mffit.suspicion.applying import after_the_fit, before_the_fit
-from mffit.suspicion.contradiction import Contradiction, contradictions_of
+from mffit.suspicion.contradiction import SweepAgainstOthers, contradictions_of
 from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread, misread
 from mffit.suspicion.others import Doubt, JudgedSweeps
@@ -25,7 +25,6 @@ __all__ = [
     "RULES",
     "SOUND",
     "CamberReduction",
-    "Contradiction",
     "Doubt",
     "FinishedFit",
     "FittedModel",
@@ -36,6 +35,7 @@ __all__ = [
     "Misread",
     "Outlier",
     "Subject",
+    "SweepAgainstOthers",
     "Trust",
     "When",
     "after_the_fit",

@@ -133,12 +133,6 @@ DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )
 FEWEST_SWEEPS_OF_A_FORMULA = Count(5, "-", "Fewest sweeps whose prediction says what limits a model.")
-AGAINST_THE_OTHERS = Real(
-    2.0,
-    "-",
-    "Error of a sweep over what its prediction by the others leaves open from which it contradicts them; sound sweeps at the "
-    "edge of the tested loads of a brush tyre reach 1.7.",
-)
 SHARE_OF_A_BOUND = Real(0.05, "-", "Share of the misfit from which a bound matters that holds a coefficient.")
 LEAST_PUBLISHED_EPSILON = Real(
     -0.4, "-", "Camber reduction factors below are outside everything published.", "docs/method.md"

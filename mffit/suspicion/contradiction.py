@@ -17,7 +17,7 @@ from mffit.suspicion.prediction import PredictedChannel
 
 
 @dataclass(frozen=True, slots=True)
-class Contradiction:
+class SweepAgainstOthers:
     """A sweep that the others do not predict."""
 
     sweep: int  #: its number
@@ -33,7 +33,7 @@ def contradictions_of(
     simulation: Simulation,
     suspects: Sequence[int],
     signs: Mapping[str, float],
-) -> tuple[Contradiction, ...]:
+) -> tuple[SweepAgainstOthers, ...]:
     """Those of the suspected sweeps that contradict all others, the worst first.
 
     Parameters
@@ -55,7 +55,7 @@ def _seen(
     simulation: Simulation,
     k: int,
     signs: Mapping[str, float],
-) -> Contradiction | None:
+) -> SweepAgainstOthers | None:
     rows = np.flatnonzero(points.sweep == k)
     errors, readings = {}, {}
     for name, channel in left.channels.items():
@@ -70,7 +70,7 @@ def _seen(
     off = [
         name
         for name, e in errors.items()
-        if ratio[name] > constants.AGAINST_THE_OTHERS
+        if ratio[name] > constants.DISTRUSTED_MISFIT
         and chdtrc(len(e.error), len(e.error) * ratio[name] ** 2) < certain
     ]
     one_number = (
@@ -81,7 +81,7 @@ def _seen(
         return None
     worst_first = sorted(off or ratio, key=lambda name: -ratio[name])
     looks = explanation(part, errors, simulation, signs)
-    return Contradiction(
+    return SweepAgainstOthers(
         k, points.sweep_names[k], tuple(worst_first if off else worst_first[:1]), ratio[worst_first[0]], looks
     )
 

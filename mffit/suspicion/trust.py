@@ -28,7 +28,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig import Readings
 from mffit.scatter import finite_median, rms
 from mffit.suspicion import constants
-from mffit.suspicion.contradiction import Contradiction
+from mffit.suspicion.contradiction import SweepAgainstOthers
 from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
 from mffit.suspicion.unpublished import CamberReduction, causes
 
@@ -72,7 +72,7 @@ class FinishedFit(JudgedMeasurement):
     left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
     linear: LinearisedFit | None = None
     """What the fit leaves; None if all that the model misses counts as noise."""
-    against: tuple[Contradiction, ...] = ()  #: sweeps that contradict the others, the worst first
+    against: tuple[SweepAgainstOthers, ...] = ()  #: sweeps that contradict the others, the worst first
     structure: str = ""  #: where residuals are not random, in words
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it

@@ -1,8 +1,8 @@
-"""A tyre that is no Magic Formula: bristles on a line, which lose grip as they slide. Its sweeps on a flat track, with noise.
+"""A tyre that is no Magic Formula, a brush whose bristles lose grip as they slide: its sweeps on a flat track, with noise.
 
-Bristles of stiffness ``c`` deflect from the front to the rear of the contact (x from +a to -a) by the slip angle, and by the spin of
-a leaning wheel, which bends their path; they slide where the deflection exceeds what the pressure, higher in the middle, holds.
-Sliding bristles lose grip with speed, and the contact grows with the square root of the load.
+Bristles deflect from the front to the rear of the contact (x from +a to -a) by the slip angle, and by the spin of a leaning
+wheel, which bends their path. They slide where the deflection exceeds what the pressure, higher in the middle, holds. The grip
+falls with the slip and with the load, and the contact grows with the square root of the load.
 """
 
 from __future__ import annotations
@@ -47,9 +47,7 @@ class Brush(NamedTuple):
     crown: float = 0.3  #: pressure in the middle over a parabola's
     reduction: float = -0.1  #: camber reduction factor
 
-    def forces(
-        self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def forces(self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Fy [N] and Mz [Nm] in ISO-W at angles [rad] and loads [N], each (n,)."""
         alpha, gamma, Fz = (np.asarray(x, dtype=float)[:, None] for x in (alpha, gamma, Fz))
         x = np.linspace(1.0, -1.0, 801)
