@@ -15,6 +15,10 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 
+ROUNDING = 1e-13
+"""Largest error of a difference of sums of products, over the sums, by which it may lose its sign."""
+
+
 class Variances(NamedTuple):
     """Logarithms of the variances of the priors and of the noise."""
 
@@ -96,7 +100,9 @@ class Mixed:
         right = sums.across.transpose(1, 0, 2).reshape(m, -1)
         information = w * sums.common - w * w * left @ right.T
         pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
-        factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
+        whole = size[:, None] * information * size
+        rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
+        factor = cho_factor((1.0 + rounding) * np.eye(m) + whole, lower=True, check_finite=False)
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
         scaled = cho_solve(factor, size * pull, check_finite=False)
         return Posterior(

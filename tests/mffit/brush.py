@@ -72,7 +72,7 @@ def sweeps() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     for lean, load in ((2, 1700), (4, 1700), (7, 1700), (4, 2600)):
         plan[f"coupled_{load}_{lean}"] = (SHORT, (-lean, lean), load)
     return {
-        name: tuple(np.array([(a, g, load) for g in gamma for a in alpha], dtype=float).T)  # type: ignore[misc]
+        name: tuple(np.array([(a, g, load) for g in gamma for a in alpha], dtype=float).T)
         for name, (alpha, gamma, load) in plan.items()
     }
 
