@@ -101,8 +101,7 @@ class Mixed:
         information = w * sums.common - w * w * left @ right.T
         pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
         whole = size[:, None] * information * size
-        rounding = ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0))
-        factor = cho_factor((1.0 + rounding) * np.eye(m) + whole, lower=True, check_finite=False)
+        factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
         scaled = cho_solve(factor, size * pull, check_finite=False)
         return Posterior(
@@ -144,6 +143,20 @@ class Mixed:
         return Predicted(
             rows=np.concatenate(groups), error=covariance @ np.concatenate(moved), covariance=covariance
         )
+
+
+def _factor(whole: np.ndarray, rounding: float) -> tuple[np.ndarray, bool]:
+    """Lower factor of 1 plus a matrix that has no negative eigenvalues but for rounding, which grows until it suffices."""
+    while True:
+        try:
+            factor: tuple[np.ndarray, bool] = cho_factor(
+                (1.0 + rounding) * np.eye(len(whole)) + whole, lower=True, check_finite=False
+            )
+            return factor
+        except np.linalg.LinAlgError:
+            if not np.all(np.isfinite(whole)):
+                raise
+            rounding *= 10.0
 
 
 class _Sums(NamedTuple):
