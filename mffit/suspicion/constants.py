@@ -133,17 +133,6 @@ DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )
 FEWEST_SWEEPS_OF_A_FORMULA = Count(5, "-", "Fewest sweeps whose prediction says what limits a model.")
-PREDICTED_AS_WELL_AS_FITTED = Real(
-    1.1,
-    "-",
-    "Error of left-out sweeps over that of fitted ones up to which a misfit is the formula's; mistakes in some sweeps exceed it.",
-)
-UNEVEN_SWEEPS = Real(
-    2.0, "-", "Misfit of the worst sweep over the median sweep's up to which all sweeps share the misfit."
-)
-SHARE_OF_A_GOOD_FORMULA = Real(
-    0.95, "-", "Share of the variance that a formula explains whose misfit is its own and not a mistake's."
-)
 SHARE_OF_A_BOUND = Real(0.05, "-", "Share of the misfit from which a bound matters that holds a coefficient.")
 LEAST_PUBLISHED_EPSILON = Real(
     -0.4, "-", "Camber reduction factors below are outside everything published.", "docs/method.md"

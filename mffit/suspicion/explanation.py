@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +15,20 @@ from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
-from mffit.suspicion.prediction import PredictedChannel
 
 DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
 """Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
 Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
 """Change of prediction less measured in some channels, per unit of a number, by channel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictedChannel:
+    """One channel of a group as the other sweeps predict it."""
+
+    error: np.ndarray  #: (m,) prediction less measured [N] or [Nm]
+    covariance: np.ndarray  #: (m, m) of a sound sweep's error: its noise and the prediction's
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,13 +95,29 @@ def explanation(
         gained = before - _chi2(errors, _undone(points, errors, simulation, mistake.undone(points, signs)))
         if gained > best:
             best, said = gained, mistake.looks
-    for shift in SHIFTS:
-        gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
-        if gained > best and shift.possible[0] < size < shift.possible[1]:
+    for shift, gained, size, u in _shifts(points, errors, simulation):
+        if gained > best:
             best = gained
             value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
             said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))
     return said
+
+
+def gain_of_one_number(
+    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation
+) -> float:
+    """Chi-square of the errors of a sweep that the best of the numbers that may be off removes."""
+    return max((gained for _, gained, _, _ in _shifts(points, errors, simulation)), default=0.0)
+
+
+def _shifts(
+    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation
+) -> Iterator[tuple[Shift, float, float, float]]:
+    """Each number that a rig can have, with the chi-square that it removes, its value and its standard uncertainty."""
+    for shift in SHIFTS:
+        gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
+        if shift.possible[0] < size < shift.possible[1]:
+            yield shift, gained, size, u
 
 
 def _undone(

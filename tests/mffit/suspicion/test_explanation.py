@@ -8,8 +8,7 @@ import pytest
 import tir
 from mffit.points import make_points
 from mffit.rig import Simulation
-from mffit.suspicion.explanation import explanation
-from mffit.suspicion.prediction import PredictedChannel
+from mffit.suspicion.explanation import PredictedChannel, explanation
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 SAE = ISO | {"alpha": -1.0, "Fy": -1.0, "gamma": -1.0, "Mz": -1.0}
