@@ -10,6 +10,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.declared import as_declared
 from mffit.points import Points
+from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt, JudgedSweeps, views
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject, When
 from mffit.suspicion.rules import RULES
@@ -54,7 +55,7 @@ def after_the_fit(campaign: JudgedSweeps, when: When = When.AFTER) -> tuple[Doub
 
     ``When.FIRST``: the fit itself may still be wrong. A sweep that contradicts all others beyond plausibility is refused.
     """
-    seen = views(campaign)
+    seen = views(campaign, least=constants.GROSS_SHARE if when is When.FIRST else 0.0)
     doubts: list[Doubt] = []
     for rule in _rules(when) if seen else ():
         if rule.subject is not Subject.SWEEP:

@@ -103,13 +103,6 @@ def explanation(
     return said
 
 
-def gain_of_one_number(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation
-) -> float:
-    """Chi-square of the errors of a sweep that the best of the numbers that may be off removes."""
-    return max((gained for _, gained, _, _ in _shifts(points, errors, simulation)), default=0.0)
-
-
 def _shifts(
     points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation
 ) -> Iterator[tuple[Shift, float, float, float]]:

@@ -25,7 +25,7 @@ def groups(points: Points) -> list[Group]:
     """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
     found = [*_sweeps(points), *_conditions(points)]
     unique = {group.index.tobytes(): group for group in reversed(found)}
-    fewest, most = constants.FEWEST_POINTS_OF_A_SWEEP, constants.LARGEST_SWEEP * len(points)
+    fewest, most = constants.FEWEST, constants.LARGEST_SWEEP * len(points)
     return [g for g in reversed(unique.values()) if fewest <= len(g.index) <= most]
 
 
@@ -64,7 +64,7 @@ def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
         own = levels.count(points.gamma[i], levels.CAMBER)
         keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
         # In a sweep of camber the angles are not conditions.
-        few = own * constants.FEWEST_POINTS_OF_A_SWEEP <= len(i)
+        few = own * constants.FEWEST <= len(i)
         by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
         if by_camber:
             keys = np.column_stack([keys, camber[i]])

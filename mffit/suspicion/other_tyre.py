@@ -29,13 +29,13 @@ RADII = (
         "loaded radius",
         "RL_m",
         lambda points: points.RL,
-        (constants.SMALLEST_LOADED_RADIUS, constants.LARGEST_LOADED_RADIUS),
+        (constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
     ),
     MeasuredRadius(
         "rolling radius, speed over rotation,",
         "omega_radps",
         lambda points: points.rolling_radius,
-        (constants.SMALLEST_ROLLING_RADIUS, constants.LARGEST_ROLLING_RADIUS),
+        (constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
     ),
 )
 
@@ -83,10 +83,10 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
     id="other-radius",
     subject=Subject.ALL_FILES,
     limits=(
-        constants.SMALLEST_LOADED_RADIUS,
-        constants.LARGEST_LOADED_RADIUS,
-        constants.SMALLEST_ROLLING_RADIUS,
-        constants.LARGEST_ROLLING_RADIUS,
+        constants.SMALLEST_RADIUS,
+        constants.LARGEST_RADIUS,
+        constants.SMALLEST_RADIUS,
+        constants.LARGEST_RADIUS,
     ),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
@@ -116,10 +116,8 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
 
 def _rolls_upright(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
-    upright = np.abs(points.gamma) <= constants.UPRIGHT_FOR_RADIUS.rad
-    return np.asarray(
-        points.free_rolling & upright & (np.abs(points.alpha) <= constants.STRAIGHT_FOR_RADIUS.rad)
-    )
+    upright = np.abs(points.gamma) <= constants.UPRIGHT.rad
+    return np.asarray(points.free_rolling & upright & (np.abs(points.alpha) <= constants.STRAIGHT.rad))
 
 
 class _Cell(NamedTuple):
@@ -144,7 +142,7 @@ def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, 
 
 def _forces(points: Points, one: int, other: int) -> str:
     """Side force of the second file over that of the first at equal conditions, for a sentence; "" if none are equal."""
-    enough = np.abs(points.alpha) >= constants.SIDESLIP_THAT_SHOWS_FORCE.rad
+    enough = np.abs(points.alpha) >= constants.STRAIGHT.rad
     used = points.select(points.free_rolling & enough)
     kinds = {
         "alpha": levels.SIDESLIP, "gamma": levels.CAMBER, "Fz": levels.LOAD, "p": levels.PRESSURE,
@@ -162,7 +160,7 @@ def _forces(points: Points, one: int, other: int) -> str:
     ratios = [
         float(np.mean(force[other][key]) / np.mean(force[one][key]))
         for key in force[one].keys() & force[other].keys()
-        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST_POINTS_OF_FRICTION
+        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST
     ]
     if not ratios:
         return ""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import chdtrc, ndtr
 
-from mffit.constants import EXPLAINED_SHARE
+from mffit.constants import EXPLAINED_SHARE, PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.linearised import LinearisedFit
 from mffit.linearised.mixed import LeftOutReadings
@@ -22,7 +22,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.explanation import SHIFTS, PredictedChannel, explanation, gain_of_one_number
+from mffit.suspicion.explanation import PredictedChannel, explanation
 from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
 from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
@@ -107,21 +107,22 @@ class View(NamedTuple):
         }
 
 
-def views(campaign: JudgedSweeps) -> tuple[View, ...]:
+def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
     """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
 
-    The search ends at the first sweep that a known mistake explains.
+    Only errors above the share ``least`` of the usual size are suspected. The search ends at the first sweep that a known
+    mistake explains.
     """
     points = campaign.points
     found = groups(points)
-    if len(found) < constants.FEWEST_SWEEPS_TO_COMPARE:
+    if len(found) < constants.FEWEST:
         return ()
     size = {
         c: usual_size((points.channel(c) / points.Fz)[g.index] for g in found)
         for c in campaign.fitted.left.channels
     }
     out: list[View] = []
-    for group in _suspects(campaign, found, size):
+    for group in _suspects(campaign, found, size, least):
         view = _view(campaign, group, size)
         if view is not None:
             out.append(view)
@@ -134,7 +135,12 @@ def views(campaign: JudgedSweeps) -> tuple[View, ...]:
     id="known-mistake",
     subject=Subject.SWEEP,
     when=(When.FIRST, When.AFTER),
-    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.GROSS_SHARE, EXPLAINED_SHARE, constants.MATCHED_SHARE),
+    limits=(
+        PREDICTION_FALSE_ALARM,
+        constants.GROSS_SHARE,
+        EXPLAINED_SHARE,
+        constants.IMPLAUSIBLE_SHARE,
+    ),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}; it looks like {looks}, which leaves {left:.2g} %: {remedy}",
 )
@@ -152,7 +158,7 @@ def known_mistake(seen: Sequence[View]) -> Iterator[Finding]:
     id="implausible-sweep",
     subject=Subject.SWEEP,
     when=(When.AFTER,),
-    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
+    limits=(PREDICTION_FALSE_ALARM, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
     "file{perhaps}, or leave it out",
@@ -182,7 +188,7 @@ def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
     "or repeat it",
 )
 def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
-    """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open, or one number in it.
+    """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open.
 
     Conditions of a sweep are named only if it is sound as a whole.
     """
@@ -193,17 +199,19 @@ def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
             yield v.doubt
 
 
-def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
+def _suspects(
+    campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float], least: float
+) -> list[Group]:
     """Groups that the fit to all others does not predict, even if all that is usual counts as noise; the worst first."""
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
-    level = constants.FALSE_ALARM_OF_SWEEPS / (len(found) * len(channels))
+    level = PREDICTION_FALSE_ALARM / (len(found) * len(channels))
     for name, channel in channels.items():
         rows = [np.flatnonzero(np.isin(channel.rows, g.index)) for g in found]
         seen = [k for k, own in enumerate(rows) if len(own)]
         for k, one in zip(seen, channel.by_the_fit([rows[k] for k in seen]), strict=True):
             e = _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
-            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT:
+            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT and e.share >= least:
                 worst[k] = max(worst.get(k, 0.0), e.ratio)
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
@@ -295,7 +303,7 @@ class _Away(NamedTuple):
                     continue
                 e = _error(name, moved, self.size[name])
                 least = min(rms(measured[known]), rms(predicted[known]))
-                out[name] = Away(e.rms, e.share, e.rms <= constants.MATCHED_SHARE * least)
+                out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
         return out
 
 
@@ -307,16 +315,14 @@ def _doubt(
     found: Mapping[str, LeftOutReadings],
     errors: Sequence[Error],
 ) -> Doubt | None:
-    """Whether chance does not explain the errors, or the best of all single numbers that may be off."""
+    """The doubt about a group, if chance does not explain its errors."""
     certain = float(ndtr(-constants.CERTAIN_SIGMA))
     off = tuple(e.channel for e in errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain)
+    if not off:
+        return None
     judged = {
         name: PredictedChannel(error=-one.error, covariance=one.covariance) for name, one in found.items()
     }
-    if not off:
-        chance = chdtrc(1, gain_of_one_number(part, judged, simulation))
-        if chance * constants.MOST_SUSPECTS * len(SHIFTS) >= certain:
-            return None
     worst = errors[0]
     return Doubt(
         sweep=group.name,
@@ -327,5 +333,5 @@ def _doubt(
         ratio=worst.ratio,
         share=worst.share,
         looks=explanation(part, judged, simulation, campaign.signs),
-        channels=off or (worst.channel,),
+        channels=off,
     )

@@ -125,7 +125,7 @@ class FinishedFit(JudgedMeasurement):
         stated, seen = self.misfit(channel), self.over_scatter(channel)
         if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
-        return stated.ratio > constants.LEAST_MISFIT_OF_NOISE if stated.n else bool(seen.n)
+        return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
         """Whether a channel misses the noise so far that the fit is not trusted, whatever the misfit looks like."""
@@ -192,7 +192,7 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.CARRIED_MISFIT),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.DISTRUSTED_MISFIT),
     outcome=Outcome.DISTRUSTED,
     sentence="the model misses {channel} by {ratio:.1f} times its stated uncertainty{carriers}; {cause}; look at these sweeps, "
     "or run mffit diagnose",
@@ -225,7 +225,7 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             first = {int(fit.points.sweep[one.index[0]]): -i for i, one in enumerate(fit.against)}
             worst = max(off, key=lambda k: (first.get(k, -len(first)), off[k]))
             others = [fit.points.sweep_names[k] for k in sorted(off, key=lambda k: -off[k]) if k != worst]
-            said = f" (also {', '.join(others[: constants.SWEEPS_NAMED_WITH_MISFIT])})" if others else ""
+            said = f" (also {', '.join(others[: constants.MOST_NAMED])})" if others else ""
             sweep = fit.points.sweep_names[worst]
             cause = "" if any(above_noise.find(fit)) else f"; {_cause(fit)}"
             yield {"channel": name, "sweep": sweep, "ratio": off[worst], "others": said, "cause": cause}
@@ -302,7 +302,7 @@ def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="unpredicted-sweeps",
-    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST_SWEEPS_OF_A_FORMULA),
+    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST),
     outcome=Outcome.DISTRUSTED,
     sentence="a sweep that is left out is predicted from the others to {typical:.3g} {unit} (median) where the fit misses "
     "{fitted:.3g} {unit}: the model explains less than half of {channel} where it was not fitted; check that all sweeps are of "
@@ -313,7 +313,7 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     for name, seen in fit.left_out.items():
         spread = float(np.nanstd(getattr(fit.points, name)))
         poor = seen.typical**2 > (1.0 - constants.EXPLAINED_VARIANCE) * spread**2
-        if poor and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA and not fit.misfit(name).n:
+        if poor and seen.sweeps >= constants.FEWEST and not fit.misfit(name).n:
             unit = CHANNELS[name].unit
             yield {"channel": name, "typical": seen.typical, "fitted": seen.fitted, "unit": unit}
 
@@ -556,6 +556,6 @@ def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
 def _carriers(fit: FinishedFit, channel: str) -> str:
     """The sweeps with most of a misfit, in words."""
     total, own = fit.misfit(channel).ratio, _by_sweep(fit, channel)
-    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.CARRIED_MISFIT * total]
-    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
+    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.DISTRUSTED_MISFIT * total]
+    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.MOST_NAMED])
     return f", most of it in {names}" if names else ""
