@@ -21,21 +21,12 @@ class MeasuredRadius(NamedTuple):
     words: str
     column: str
     of: Callable[[Points], np.ndarray]  #: (n,) [m]; NaN where it was not measured
-    limits: tuple[float, float]  #: over the unloaded radius
 
 
 RADII = (
+    MeasuredRadius("loaded radius", "RL_m", lambda points: points.RL),
     MeasuredRadius(
-        "loaded radius",
-        "RL_m",
-        lambda points: points.RL,
-        (constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
-    ),
-    MeasuredRadius(
-        "rolling radius, speed over rotation,",
-        "omega_radps",
-        lambda points: points.rolling_radius,
-        (constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
+        "rolling radius, speed over rotation,", "omega_radps", lambda points: points.rolling_radius
     ),
 )
 
@@ -82,12 +73,7 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 @rule(
     id="other-radius",
     subject=Subject.ALL_FILES,
-    limits=(
-        constants.SMALLEST_RADIUS,
-        constants.LARGEST_RADIUS,
-        constants.SMALLEST_RADIUS,
-        constants.LARGEST_RADIUS,
-    ),
+    limits=(constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )
@@ -101,8 +87,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
         if not len(values):
             continue
         middle = float(np.median(values))
-        least, most = radius.limits
-        if not least <= middle / declared <= most:
+        if not constants.SMALLEST_RADIUS <= middle / declared <= constants.LARGEST_RADIUS:
             facts = {
                 "words": radius.words,
                 "radius": middle,
