@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig import Simulation
@@ -20,15 +21,7 @@ DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
 """Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
 Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
-"""Change of prediction less measured in some channels, per unit of a number, by channel."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PredictedChannel:
-    """One channel of a group as the other sweeps predict it."""
-
-    error: np.ndarray  #: (m,) prediction less measured [N] or [Nm]
-    covariance: np.ndarray  #: (m, m) of a sound sweep's error: its noise and the prediction's
+"""Change of measured less predicted in some channels, per unit of a number, by channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +37,12 @@ class Shift:
 
 
 def _constant(channel: str) -> Shape:
-    return lambda points, simulation, among: {channel: -np.ones(len(points))}
+    return lambda points, simulation, among: {channel: np.ones(len(points))}
 
 
 def _gain(channel: str) -> Shape:
     def shape(points: Points, simulation: Simulation, among: Collection[str]) -> Mapping[str, np.ndarray]:
-        return {channel: -simulation.readings(points, (channel,))[channel]} if channel in among else {}
+        return {channel: simulation.readings(points, (channel,))[channel]} if channel in among else {}
 
     return shape
 
@@ -59,7 +52,7 @@ def _set_point(name: str, relative: bool = False) -> Shape:
         value = getattr(points, name)
         moved = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
         here, there = simulation.readings(points, among), simulation.readings(moved, among)
-        return {channel: (here[channel] - there[channel]) / STEP for channel in here}
+        return {channel: (there[channel] - here[channel]) / STEP for channel in here}
 
     return shape
 
@@ -83,7 +76,7 @@ SHIFTS = (
 
 
 def explanation(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, signs: Mapping[str, float]
+    points: Points, errors: Mapping[str, LeftOutReadings], simulation: Simulation, signs: Mapping[str, float]
 ) -> str:
     """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
@@ -95,39 +88,30 @@ def explanation(
         gained = before - _chi2(errors, _undone(points, errors, simulation, mistake.undone(points, signs)))
         if gained > best:
             best, said = gained, mistake.looks
-    for shift, gained, size, u in _shifts(points, errors, simulation):
-        if gained > best:
+    for shift in SHIFTS:
+        gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
+        if gained > best and shift.possible[0] < size < shift.possible[1]:
             best = gained
             value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
             said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))
     return said
 
 
-def _shifts(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation
-) -> Iterator[tuple[Shift, float, float, float]]:
-    """Each number that a rig can have, with the chi-square that it removes, its value and its standard uncertainty."""
-    for shift in SHIFTS:
-        gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
-        if shift.possible[0] < size < shift.possible[1]:
-            yield shift, gained, size, u
-
-
 def _undone(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, changed: Points
+    points: Points, errors: Mapping[str, LeftOutReadings], simulation: Simulation, changed: Points
 ) -> dict[str, np.ndarray]:
     """The errors with a mistake undone, to first order."""
     here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
     moved = {}
     for n, e in errors.items():
         known = np.isfinite(points.channel(n))
-        change = there[n] - here[n] - changed.channel(n) + points.channel(n)
+        change = changed.channel(n) - points.channel(n) - (there[n] - here[n])
         moved[n] = e.error + change[known]
     return moved
 
 
 def _fitted(
-    points: Points, errors: Mapping[str, PredictedChannel], shapes: Mapping[str, np.ndarray]
+    points: Points, errors: Mapping[str, LeftOutReadings], shapes: Mapping[str, np.ndarray]
 ) -> tuple[float, float, float]:
     """Chi-square that a multiple of the shapes removes, the multiple and its standard uncertainty."""
     curvature = gradient = 0.0
@@ -142,5 +126,5 @@ def _fitted(
     return gradient**2 / curvature, gradient / curvature, curvature**-0.5
 
 
-def _chi2(errors: Mapping[str, PredictedChannel], moved: Mapping[str, np.ndarray]) -> float:
+def _chi2(errors: Mapping[str, LeftOutReadings], moved: Mapping[str, np.ndarray]) -> float:
     return sum(float(moved[n] @ np.linalg.solve(e.covariance, moved[n])) for n, e in errors.items())

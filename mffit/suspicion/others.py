@@ -22,7 +22,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.explanation import PredictedChannel, explanation
+from mffit.suspicion.explanation import explanation
 from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
 from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
@@ -320,9 +320,6 @@ def _doubt(
     off = tuple(e.channel for e in errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain)
     if not off:
         return None
-    judged = {
-        name: PredictedChannel(error=-one.error, covariance=one.covariance) for name, one in found.items()
-    }
     worst = errors[0]
     return Doubt(
         sweep=group.name,
@@ -332,6 +329,6 @@ def _doubt(
         rms=worst.rms,
         ratio=worst.ratio,
         share=worst.share,
-        looks=explanation(part, judged, simulation, campaign.signs),
+        looks=explanation(part, found, simulation, campaign.signs),
         channels=off,
     )
