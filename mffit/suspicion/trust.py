@@ -192,7 +192,7 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.DISTRUSTED_MISFIT),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
     outcome=Outcome.DISTRUSTED,
     sentence="the model misses {channel} by {ratio:.1f} times its stated uncertainty{carriers}; {cause}; look at these sweeps, "
     "or run mffit diagnose",
