@@ -73,13 +73,16 @@ class LinearisedChannel:
         """Each sweep, or each set of ``rows`` counted as those of :attr:`rows`, as all other readings predict it."""
         return self._left_out(self.model, self.variances, self.model.groups if rows is None else rows)
 
-    def by_the_fit(self, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
-        """The same by the numbers of the fit alone: all that usual readings miss is noise."""
-        misfit = robust(self.model.residual, 0.0)
-        own = np.zeros((len(self.rows), 1))
-        model = replace(self.model, common=self.model.common[:, len(self.missed) :], own=own)
-        given = Variances(np.zeros(model.common.shape[1]), np.zeros(1), 2.0 * float(np.log(max(misfit, 1.0))))
-        return self._left_out(model, given, rows)
+    def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
+        """The same if runs did not differ but by noise; without what is ``missed``, all that usual readings miss is noise."""
+        functions = len(self.missed)
+        own = np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
+        noise = self.components.noise if missed else robust(self.model.residual)
+        given = self.variances._replace(own=own, noise=2.0 * float(np.log(max(noise, 1.0))))
+        if missed:
+            return self._left_out(self.model, given, rows)
+        plain = replace(self.model, common=self.model.common[:, functions:])
+        return self._left_out(plain, given._replace(common=given.common[functions:]), rows)
 
     def by_others(self, rows: np.ndarray) -> LeftOutReadings:
         """The rows of a run that others shall predict, if the fit and the components are those of the others.

@@ -6,6 +6,7 @@ sweeps is judged by one to the others: its numbers, what it misses, and what its
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -202,17 +203,25 @@ def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
 def _suspects(
     campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float], least: float
 ) -> list[Group]:
-    """Groups that the fit to all others does not predict, even if all that is usual counts as noise; the worst first."""
+    """Groups that the others do not predict, if runs did not differ, and that are odder than is usual; the worst first.
+
+    With what the formula misses, which hides what only one sweep shows, and without it, as the numbers of the fit predict them.
+    """
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
     level = PREDICTION_FALSE_ALARM / (len(found) * len(channels))
-    for name, channel in channels.items():
+    for (name, channel), missed in itertools.product(channels.items(), (True, False)):
         rows = [np.flatnonzero(np.isin(channel.rows, g.index)) for g in found]
         seen = [k for k, own in enumerate(rows) if len(own)]
-        for k, one in zip(seen, channel.by_the_fit([rows[k] for k in seen]), strict=True):
-            e = _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
-            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT and e.share >= least:
-                worst[k] = max(worst.get(k, 0.0), e.ratio)
+        predicted = channel.without_runs([rows[k] for k in seen], missed=missed)
+        errors = {
+            k: _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
+            for k, one in zip(seen, predicted, strict=True)
+        }
+        usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
+        for k, e in errors.items():
+            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
+                worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 
