@@ -86,19 +86,6 @@ def left_out_errors(
     return error
 
 
-def covariance_without(axes: np.ndarray, least: float) -> np.ndarray:
-    """Covariance (k, k) of the numbers from all points but those of a group, in units in which that of all points is 1.
-
-    Parameters
-    ----------
-    axes : (m, k) derivatives of the group's residuals by the numbers in these units, over the noise
-    least : smallest share of the information about a direction that is left; less makes its prediction meaningless
-    """
-    share, directions = np.linalg.eigh(axes.T @ axes)
-    factor: np.ndarray = (directions / np.maximum(1.0 - share, least)) @ directions.T
-    return factor
-
-
 def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:
     """The misfit of groups from the errors (m,) of their points; ``channel`` (m,) counts the channels from 0."""
     count = int(group.max(initial=-1)) + 1

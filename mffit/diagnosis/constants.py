@@ -332,8 +332,3 @@ MOST_CONDITIONS_IN_SENTENCE = Count(
     3, "-", "Most conditions over which a sentence calls residuals not random."
 )
 SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")
-ODD_SWEEP_OVER_NEXT = Real(
-    2.0,
-    "-",
-    "Smallest ratio of the largest chi-square of a sweep to the second largest at which one sweep is at fault.",
-)

@@ -12,13 +12,12 @@ from scipy.linalg import solve_triangular
 from mffit.diagnosis import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
-from mffit.left_out import covariance_without, left_out_errors
+from mffit.left_out import left_out_errors
 from mffit.points import Points
 from mffit.points.noise import over_noise, stating
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOutSweeps
-from mffit.suspicion.prediction import PredictedChannel
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,15 +58,6 @@ class Remainder:
     def outside(self, x: np.ndarray) -> np.ndarray:
         """Changes (m,) or (m, j) without what the fitted numbers follow."""
         return x - self.axes @ (self.axes.T @ x)
-
-    def rows_of(self, k: int) -> np.ndarray:
-        """Rows of the readings of sweep ``k`` that count."""
-        rows = np.flatnonzero(self.sweep == k)
-        return rows[self.used[rows]]
-
-    def without(self, rows: np.ndarray) -> np.ndarray:
-        """Covariance (k, k) of the directions from all but some rows, in units in which that of all is 1."""
-        return covariance_without(self.axes[rows], constants.INFORMATION_LEFT)
 
     def whitened(self, change: np.ndarray) -> np.ndarray:
         """Changes of the readings (c n, j) as rows (m, j) in units of the uncertainty."""
@@ -116,32 +106,6 @@ def remainder(fitted: Fitted) -> Remainder:
     )
 
 
-def contradiction(left: Remainder, k: int) -> float:
-    """Chi-square by which sweep ``k`` contradicts its prediction from all others."""
-    rows = left.rows_of(k)
-    r, A = left.residual[rows], left.axes[rows]
-    shared = A.T @ r
-    return float(r @ r + shared @ left.without(rows) @ shared)
-
-
-def predicted_sweep(left: Remainder, k: int, shown: np.ndarray) -> dict[str, PredictedChannel]:
-    """Some points (mask (n,)) of sweep ``k`` as all others predict them, by channel."""
-    rows = left.rows_of(k)
-    others, n = left.without(rows), len(left.points)
-    step = others @ (left.axes[rows].T @ left.residual[rows])
-    rows = rows[shown[rows % n]]
-    A, u = left.axes[rows], left.sigma[rows]
-    error = left.residual[rows] + A @ step
-    covariance = np.eye(len(rows)) + A @ others @ A.T  # of the prediction's error
-    out = {}
-    for j, name in enumerate(left.channels):
-        own = rows // n == j
-        if own.any():
-            scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
-            out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
-    return out
-
-
 def log_of(chance: float) -> float:
     """Natural logarithm of a probability; minus infinity where it is too small to be a number."""
     return math.log(chance) if chance > 0.0 else -math.inf
@@ -185,12 +149,10 @@ def left_out_sweeps(left: Remainder) -> dict[str, LeftOutSweeps]:
         sweeps = np.unique(left.points.sweep[left.used[part]])
         if not len(sweeps):
             continue
-        own = [rms((fits / u)[left.points.sweep == j]) for j in sweeps]
         out[name] = LeftOutSweeps(
             sweeps=len(sweeps),
             fitted=rms(fits),
             predicted=rms(predictions),
             typical=float(np.median([rms(predictions[left.points.sweep == j]) for j in sweeps])),
-            uneven=float(max(own) / max(np.median(own), 1e-12)),
         )
     return out

@@ -7,14 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mffit.diagnosis import constants
 from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
-from mffit.diagnosis.remainder import Remainder, contradiction, left_out_sweeps, predicted_sweep, remainder
+from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
+from mffit.linearised import LinearisedFit
 from mffit.suspicion import HeldNumber, LeftOutSweeps
-from mffit.suspicion.constants import MOST_POINTS_SHOWN
-from mffit.suspicion.explanation import explanation
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +20,7 @@ class OddSweep:
     """The sweep that contradicts all others most, and what it looks like."""
 
     name: str
-    looks: str  #: the known mistake or the one number that explains it
+    looks: str  #: the known mistake or the one number that explains it; empty if no known cause does
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,42 +29,43 @@ class Remains:
 
     structure: Structure
     effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none can be seen
-    sweep: OddSweep | None = None  #: far above the noise, a sweep with a mistake of its own
+    sweep: OddSweep | None = None  #: the sweep that contradicts the others most
     held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit
     left_out: Mapping[str, LeftOutSweeps] = field(
         default_factory=dict
     )  #: by channel, prediction of left-out sweeps
+    change: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
+    """By channel, what the best effect explains at every reading (n,) [N], [Nm]"""
+
+    def gain_over_the_formula(self, linear: LinearisedFit) -> float:
+        """Gain of log evidence if the best effect takes the place of a smooth miss of the formula."""
+        return sum(
+            linear.channels[name].gain(change[linear.channels[name].rows])
+            for name, change in self.change.items()
+        )
 
 
 NOTHING_REMAINS = Remains(Structure(()))
 
 
-def remains(fitted: Fitted, signs: Mapping[str, float]) -> Remains:
-    """The residuals of a fit at its solution, examined by all tests; ``signs`` lead from ISO-W to the rig's axes."""
+def remains(fitted: Fitted) -> Remains:
+    """The residuals of a fit at its solution, examined by all tests."""
     left = remainder(fitted)
+    effect = best_effect(left)
     return Remains(
         structure=structure(left),
-        effect=best_effect(left),
-        sweep=None if left.at_noise else odd_sweep(left, signs),
+        effect=effect,
         held=held_numbers(left, fitted),
         left_out=left_out_sweeps(left),
+        change={} if effect is None else _change(left, effect.best.change, len(fitted.problem.points)),
     )
 
 
-def odd_sweep(left: Remainder, signs: Mapping[str, float]) -> OddSweep | None:
-    """The sweep that contradicts all others; None if it does not stand out, or if no known mistake explains it."""
-    points = left.points
-    found = {k: contradiction(left, k) for k in np.unique(points.sweep).tolist()}
-    worst, *others = sorted(found, key=lambda k: -found[k])
-    if any(found[worst] < constants.ODD_SWEEP_OVER_NEXT * found[k] for k in others):
-        return None
-    shown = np.zeros(len(points), dtype=bool)
-    sweep = np.flatnonzero(points.sweep == worst)
-    shown[sweep[:: -(-len(sweep) // MOST_POINTS_SHOWN)]] = True
-    readings = {
-        name: np.where(used, points.channel(name), np.nan)
-        for name, used in zip(left.channels, np.split(left.used, len(left.channels)), strict=True)
+def _change(left: Remainder, change: np.ndarray, n: int) -> dict[str, np.ndarray]:
+    """Rows of a remainder in units of their uncertainty as changes of the readings at all n points."""
+    examined = np.arange(n) // -(-n // len(left.points))
+    own = change[: len(left.sigma)] * np.where(left.used, left.sigma, 0.0)
+    return {
+        name: part[examined]
+        for name, part in zip(left.channels, np.split(own, len(left.channels)), strict=True)
     }
-    part = points.replace(**readings).select(shown)
-    looks = explanation(part, predicted_sweep(left, worst, shown), left.simulation, signs)
-    return OddSweep(points.sweep_names[worst], looks) if looks else None

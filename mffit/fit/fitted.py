@@ -50,8 +50,8 @@ class Fitted:
         return self.problem.simulation
 
 
-def left_by(fitted: Fitted) -> LinearisedFit:
-    """What a fit leaves of its points, as one linear model.
+def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | None = None) -> LinearisedFit:
+    """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
 
     A number at a bound stays there. One without a prior has half the width of the values that tyres have.
     """
@@ -64,8 +64,8 @@ def left_by(fitted: Fitted) -> LinearisedFit:
             numbers.append(Uncertain(number.name, number.expected - number.start if known else 0.0, spread))
     held = {**fitted.held, **fitted.held_rig}
     numbers += [Uncertain(name, 0.0, u) for name, u in held.items() if u > 0.0]
-    problem = fitted.problem
-    return linearised(problem.points, problem.simulation, problem.sigma, numbers)
+    problem = of or fitted.problem
+    return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

@@ -18,7 +18,7 @@ from mffit.fit.borrowed.sister import sister_of, sister_sentence
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import Fitted
+from mffit.fit.fitted import left_by
 from mffit.fit.influences.between_runs import between_runs
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -39,6 +39,7 @@ from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.wording import explanations, warnings
 from mffit.fit.written.files import plain_use
+from mffit.linearised import LinearisedFit
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.lag import Lag
@@ -97,7 +98,7 @@ def fit(
     plan = fit_plan(config, points, measured, known, start, fleet, turning, overturning.predicting)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
-    found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
+    found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full, plan = found.plain, found.full, found.plan
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
@@ -147,6 +148,7 @@ def fit(
         outliers=outlying,
         search=fitted,
         full=full,
+        left_by_formula=left_by_formula,
         files=files,
         temperature=temperature,
         choice=found.choice,
@@ -163,39 +165,34 @@ def fit(
 
 def _fitted_and_judged(
     config: Any, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
-) -> tuple[NuisanceFit, tuple[Doubt, ...]]:
-    """The fits to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
+) -> tuple[NuisanceFit, LinearisedFit, tuple[Doubt, ...]]:
+    """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
+    the build."""
 
-    def judged(found: NuisanceFit, when: When) -> tuple[Doubt, ...]:
+    def judged(found: NuisanceFit, when: When) -> tuple[LinearisedFit, tuple[Doubt, ...]]:
         progress("predicting each sweep from the others")
-        campaign = JudgedSweeps(
-            points=problem.points,
-            stated=problem.sigma,
-            signs=axis_signs(config),
-            refit=lambda rows: _as_model(found.refit(rows)),
-        )
+
+        def refit(without: np.ndarray) -> FittedModel:
+            fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
+            sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
+            for name, weights in sigma.items():
+                weights[without] = problem.sigma[name][without]
+            return FittedModel(
+                fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without)
+            )
+
+        left = left_by(found.full)
+        fitted = FittedModel(found.full.simulation, left)
         with as_declared(config):
-            return after_the_fit(campaign, _as_model(found.full), when)
+            campaign = JudgedSweeps(problem.points, axis_signs(config), fitted, refit)
+            return left, after_the_fit(campaign, when)
 
     found = fit_with_nuisances(
         config, problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
     )
     progress("looking for other fits that are as good")
     found = with_equally_good_fits(found)
-    return found, judged(found, When.AFTER)
-
-
-def _as_model(fitted: Fitted) -> FittedModel:
-    """The fit as the rules of suspicion use it."""
-    return FittedModel(
-        points=fitted.problem.points,
-        simulation=fitted.simulation,
-        weights=fitted.problem.sigma,
-        numbers=fitted.numbers,
-        names=fitted.posterior.names,
-        covariance=fitted.posterior.covariance,
-        scale=fitted.scale,
-    )
+    return found, *judged(found, When.AFTER)
 
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Any) -> float | None:

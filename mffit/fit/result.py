@@ -23,6 +23,7 @@ from mffit.fit.relaxation import Relaxation
 from mffit.fit.stages import StageRecord
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
+from mffit.linearised import LinearisedFit
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
 from mffit.suspicion import Doubt, Outlier
@@ -49,6 +50,9 @@ class FitResult(Brief):
     seconds: float
     epsilon_gamma_model: float | None = None  #: of the fitted model; None on a flat track
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
+    left_by_formula: LinearisedFit | None = field(
+        default=None, repr=False
+    )  #: of the readings by the full fit
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ from mffit.points import Points
 from mffit.points.noise import stating
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
-from mffit.scatter import rms
+from mffit.scatter import rms, robust
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,7 @@ class LinearisedChannel:
 
     name: str
     rows: np.ndarray  #: (n,) of the points that are looked at
+    stride: int  #: readings for each of them
     unit: np.ndarray  #: (n,) their noise as stated, or usual [N], [Nm], [m]
     smooth: SmoothFunctions
     components: Components
@@ -35,6 +36,9 @@ class LinearisedChannel:
     """Of residuals, measured less model, over ``unit``; its common numbers are the weights of ``smooth``, then changes of the
     numbers of the fit."""
     variances: Variances  #: of these
+    alone: Mixed
+    """The same with the coefficients as they are; its common numbers are the weights, then errors of the rig as declared."""
+    declared: np.ndarray  #: logarithms of the variances of these errors
     missed: np.ndarray
     """(m,) weights of the functions beside the errors of the rig, the coefficients as they are [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
@@ -53,20 +57,66 @@ class LinearisedChannel:
     @property
     def size(self) -> float:
         """Root mean square of what the formula misses at the readings."""
-        return rms(self.unit * (self.model.common[:, : len(self.missed)] @ self.missed))
+        return rms(self.missed_at_readings)
 
-    def left_out(self, groups: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
-        """Each sweep, or each set of groups, as all others predict it; rows count those of ``rows``."""
-        which = [np.array([k]) for k in range(len(self.sweeps))] if groups is None else groups
-        found = self.model.left_out(self.variances, which)
+    @property
+    def missed_at_readings(self) -> np.ndarray:
+        """What the formula misses (n,), measured less model, as all sweeps show it."""
+        return np.asarray(self.unit * (self.model.common[:, : len(self.missed)] @ self.missed))
+
+    @property
+    def misfit(self) -> float:
+        """Root mean square of the residuals over their stated noise."""
+        return rms(self.model.residual)
+
+    def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
+        """Each sweep, or each set of ``rows`` counted as those of :attr:`rows`, as all other readings predict it."""
+        return self._left_out(self.model, self.variances, self.model.groups if rows is None else rows)
+
+    def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
+        """The same if runs did not differ but by noise; without what is ``missed``, all that usual readings miss is noise."""
+        functions = len(self.missed)
+        own = np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
+        noise = self.components.noise if missed else robust(self.model.residual)
+        given = self.variances._replace(own=own, noise=2.0 * float(np.log(max(noise, 1.0))))
+        if missed:
+            return self._left_out(self.model, given, rows)
+        plain = replace(self.model, common=self.model.common[:, functions:])
+        return self._left_out(plain, given._replace(common=given.common[functions:]), rows)
+
+    def by_others(self, rows: np.ndarray) -> LeftOutReadings:
+        """The rows of a run that others shall predict, if the fit and the components are those of the others.
+
+        Between the settings of a condition that no run sweeps, such as the load, few runs say how fast the miss changes: it may
+        change from one to the next.
+        """
+        lengths = tuple(
+            min(length, one.spacing) if one.is_held else length
+            for one, length in zip(self.smooth.inputs, self.components.lengths, strict=True)
+        )
+        given, _, _ = variances(replace(self.components, lengths=lengths).logarithms, self.smooth)
+        (found,) = self._left_out(self.model, with_further(given, np.zeros(self.turn.shape[1])), [rows])
+        return found
+
+    def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         return [
             LeftOutReadings(
                 one.rows,
                 one.error * self.unit[one.rows],
                 one.covariance * np.outer(self.unit[one.rows], self.unit[one.rows]),
             )
-            for one in found
+            for one in model.left_out(given, rows)
         ]
+
+    def gain(self, change: np.ndarray) -> float:
+        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
+        without = replace(self.alone, residual=self.alone.residual - change / self.unit)
+        found = _found(without, self.smooth, self.unit, self.declared)
+        before, after = (
+            model.evidence(with_further(variances(of.logarithms, self.smooth)[0], self.declared)).value
+            for model, of in ((self.alone, self.components), (without, found))
+        )
+        return self.stride * (after - before)
 
 
 class Uncertain(NamedTuple):
@@ -91,6 +141,7 @@ def linearised(
     sigma: Mapping[str, np.ndarray],
     numbers: Sequence[Uncertain],
     only: Iterable[str] | None = None,
+    without: np.ndarray | None = None,
 ) -> LinearisedFit:
     """The linear model of what a simulation leaves of the points.
 
@@ -101,6 +152,7 @@ def linearised(
     sigma : by channel, uncertainty (n,) that the fit used; inf where a reading has no weight
     numbers : of the fit, each with a prior
     only : channels to look at; all that were fitted if None
+    without : rows of the points that the simulation was not fitted to, and that do not say what is usual
     """
     readings = simulation.readings(points, sigma)
     felt = simulation.felt(points)
@@ -108,7 +160,9 @@ def linearised(
     for name in sigma if only is None else only:
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
-            sight = _Sight(points, felt, simulation, numbers)
+            sight = _Sight(
+                points, felt, simulation, numbers, np.zeros(0, int) if without is None else without
+            )
             found[name] = _channel(name, sight, readings[name], sigma[name], used)
     return LinearisedFit(tuple(numbers), found)
 
@@ -120,6 +174,7 @@ class _Sight(NamedTuple):
     felt: Points
     simulation: Simulation
     numbers: Sequence[Uncertain]
+    without: np.ndarray
 
 
 def _channel(
@@ -146,24 +201,27 @@ def _channel(
     of_rig = [i for i, number in enumerate(sight.numbers) if error_of(number.name) is not None]
     rig = slopes[:, of_rig] / unit[:, None]
     declared = np.log([sight.numbers[i].spread ** 2 for i in of_rig])
+    known = ~np.isin(rows, sight.without)
     alone = Mixed(
         residual=residual / unit - rig @ np.array([sight.numbers[i].expected for i in of_rig]),
         common=np.hstack([missed, rig]),
         own=own / unit[:, None],
-        groups=groups,
+        groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
-    misfit = max(rms(residual), 1e-12)
-    components = most_probable(alone, smooth, Components.guess(smooth, misfit), misfit, declared)
-    turn = _turn(sight.numbers, slopes / sigma[rows][:, None], stride)
+    components = _found(alone, smooth, unit, declared)
+    turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
     return LinearisedChannel(
         name=name,
         rows=rows,
+        stride=stride,
         unit=unit,
         smooth=smooth,
         components=components,
         model=Mixed(residual / unit, np.hstack([missed, slopes @ turn / unit[:, None]]), alone.own, groups),
         variances=with_further(of_functions, np.zeros(turn.shape[1])),
+        alone=alone,
+        declared=declared,
         missed=alone.posterior(with_further(of_functions, declared)).mean[: missed.shape[1]],
         turn=turn,
         sweeps=np.unique(part.sweep),
@@ -177,3 +235,10 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
     return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+
+
+def _found(model: Mixed, smooth: SmoothFunctions, unit: np.ndarray, further: np.ndarray) -> Components:
+    """The components of residuals over ``unit`` (n,); ``further`` are logarithms of the variances of further common numbers."""
+    rows = np.concatenate(list(model.groups))
+    misfit = max(rms((model.residual * unit)[rows]), 1e-12)
+    return most_probable(model, smooth, Components.guess(smooth, misfit), misfit, further)

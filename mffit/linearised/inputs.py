@@ -38,6 +38,11 @@ class Input:
         """Width of the tested range."""
         return self.upper - self.lower
 
+    @property
+    def is_held(self) -> bool:
+        """Whether every sweep holds the condition, at one of few settings."""
+        return self.spacing > 1.5 * self.width / constants.DIVISIONS_OF_A_SWEEP
+
 
 def inputs_of(points: Points) -> tuple[Input, ...]:
     """The conditions that vary in these points."""

@@ -14,6 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
+ROUNDING = 1e-13
+"""Largest error of a difference of sums of products, over the sums, by which it may lose its sign."""
+
 
 class Variances(NamedTuple):
     """Logarithms of the variances of the priors and of the noise."""
@@ -93,7 +96,8 @@ class Mixed:
         m = len(size)
         information = w * sums.common - w * w * np.hstack([*through]) @ np.hstack([*sums.across]).T
         pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
-        factor = cho_factor(np.eye(m) + size[:, None] * information * size, lower=True, check_finite=False)
+        whole = size[:, None] * information * size
+        factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
         root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
         scaled = cho_solve(factor, size * pull, check_finite=False)
         return MixedPosterior(
@@ -109,32 +113,48 @@ class Mixed:
         )
 
     def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
-        """Each set of groups, numbered as in ``groups``, as all others predict it."""
-        found, w = self.posterior(given), float(np.exp(-given.noise))
-        return [self._predicted(found, w, [self.groups[k] for k in one], one) for one in rows]
+        """Each set of rows as all other rows of the groups predict it; what is left of a group shows its own numbers.
 
-    def _predicted(
-        self, found: MixedPosterior, w: float, groups: Sequence[np.ndarray], which: np.ndarray
-    ) -> LeftOutReadings:
-        """By the inverse of the covariance of all readings: its block of the left-out ones, inverted, is their covariance."""
-        size = [len(g) for g in groups]
-        block = np.zeros(2 * (sum(size),))
+        By the inverse of the covariance of all readings: its block of the left-out ones, inverted, is their covariance.
+        """
+        found, w = self.posterior(given), float(np.exp(-given.noise))
+        return [self._predicted(found, w, np.sort(one)) for one in rows]
+
+    def _predicted(self, found: MixedPosterior, w: float, rows: np.ndarray) -> LeftOutReadings:
+        block = np.zeros(2 * (len(rows),))
         whitened, moved = [], []
-        begin = 0
-        for k, g in zip(which, groups, strict=True):
+        begin, order = 0, []
+        for k, g in enumerate(self.groups):
+            out = np.flatnonzero(np.isin(g, rows))
+            if not len(out):
+                continue
             z, x, r = self.own[g], self.common[g], self.residual[g]
             inverse = w * np.eye(len(g)) - w * w * z @ found.own[k] @ z.T
-            block[begin : begin + len(g), begin : begin + len(g)] = inverse
-            begin += len(g)
-            whitened.append(inverse @ x)
-            moved.append(inverse @ (r - x @ found.mean))
+            block[begin : begin + len(out), begin : begin + len(out)] = inverse[np.ix_(out, out)]
+            begin += len(out)
+            whitened.append(inverse[out] @ x)
+            moved.append(inverse[out] @ (r - x @ found.mean))
+            order.append(g[out])
         through = np.concatenate(whitened) @ found.root
-        information = block - through @ through.T
-        covariance = np.linalg.inv(information)
+        covariance = np.linalg.inv(block - through @ through.T)
         covariance = 0.5 * (covariance + covariance.T)
         return LeftOutReadings(
-            rows=np.concatenate(groups), error=covariance @ np.concatenate(moved), covariance=covariance
+            rows=np.concatenate(order), error=covariance @ np.concatenate(moved), covariance=covariance
         )
+
+
+def _factor(whole: np.ndarray, rounding: float) -> tuple[np.ndarray, bool]:
+    """Lower factor of 1 plus a matrix that has no negative eigenvalues but for rounding, which grows until it suffices."""
+    while True:
+        try:
+            factor: tuple[np.ndarray, bool] = cho_factor(
+                (1.0 + rounding) * np.eye(len(whole)) + whole, lower=True, check_finite=False
+            )
+            return factor
+        except np.linalg.LinAlgError:
+            if not np.all(np.isfinite(whole)):
+                raise
+            rounding *= 10.0
 
 
 class _Sums(NamedTuple):

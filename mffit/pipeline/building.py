@@ -80,16 +80,23 @@ def build(
     campaigns, others, warned = campaigns_of(config, projects, reading.points, build, progress)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress, campaigns)
+        search = fitted.search
+        assert search is not None
+        assert fitted.left_by_formula is not None
+        left_by_formula = fitted.left_by_formula
+        if fitted.full is not search:
+            progress("finding what the formula of the plain file misses")
+            left_by_formula = fitting.left_by(search)
         progress("judging what the fit leaves")
         assert fitted.files is not None
         files = fitted.files.by_use
         trust, left = judged(
-            config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
+            config,
+            reading.points,
+            measured,
+            fitted,
+            {use: files[use].tyre for use in names},
         )
-        progress("finding what the formula misses")
-        search = fitted.search
-        assert search is not None
-        left_by_formula = fitting.left_by(search)
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)

@@ -9,17 +9,16 @@ from dataclasses import replace
 import numpy as np
 
 import tir
-from mffit.config import Config, axis_signs
+from mffit.config import Config
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.noise import Origin
 from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre
-from mffit.diagnosis.remains import Remains, remains
+from mffit.diagnosis.remains import OddSweep, Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
-from mffit.scatter import rms
 from mffit.suspicion import (
     CamberReduction,
     Doubt,
@@ -30,6 +29,7 @@ from mffit.suspicion import (
     Trust,
     judge,
 )
+from mffit.suspicion.constants import CERTAIN_SIGMA
 from tir import Tyre
 
 
@@ -41,27 +41,37 @@ def judged(
     Where the temperature is modelled, the fit with it is judged: the plain file cannot reach the noise, and its misfit is
     stated. ``over_noise`` is that of the plain one in any case.
     """
-    assert fitted.full is not None
-    left = remains(fitted.full, axis_signs(config))
-    channels = [c.channel for c in left.structure.found]
-    model = fitted.full.simulation.readings(points, fitted.model)
+    full = fitted.full
+    assert full is not None
+    assert fitted.left_by_formula is not None
+    left = remains(full)
+    model = full.simulation.readings(points, fitted.model)
     finished = FinishedFit(
         points=points,
         model=model,
         used=_used(points, model, fitted.outliers),
         r2={name: found.r2 for name, found in with_points(model, points).items()},
         left_out=left.left_out,
-        structured=frozenset(channels),
+        linear=fitted.left_by_formula,
         structure=wording.structure(left.structure),
-        cause=_cause(fitted.doubts, left),
-        cause_is_certain=bool(fitted.doubts or left.sweep)
-        or (left.effect is not None and left.effect.significant),
         held=left.held,
         left=fitted.left,
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
         sideslip_zeros=measured.sideslip_zeros,
     )
+    effect = left.effect is not None and left.effect.significant
+    if effect and any(finished.of_the_formula(name) for name in finished.used):
+        effect = left.gain_over_the_formula(fitted.left_by_formula) > 0.5 * CERTAIN_SIGMA**2
+    against = sorted(fitted.doubts, key=lambda doubt: -doubt.ratio)
+    finished = replace(
+        finished,
+        against=tuple(against),
+        cause=_cause([one for one in against if one.looks or not effect], left),
+        cause_is_certain=bool(against or effect),
+    )
+    if against:
+        left = replace(left, sweep=OddSweep(against[0].sweep, against[0].looks))
     plain = replace(finished, model=fitted.model)
     return replace(judge(finished), over_noise=plain.over_noise), left
 
@@ -88,19 +98,16 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
     left_out = {}
     for name in after:
         difference = after[name] - points.channel(name)
-        own = [rms(difference[points.sweep == k]) for k in np.unique(points.sweep[np.isfinite(difference)])]
-        if own:
+        sweeps = len(np.unique(points.sweep[np.isfinite(difference)]))
+        if sweeps:
             predicted = diagnosis.validation.gap_after.rms(name)
-            fitted = diagnosis.gap_after.rms(name)
-            uneven = max(own) / max(float(np.median(own)), 1e-12)
-            left_out[name] = LeftOutSweeps(len(own), fitted, predicted, predicted, uneven)
+            left_out[name] = LeftOutSweeps(sweeps, diagnosis.gap_after.rms(name), predicted, predicted)
     finished = FinishedFit(
         points=points,
         model=after,
         used=_used(points, after, diagnosis.outliers),
         r2={name: found.r2 for name, found in with_points(after, points).items()},
         left_out=left_out,
-        structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
     )
     return judge(replace(finished, stranger=_stranger(diagnosis, finished)))
 
@@ -122,14 +129,11 @@ def _stranger(diagnosis: Diagnosis, finished: FinishedFit) -> str:
     return ""
 
 
-def _cause(doubts: Sequence[Doubt], left: Remains) -> str:
+def _cause(against: Sequence[Doubt], left: Remains) -> str:
     """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none can be seen."""
-    worst = max(doubts, key=lambda doubt: doubt.ratio, default=None)
-    if worst is not None and (worst.looks or left.sweep is None):
-        looks = f" and looks like {worst.looks}" if worst.looks else ""
-        return f"{worst.sweep} contradicts the other sweeps{looks}"
-    if left.sweep is not None:
-        return f"{left.sweep.name} contradicts the other sweeps and looks like {left.sweep.looks}"
+    if against:
+        looks = f" and looks like {against[0].looks}" if against[0].looks else ""
+        return f"{against[0].sweep} contradicts the other sweeps{looks}"
     return wording.best_effect(left.effect) if left.effect else ""
 
 

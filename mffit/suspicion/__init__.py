@@ -2,10 +2,10 @@
 
 from mffit.suspicion.applying import after_the_fit, before_the_fit
 from mffit.suspicion.declarations import under_axes
+from mffit.suspicion.groups import parts_of_sweeps
 from mffit.suspicion.misread import Misread, misread
-from mffit.suspicion.others import Doubt, JudgedSweeps
+from mffit.suspicion.others import Doubt, FittedModel, JudgedSweeps
 from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
-from mffit.suspicion.prediction import FittedModel, parts_of_sweeps
 from mffit.suspicion.rule import Subject, When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures

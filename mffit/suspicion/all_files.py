@@ -19,7 +19,7 @@ of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
 @of_all_files(
     id="copied-sweep",
-    limits=(constants.FEWEST_ROWS_OF_A_COPY,),
+    limits=(constants.FEWEST,),
     sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
 )
 def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
@@ -30,7 +30,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
     seen: dict[bytes, int] = {}
     for k in np.unique(points.sweep):
         rows = np.flatnonzero(points.sweep == k)
-        if len(rows) < constants.FEWEST_ROWS_OF_A_COPY or np.ptp(points.Fy[rows]) == 0.0:
+        if len(rows) < constants.FEWEST or np.ptp(points.Fy[rows]) == 0.0:
             continue
         own = readings[rows]
         key = own[np.lexsort(own.T)].tobytes()
@@ -77,7 +77,7 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
 
 @of_all_files(
     id="lone-lean",
-    limits=(constants.LEANING, constants.FEWEST_LEANING_SWEEPS),
+    limits=(UPRIGHT, constants.FEWEST),
     outcome=Outcome.WARNED,
     sentence="{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
     "intended, correct the sign of its gamma_deg",
@@ -87,14 +87,14 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
     sides: dict[int, float] = {}
     for k in np.unique(points.sweep).tolist():
         gamma = points.gamma[points.sweep == k]
-        found = np.unique(np.sign(gamma[np.abs(gamma) > constants.LEANING.rad]))
+        found = np.unique(np.sign(gamma[np.abs(gamma) > UPRIGHT.rad]))
         if len(found) > 1:
             return
         if len(found):
             sides[k] = float(found[0])
     usual = np.sign(sum(sides.values()))
     odd = [k for k, side in sides.items() if side != usual]
-    if len(sides) >= constants.FEWEST_LEANING_SWEEPS and len(odd) == 1:
+    if len(sides) >= constants.FEWEST and len(odd) == 1:
         degrees = abs(np.degrees(np.median(points.gamma[points.sweep == odd[0]])))
         yield Finding({"sweep": points.sweep_names[odd[0]], "degrees": degrees, "others": len(sides) - 1})
 
@@ -130,18 +130,18 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
     id="moments-about-another-point",
     limits=(
         constants.LEVER_OF_OTHER_MOMENT_POINT,
-        constants.UPRIGHT_FOR_MOMENT_POINT,
+        constants.SMALL_ANGLE,
         constants.FORCE_RANGE_OF_MOMENT_POINT,
-        constants.FEWEST_POINTS_OF_MOMENT_POINT,
+        constants.FEWEST,
     ),
     sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
     'the contact point it hardly changes; the data agree with moments = "{other}"',
 )
 def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     """Lever arm of Mx over Fy of the upright wheel, per unloaded radius."""
-    upright = np.abs(points.gamma) < constants.UPRIGHT_FOR_MOMENT_POINT.rad
+    upright = np.abs(points.gamma) < constants.SMALL_ANGLE.rad
     used = np.isfinite(points.Mx) & np.isfinite(points.Fy) & upright
-    if np.sum(used) < constants.FEWEST_POINTS_OF_MOMENT_POINT:
+    if np.sum(used) < constants.FEWEST:
         return
     if np.ptp(points.Fy[used]) < constants.FORCE_RANGE_OF_MOMENT_POINT * np.median(points.Fz[used]):
         return
@@ -191,7 +191,7 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="nominal-load-of-other-loads",
-    limits=(constants.NOMINAL_BEYOND_LOADS,),
+    limits=(constants.BEYOND_LOADS,),
     sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
     "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
 )
@@ -202,7 +202,7 @@ def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
         return
     of_levels = levels.level_values(loads, levels.LOAD)
     lowest, highest = float(of_levels.min()), float(of_levels.max())
-    if max(nominal / highest, lowest / nominal) > constants.NOMINAL_BEYOND_LOADS:
+    if max(nominal / highest, lowest / nominal) > constants.BEYOND_LOADS:
         key = "tyre.nominal_load"
         facts = {"nominal": nominal, "lowest": lowest, "highest": highest}
         yield Finding(facts, file=config.path, line=config.line_of(key), key=key)

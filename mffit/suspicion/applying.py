@@ -10,8 +10,8 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.declared import as_declared
 from mffit.points import Points
-from mffit.suspicion.others import Doubt, JudgedSweeps, evidence
-from mffit.suspicion.prediction import FittedModel
+from mffit.suspicion import constants
+from mffit.suspicion.others import Doubt, JudgedSweeps, views
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject, When
 from mffit.suspicion.rules import RULES
 
@@ -50,14 +50,14 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
                     yield rule, file, finding
 
 
-def after_the_fit(campaign: JudgedSweeps, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
+def after_the_fit(campaign: JudgedSweeps, when: When = When.AFTER) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict.
 
     ``When.FIRST``: the fit itself may still be wrong. A sweep that contradicts all others beyond plausibility is refused.
     """
-    seen = evidence(campaign, fitted)
+    seen = views(campaign, least=constants.GROSS_SHARE if when is When.FIRST else 0.0)
     doubts: list[Doubt] = []
-    for rule in _rules(when) if seen is not None else ():
+    for rule in _rules(when) if seen else ():
         if rule.subject is not Subject.SWEEP:
             continue
         for finding in rule.find(seen):

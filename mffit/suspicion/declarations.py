@@ -56,7 +56,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
             "no other axes, frame or path centre fits: check the signs of alpha_deg, gamma_deg, Fy_N, Mz_Nm"
         )
         key = "rig.axes"
-    shown = constants.CONTRADICTIONS_IN_SENTENCE
+    shown = constants.MOST_NAMED
     facts = {
         "declared": _declared(config),
         "wrong": " and ".join(wrong[:shown]) + (", among others," if len(wrong) > shown else ""),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig import Simulation
@@ -15,13 +16,12 @@ from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
-from mffit.suspicion.prediction import PredictedChannel
 
 DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
 """Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
 Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
-"""Change of prediction less measured in some channels, per unit of a number, by channel."""
+"""Change of measured less predicted in some channels, per unit of a number, by channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +37,12 @@ class Shift:
 
 
 def _constant(channel: str) -> Shape:
-    return lambda points, simulation, among: {channel: -np.ones(len(points))}
+    return lambda points, simulation, among: {channel: np.ones(len(points))}
 
 
 def _gain(channel: str) -> Shape:
     def shape(points: Points, simulation: Simulation, among: Collection[str]) -> Mapping[str, np.ndarray]:
-        return {channel: -simulation.readings(points, (channel,))[channel]} if channel in among else {}
+        return {channel: simulation.readings(points, (channel,))[channel]} if channel in among else {}
 
     return shape
 
@@ -52,7 +52,7 @@ def _set_point(name: str, relative: bool = False) -> Shape:
         value = getattr(points, name)
         moved = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
         here, there = simulation.readings(points, among), simulation.readings(moved, among)
-        return {channel: (here[channel] - there[channel]) / STEP for channel in here}
+        return {channel: (there[channel] - here[channel]) / STEP for channel in here}
 
     return shape
 
@@ -76,7 +76,7 @@ SHIFTS = (
 
 
 def explanation(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, signs: Mapping[str, float]
+    points: Points, errors: Mapping[str, LeftOutReadings], simulation: Simulation, signs: Mapping[str, float]
 ) -> str:
     """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
@@ -98,20 +98,20 @@ def explanation(
 
 
 def _undone(
-    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, changed: Points
+    points: Points, errors: Mapping[str, LeftOutReadings], simulation: Simulation, changed: Points
 ) -> dict[str, np.ndarray]:
     """The errors with a mistake undone, to first order."""
     here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
     moved = {}
     for n, e in errors.items():
         known = np.isfinite(points.channel(n))
-        change = there[n] - here[n] - changed.channel(n) + points.channel(n)
+        change = changed.channel(n) - points.channel(n) - (there[n] - here[n])
         moved[n] = e.error + change[known]
     return moved
 
 
 def _fitted(
-    points: Points, errors: Mapping[str, PredictedChannel], shapes: Mapping[str, np.ndarray]
+    points: Points, errors: Mapping[str, LeftOutReadings], shapes: Mapping[str, np.ndarray]
 ) -> tuple[float, float, float]:
     """Chi-square that a multiple of the shapes removes, the multiple and its standard uncertainty."""
     curvature = gradient = 0.0
@@ -126,5 +126,5 @@ def _fitted(
     return gradient**2 / curvature, gradient / curvature, curvature**-0.5
 
 
-def _chi2(errors: Mapping[str, PredictedChannel], moved: Mapping[str, np.ndarray]) -> float:
+def _chi2(errors: Mapping[str, LeftOutReadings], moved: Mapping[str, np.ndarray]) -> float:
     return sum(float(moved[n] @ np.linalg.solve(e.covariance, moved[n])) for n, e in errors.items())

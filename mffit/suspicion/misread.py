@@ -55,11 +55,11 @@ def misread(
     when=(When.DIAGNOSIS,),
     subject=Subject.SIMULATION,
     limits=(
-        constants.MISREAD_SHARE,
-        constants.MISREAD_OVER_USUAL,
+        constants.GROSS_SHARE,
+        constants.SURE_ERRORS,
         constants.MISREAD_OVER_WORST,
         EXPLAINED_SHARE,
-        constants.CORRECTED_OVER_USUAL,
+        constants.DISTRUSTED_MISFIT,
     ),
     outcome=Outcome.LEFT_OUT,
     sentence=(
@@ -77,8 +77,8 @@ def misread_sweep(
     that label show that the model is right there. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
-    numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]
-    if len(numbers) < constants.FEWEST_SWEEPS_FOR_MISREAD:
+    numbers = numbers[counts >= constants.FEWEST]
+    if len(numbers) < constants.FEWEST:
         return
     parts = [points.select(points.sweep == k) for k in numbers]
     size = {name: usual_size(p.channel(name) / p.Fz for p in parts) for name in channels}
@@ -91,15 +91,15 @@ def misread_sweep(
     found = []
     for part, before in zip(parts, off, strict=True):
         others = [o for o in off if o is not before]
-        gross = _gross(before, others, usual, constants.MISREAD_SHARE)
+        gross = _gross(before, others, usual, constants.GROSS_SHARE)
         if gross:
-            candidates, least = _candidates(part, points, signs), float(constants.MISREAD_SHARE)
+            candidates, least = _candidates(part, points, signs), float(constants.GROSS_SHARE)
         else:
             gross, least = _gross(before, others, usual, 0.0), 0.0
             rest = [other for other in parts if other is not part]
             candidates = _confirmed_labels(part, points, signs, rest) if gross else iter(())
         tolerated = {
-            n: max(constants.CORRECTED_OVER_USUAL * usual[n], least, 0.0 if n in gross else before[n])
+            n: max(constants.DISTRUSTED_MISFIT * usual[n], least, 0.0 if n in gross else before[n])
             for n in before
         }
         best = explaining(candidates, gross, away, tolerated)
@@ -130,7 +130,7 @@ def _gross(
         if error
         > max(
             least,
-            constants.MISREAD_OVER_USUAL * usual[name],
+            constants.SURE_ERRORS * usual[name],
             constants.MISREAD_OVER_WORST * worst[name],
         )
     }

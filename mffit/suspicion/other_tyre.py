@@ -21,21 +21,12 @@ class MeasuredRadius(NamedTuple):
     words: str
     column: str
     of: Callable[[Points], np.ndarray]  #: (n,) [m]; NaN where it was not measured
-    limits: tuple[float, float]  #: over the unloaded radius
 
 
 RADII = (
+    MeasuredRadius("loaded radius", "RL_m", lambda points: points.RL),
     MeasuredRadius(
-        "loaded radius",
-        "RL_m",
-        lambda points: points.RL,
-        (constants.SMALLEST_LOADED_RADIUS, constants.LARGEST_LOADED_RADIUS),
-    ),
-    MeasuredRadius(
-        "rolling radius, speed over rotation,",
-        "omega_radps",
-        lambda points: points.rolling_radius,
-        (constants.SMALLEST_ROLLING_RADIUS, constants.LARGEST_ROLLING_RADIUS),
+        "rolling radius, speed over rotation,", "omega_radps", lambda points: points.rolling_radius
     ),
 )
 
@@ -82,12 +73,7 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 @rule(
     id="other-radius",
     subject=Subject.ALL_FILES,
-    limits=(
-        constants.SMALLEST_LOADED_RADIUS,
-        constants.LARGEST_LOADED_RADIUS,
-        constants.SMALLEST_ROLLING_RADIUS,
-        constants.LARGEST_ROLLING_RADIUS,
-    ),
+    limits=(constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )
@@ -101,8 +87,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
         if not len(values):
             continue
         middle = float(np.median(values))
-        least, most = radius.limits
-        if not least <= middle / declared <= most:
+        if not constants.SMALLEST_RADIUS <= middle / declared <= constants.LARGEST_RADIUS:
             facts = {
                 "words": radius.words,
                 "radius": middle,
@@ -116,10 +101,8 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
 
 def _rolls_upright(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
-    upright = np.abs(points.gamma) <= constants.UPRIGHT_FOR_RADIUS.rad
-    return np.asarray(
-        points.free_rolling & upright & (np.abs(points.alpha) <= constants.STRAIGHT_FOR_RADIUS.rad)
-    )
+    upright = np.abs(points.gamma) <= constants.SMALL_ANGLE.rad
+    return np.asarray(points.free_rolling & upright & (np.abs(points.alpha) <= constants.SMALL_ANGLE.rad))
 
 
 class _Cell(NamedTuple):
@@ -144,7 +127,7 @@ def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, 
 
 def _forces(points: Points, one: int, other: int) -> str:
     """Side force of the second file over that of the first at equal conditions, for a sentence; "" if none are equal."""
-    enough = np.abs(points.alpha) >= constants.SIDESLIP_THAT_SHOWS_FORCE.rad
+    enough = np.abs(points.alpha) >= constants.SMALL_ANGLE.rad
     used = points.select(points.free_rolling & enough)
     kinds = {
         "alpha": levels.SIDESLIP, "gamma": levels.CAMBER, "Fz": levels.LOAD, "p": levels.PRESSURE,
@@ -162,7 +145,7 @@ def _forces(points: Points, one: int, other: int) -> str:
     ratios = [
         float(np.mean(force[other][key]) / np.mean(force[one][key]))
         for key in force[one].keys() & force[other].keys()
-        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST_POINTS_OF_FRICTION
+        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST
     ]
     if not ratios:
         return ""

@@ -1,43 +1,49 @@
-"""Every sweep against all others: sweeps that are off, and the fits without them."""
+"""Every sweep against all others: sweeps that contradict them, by the linear model of the fit without them.
+
+A sweep that is far off bends the fit, widens what counts as usual, and hides in both. So whoever is suspected by the fit to all
+sweeps is judged by one to the others: its numbers, what it misses, and what its runs differ by say what to expect of the sweep.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, ndtri
+from scipy.special import chdtrc, ndtr
 
-from mffit.constants import EXPLAINED_SHARE
+from mffit.constants import EXPLAINED_SHARE, PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
+from mffit.linearised import LinearisedFit
+from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import rms, robust, usual_size
+from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.explanation import explanation
+from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
-from mffit.suspicion.prediction import (
-    FittedModel,
-    Group,
-    Leverage,
-    PredictedChannel,
-    groups,
-    leverage,
-    predictions,
-)
 from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
+
+
+class FittedModel(NamedTuple):
+    """A fit and what it leaves of all points."""
+
+    simulation: Simulation
+    left: LinearisedFit
 
 
 class JudgedSweeps(NamedTuple):
     """What the judgement of all sweeps needs."""
 
     points: Points  #: raw points (n,)
-    stated: Mapping[str, np.ndarray]
-    """By channel of the fit, uncertainty (n,) before any weighting; inf where not measured."""
     signs: Mapping[str, float]  #: +1 or -1 per channel: from ISO-W to the rig's axes
-    refit: Callable[[np.ndarray], FittedModel]  #: the fit to some rows (m,) only
+    fitted: FittedModel  #: to all points
+    refit: Callable[[np.ndarray], FittedModel]
+    """The fit to all points but some rows (m,), and what it leaves of all points, found without these."""
 
 
 class Error(NamedTuple):
@@ -45,30 +51,10 @@ class Error(NamedTuple):
 
     channel: str
     rms: float  #: [N] or [Nm], without the worst points
-    ratio: float  #: in units of a sound sweep's error
+    ratio: float  #: over what noise, runs and the prediction leave open
     share: float  #: of the channel's usual size at this load, less the prediction's uncertainty
     chance: float  #: probability that a sound sweep is as far off
     vague: float  #: standard error of the prediction, noise included, as a share of the usual size
-
-
-class View(NamedTuple):
-    """One sweep as seen from the fit to all others."""
-
-    group: Group
-    error: Error  #: of its worst channel
-    mistake: Mistake | None  #: that explains it
-    left: float  #: share of the usual size that is left when the mistake is undone
-
-    @property
-    def facts(self) -> dict[str, Any]:
-        """Facts for the sentences."""
-        return {
-            "channel": self.error.channel,
-            "unit": CHANNELS[self.error.channel].unit,
-            "rms": self.error.rms,
-            "percent": 100 * self.error.share,
-            "condition": "" if self.group.whole else f" ({self.group.name})",
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +64,12 @@ class Doubt:
     sweep: str  #: its name, with the conditions where only these are meant
     file: str
     index: np.ndarray  #: (m,) rows of the points
-    channel: str
+    channel: str  #: the worst one
     rms: float  #: error of the prediction [N] or [Nm]
-    ratio: float  #: in units of a sound sweep's error
+    ratio: float  #: over what noise, runs and the prediction leave open
     share: float  #: of the channel's usual size at this load
     looks: str  #: what would explain it; empty if no known cause does
+    channels: tuple[str, ...] = ()  #: in which chance does not explain it
 
     @property
     def sentence(self) -> str:
@@ -95,58 +82,74 @@ class Doubt:
         return doubtful_sweep.said(asdict(self) | facts)
 
 
-class Evidence(NamedTuple):
-    """All sweeps that are off, as seen by the fits without them."""
+class View(NamedTuple):
+    """One sweep as seen from the fit to all others."""
 
-    campaign: JudgedSweeps
-    simulation: Simulation  #: fitted to all sweeps
-    leverage: Leverage
-    usual: float  #: largest ratio that the scatter among the sweeps explains
-    views: tuple[View, ...]
+    group: Group
+    errors: tuple[Error, ...]  #: the worst first
+    doubt: Doubt | None  #: where it contradicts the others
+    mistake: Mistake | None  #: that explains it
+    left: float  #: share of the usual size that is left when the mistake is undone
+
+    @property
+    def gross(self) -> Error:
+        """The error that is largest beside the usual size."""
+        return max(self.errors, key=lambda e: e.share)
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Facts for the sentences."""
+        return {
+            "channel": self.gross.channel,
+            "unit": CHANNELS[self.gross.channel].unit,
+            "rms": self.gross.rms,
+            "percent": 100 * self.gross.share,
+            "condition": "" if self.group.whole else f" ({self.group.name})",
+        }
 
 
-def evidence(campaign: JudgedSweeps, fitted: FittedModel) -> Evidence | None:
-    """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
+def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
+    """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
 
-    The search ends at the first sweep that a known mistake explains.
+    Only errors above the share ``least`` of the usual size are suspected. The search ends at the first sweep that a known
+    mistake explains.
     """
     points = campaign.points
     found = groups(points)
-    if len(found) < constants.FEWEST_SWEEPS_TO_COMPARE:
-        return None
-    size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in campaign.stated}
-    noise = np.concatenate([u * fitted.scale[name] for name, u in campaign.stated.items()])
-    fit = leverage(fitted, noise)
-    in_order = sorted(found, key=lambda g: int(g.index[0]))  # so that no point is simulated twice
-    own = {id(g): _errors(predictions(fit, g), points.Fz[g.index], size) for g in in_order}
-    errors = [(e, g) for g in found for e in own[id(g)]]
-    level = constants.FALSE_ALARM_OF_SWEEPS / len(errors)
-    usual = _usual_ratio([e for e, _ in errors])
-    views = []
-    for group in _suspects(errors, level, usual):
-        view = _view(campaign, group, size, level)
+    if len(found) < constants.FEWEST:
+        return ()
+    size = {
+        c: usual_size((points.channel(c) / points.Fz)[g.index] for g in found)
+        for c in campaign.fitted.left.channels
+    }
+    out: list[View] = []
+    for group in _suspects(campaign, found, size, least):
+        view = _view(campaign, group, size)
         if view is not None:
-            views.append(view)
-        if view is not None and view.mistake is not None:
-            break
-    return Evidence(
-        campaign=campaign, simulation=fitted.simulation, leverage=fit, usual=usual, views=tuple(views)
-    )
+            out.append(view)
+            if view.mistake is not None:
+                break
+    return tuple(out)
 
 
 @rule(
     id="known-mistake",
     subject=Subject.SWEEP,
     when=(When.FIRST, When.AFTER),
-    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.GROSS_SHARE, EXPLAINED_SHARE, constants.MATCHED_SHARE),
+    limits=(
+        PREDICTION_FALSE_ALARM,
+        constants.GROSS_SHARE,
+        EXPLAINED_SHARE,
+        constants.IMPLAUSIBLE_SHARE,
+    ),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}; it looks like {looks}, which leaves {left:.2g} %: {remedy}",
 )
-def known_mistake(seen: Evidence) -> Iterator[Finding]:
+def known_mistake(seen: Sequence[View]) -> Iterator[Finding]:
     """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found."""
-    explained = [v for v in seen.views if v.mistake is not None]
+    explained = [v for v in seen if v.mistake is not None]
     if explained:
-        v = max(explained, key=lambda v: v.error.share)
+        v = max(explained, key=lambda v: v.gross.share)
         assert v.mistake is not None
         facts = {**v.facts, "looks": v.mistake.looks, "left": 100 * v.left, "remedy": v.mistake.remedy}
         yield Finding(facts, file=v.group.file, column=v.mistake.column)
@@ -156,20 +159,20 @@ def known_mistake(seen: Evidence) -> Iterator[Finding]:
     id="implausible-sweep",
     subject=Subject.SWEEP,
     when=(When.AFTER,),
-    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
+    limits=(PREDICTION_FALSE_ALARM, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
     "file{perhaps}, or leave it out",
 )
-def implausible_sweep(seen: Evidence) -> Iterator[Finding]:
+def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
     """Error of the prediction from all other sweeps, and uncertainty of the prediction; the worst sweep is found."""
     refused = [
         v
-        for v in seen.views
-        if v.error.share > constants.IMPLAUSIBLE_SHARE and v.error.vague < constants.GROSS_SHARE
+        for v in seen
+        if v.gross.share > constants.IMPLAUSIBLE_SHARE and v.gross.vague < constants.GROSS_SHARE
     ]
     if refused:
-        v = max(refused, key=lambda v: v.error.share)
+        v = max(refused, key=lambda v: v.gross.share)
         others = dict.fromkeys(other.group.file for other in refused if other.group.file != v.group.file)
         perhaps = f", or {' or '.join(others)}, which contradicts it" if others else ""
         yield Finding({**v.facts, "perhaps": perhaps}, file=v.group.file)
@@ -179,143 +182,162 @@ def implausible_sweep(seen: Evidence) -> Iterator[Finding]:
     id="doubtful-sweep",
     subject=Subject.SWEEP,
     when=(When.AFTER,),
-    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.DOUBTFUL_SHARE, constants.EXPLAINED_BY_ONE_NUMBER),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.EXPLAINED_BY_ONE_NUMBER),
     outcome=Outcome.WARNED,
     sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
     "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
     "or repeat it",
 )
-def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
-    """Error of the prediction from all other sweeps, beside the errors of the other sweeps; conditions only of a sound sweep."""
-    doubtful = [
-        v for v in seen.views if v.error.ratio > seen.usual and v.error.vague < constants.DOUBTFUL_SHARE
-    ]
-    seen_rows: list[set[int]] = []
-    for v in sorted(doubtful, key=lambda v: (not v.group.whole, -v.error.ratio)):
-        if any(set(v.group.index) <= rows for rows in seen_rows):
-            continue
-        seen_rows.append(set(v.group.index))
-        part, errors = _judged(seen, v.group), predictions(seen.leverage, v.group)
-        yield Doubt(
-            sweep=v.group.name,
-            file=v.group.file,
-            index=v.group.index,
-            channel=v.error.channel,
-            rms=v.error.rms,
-            ratio=v.error.ratio,
-            share=v.error.share,
-            looks=explanation(part, errors, seen.simulation, seen.campaign.signs),
-        )
+def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
+    """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open.
+
+    Conditions of a sweep are named only if it is sound as a whole.
+    """
+    named: list[set[int]] = []
+    for v in sorted(seen, key=lambda v: (not v.group.whole, -v.errors[0].ratio)):
+        if v.doubt is not None and not any(set(v.group.index) <= rows for rows in named):
+            named.append(set(v.group.index))
+            yield v.doubt
 
 
-def _judged(seen: Evidence, group: Group) -> Points:
-    """The points that a group shows, without readings of no weight, such as driven points where Fx is not fitted."""
-    part, noise = seen.campaign.points.select(group.shown), seen.leverage.noise
-    n = len(seen.campaign.points)
-    readings = {
-        name: np.where(np.isfinite(noise[k * n + group.shown]), part.channel(name), np.nan)
-        for k, name in enumerate(seen.leverage.channels)
-    }
-    return part.replace(**readings)
+def _suspects(
+    campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float], least: float
+) -> list[Group]:
+    """Groups that the others do not predict, if runs did not differ, and that are odder than is usual; the worst first.
+
+    With what the formula misses, which hides what only one sweep shows, and without it, as the numbers of the fit predict them.
+    """
+    worst: dict[int, float] = {}
+    points, channels = campaign.points, campaign.fitted.left.channels
+    level = PREDICTION_FALSE_ALARM / (len(found) * len(channels))
+    for (name, channel), missed in itertools.product(channels.items(), (True, False)):
+        rows = [np.flatnonzero(np.isin(channel.rows, g.index)) for g in found]
+        seen = [k for k, own in enumerate(rows) if len(own)]
+        predicted = channel.without_runs([rows[k] for k in seen], missed=missed)
+        errors = {
+            k: _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
+            for k, one in zip(seen, predicted, strict=True)
+        }
+        usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
+        for k, e in errors.items():
+            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
+                worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
+    in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
+    return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 
 
-def _suspects(errors: list[tuple[Error, Group]], level: float, usual: float) -> list[Group]:
-    """Groups with a significant and large error, the worst first."""
-    odd = [
-        (e, g)
-        for e, g in errors
-        if e.chance < level
-        and (e.share > constants.GROSS_SHARE or (e.share > constants.DOUBTFUL_SHARE and e.ratio > usual))
-    ]
-    worst_first = [g for _, g in sorted(odd, key=lambda pair: (not pair[1].whole, -pair[0].ratio))]
-    return list({id(g): g for g in worst_first}.values())[: constants.MOST_SUSPECTS]
-
-
-def _errors(
-    channels: Mapping[str, PredictedChannel], Fz: np.ndarray, size: Mapping[str, float]
-) -> list[Error]:
-    """Errors of a prediction, channel by channel, at loads (m,)."""
-    load = float(np.mean(Fz))
-    return [_error(name, one, size[name] * load) for name, one in channels.items()]
-
-
-def _error(name: str, prediction: PredictedChannel, size: float) -> Error:
+def _error(name: str, found: LeftOutReadings, size: float) -> Error:
     """Size and significance of a prediction's error, without the worst points."""
-    error, covariance = prediction.error, prediction.covariance
-    own = np.sqrt(np.diag(covariance))
-    number = max(1, int((1.0 - constants.SHARE_OF_WORST_POINTS) * len(error)))
-    kept = np.argsort(np.abs(error) / own)[:number]
-    e, V = error[kept], covariance[np.ix_(kept, kept)]
+    own = np.sqrt(np.diag(found.covariance))
+    number = max(1, int((1.0 - constants.SHARE_OF_WORST_POINTS) * len(own)))
+    kept = np.argsort(np.abs(found.error) / own)[:number]
+    e, V = found.error[kept], found.covariance[np.ix_(kept, kept)]
     chi2 = float(e @ np.linalg.solve(V, e))
     uncertain = rms(own[kept])
     return Error(
         channel=name,
         rms=rms(e),
-        ratio=float(np.sqrt(chi2 / len(kept))),
+        ratio=float(np.sqrt(chi2 / number)),
         share=max(rms(e) - constants.SURE_ERRORS * uncertain, 0.0) / size,
-        chance=float(chdtrc(len(kept), chi2)),
+        chance=float(chdtrc(number, chi2)),
         vague=uncertain / size,
     )
 
 
-def _usual_ratio(errors: list[Error]) -> float:
-    """The largest ratio that the scatter among the sweeps explains: a model misses each of them differently."""
-    ratio = np.log([max(e.ratio, 1e-9) for e in errors])
-    middle = float(np.median(ratio))
-    return float(
-        np.exp(middle - ndtri(constants.FALSE_ALARM_OF_SWEEPS / len(errors)) * robust(ratio, middle))
-    )
-
-
-def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float], level: float) -> View | None:
-    """The group against a fit without it; None if it is not off, or if the other points are too few for a fit."""
-    rest = np.setdiff1d(np.arange(len(campaign.points)), group.index)
+def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> View | None:
+    """The group against a fit without it; None if the other points are too few for a fit."""
     try:
-        fitted = campaign.refit(rest)
+        fitted = campaign.refit(group.index)
     except InputError:
         return None
-    part = campaign.points.select(group.shown)
-    stated = {name: u[group.shown] for name, u in campaign.stated.items()}
-
-    def away(of: Points) -> dict[str, Away]:
-        return {
-            e.channel: Away(error=e.rms, share=e.share, matched=matched)
-            for e, matched in _predicted(of, fitted, stated, size)
-        }
-
-    off = [
-        e
-        for e, _ in _predicted(part, fitted, stated, size)
-        if e.chance < level and e.share > constants.DOUBTFUL_SHARE
-    ]
-    if not off:
+    load = float(np.mean(campaign.points.Fz[group.index]))
+    found = {}
+    for name, channel in fitted.left.channels.items():
+        rows = np.flatnonzero(np.isin(channel.rows, group.index))
+        if len(rows):
+            one = channel.by_others(rows)
+            found[name] = one._replace(rows=channel.rows[one.rows])
+    errors = [_error(name, one, size[name] * load) for name, one in found.items()]
+    if not errors:
         return None
-    gross = {e.channel: e.rms for e in off if e.share > constants.GROSS_SHARE}
+    part = _part(campaign.points, group, found)
+    gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
     undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
-    best = explaining(undone, gross, away, dict.fromkeys(stated, constants.GROSS_SHARE))
+    away = _Away(part, fitted.simulation, found, {name: size[name] * load for name in found})
+    best = explaining(undone, gross, away.after, dict.fromkeys(found, constants.GROSS_SHARE))
+    errors.sort(key=lambda e: -e.ratio)
     return View(
         group=group,
-        error=max(off, key=lambda e: e.share),
+        errors=tuple(errors),
+        doubt=_doubt(campaign, group, fitted.simulation, part, found, errors),
         mistake=None if best is None else best.mistake,
         left=1.0 if best is None else best.left,
     )
 
 
-def _predicted(
-    part: Points, fitted: FittedModel, stated: Mapping[str, np.ndarray], size: Mapping[str, float]
-) -> Iterator[tuple[Error, bool]]:
-    """Errors of a fit at points (m,) that were not in it, by channel, and whether they are small beside the readings."""
-    out, slope = fitted.simulation.sensitivities(part, list(fitted.names), stated)
-    load = float(np.mean(part.Fz))
-    for name, u in stated.items():
-        scale = fitted.scale[name]
-        known = np.isfinite(u) & np.isfinite(part.channel(name))
-        if not np.any(known):
-            continue
-        measured, predicted, J = part.channel(name)[known], out[name][known], slope[name][known]
-        prediction = PredictedChannel(
-            error=predicted - measured,
-            covariance=J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2),
-        )
-        error = _error(name, prediction, size[name] * load)
-        yield error, error.rms <= constants.MATCHED_SHARE * min(rms(measured), rms(predicted))
+def _part(points: Points, group: Group, found: Mapping[str, LeftOutReadings]) -> Points:
+    """The points of a group with those readings only that are judged."""
+    part = points.select(group.index)
+    readings = {
+        name: np.where(np.isin(group.index, found[name].rows), part.channel(name), np.nan)
+        if name in found
+        else np.full(len(part), np.nan)
+        for name in CHANNELS
+    }
+    return part.replace(**readings)
+
+
+class _Away(NamedTuple):
+    """How far a sweep is from the prediction of all others when a mistake in it is undone."""
+
+    part: Points
+    simulation: Simulation
+    found: Mapping[str, LeftOutReadings]
+    size: Mapping[str, float]
+
+    def after(self, changed: Points) -> dict[str, Away]:
+        """By channel, for the points without the mistake."""
+        here, there = (self.simulation.readings(p, tuple(self.found)) for p in (self.part, changed))
+        out = {}
+        for name, one in self.found.items():
+            predicted = np.full(len(self.part), np.nan)
+            known = np.isfinite(self.part.channel(name))
+            predicted[known] = self.part.channel(name)[known] - one.error
+            predicted += there[name] - here[name]
+            measured = changed.channel(name)
+            known &= np.isfinite(measured)
+            if np.any(known):
+                moved = one._replace(error=(measured - predicted)[known])
+                if len(moved.error) != len(one.error):
+                    continue
+                e = _error(name, moved, self.size[name])
+                least = min(rms(measured[known]), rms(predicted[known]))
+                out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
+        return out
+
+
+def _doubt(
+    campaign: JudgedSweeps,
+    group: Group,
+    simulation: Simulation,
+    part: Points,
+    found: Mapping[str, LeftOutReadings],
+    errors: Sequence[Error],
+) -> Doubt | None:
+    """The doubt about a group, if chance does not explain its errors."""
+    certain = float(ndtr(-constants.CERTAIN_SIGMA))
+    off = tuple(e.channel for e in errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain)
+    if not off:
+        return None
+    worst = errors[0]
+    return Doubt(
+        sweep=group.name,
+        file=group.file,
+        index=group.index,
+        channel=worst.channel,
+        rms=worst.rms,
+        ratio=worst.ratio,
+        share=worst.share,
+        looks=explanation(part, found, simulation, campaign.signs),
+        channels=off,
+    )

@@ -75,7 +75,7 @@ def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
 
 def outliers_sentence(found: Sequence[Outlier]) -> str:
     """The warning about all outliers, the worst by name."""
-    worst = sorted(found, key=lambda o: -o.ratio)[: constants.OUTLIERS_IN_SENTENCE]
+    worst = sorted(found, key=lambda o: -o.ratio)[: constants.MOST_NAMED]
     named = "; ".join(
         f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
         for o in worst

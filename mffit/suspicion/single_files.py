@@ -40,12 +40,12 @@ def angle_in_radians(part: Points, config: Config) -> Iterator[Finding]:
 
 @of_file(
     id="dead-channel",
-    limits=(constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL,),
+    limits=(constants.FEWEST,),
     sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
 )
 def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
     """Mz and Fy that are the same in every row although the angles change."""
-    if len(part) < constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
+    if len(part) < constants.FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
         return
     for column, reading, remedy in (
         ("Mz_Nm", part.Mz, "leave the column out of this file"),
@@ -89,8 +89,8 @@ def force_and_moment_exchanged(part: Points, config: Config) -> Iterator[Finding
 def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarray) -> bool:
     """Whether |Fy| and |Mz| per load (n,) of a sweep of camber are a moment and a side force."""
     shows = np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
-    straight = np.max(np.abs(part.alpha)) <= constants.SIDESLIP_THAT_SHOWS_FORCE.rad
-    if not straight or np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
+    straight = np.max(np.abs(part.alpha)) <= constants.SMALL_ANGLE.rad
+    if not straight or np.sum(shows) < constants.FEWEST:
         return False
     thrust = constants.LARGEST_CAMBER_THRUST * np.tan(np.max(np.abs(part.gamma)))
     in_kilonewtons = factor("kN", "N") * np.max(force) < constants.LARGEST_FORCE_AT_ZERO + thrust
@@ -101,20 +101,20 @@ def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarr
 @of_file(
     id="force-in-kilonewtons",
     limits=(
-        constants.SIDESLIP_THAT_SHOWS_FORCE,
+        constants.SMALL_ANGLE,
         constants.CAMBER_THAT_SHOWS_FORCE,
         constants.SMALLEST_FRICTION,
-        constants.FEWEST_POINTS_OF_FRICTION,
+        constants.FEWEST,
     ),
     sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
     'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
 )
 def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
     """Largest Fy per load at angles that show a force."""
-    shows = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
+    shows = (np.abs(part.alpha) > constants.SMALL_ANGLE.rad) | (
         np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
     )
-    if np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
+    if np.sum(shows) < constants.FEWEST:
         return
     if np.max(np.abs(part.Fy[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
         facts = {"largest": np.max(np.abs(part.Fy[shows])), "load": np.median(part.Fz)}
@@ -123,28 +123,28 @@ def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
 
 @of_file(
     id="lone-load",
-    limits=(constants.LONE_LOAD, constants.FEWEST_ROWS_OF_A_LONE_LOAD),
+    limits=(constants.BEYOND_LOADS, constants.FEWEST),
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
 )
 def lone_load(part: Points, config: Config) -> Iterator[Finding]:
     """Largest load over all others of the file; no programme has a single point there."""
-    if len(part) < constants.FEWEST_ROWS_OF_A_LONE_LOAD:
+    if len(part) < constants.FEWEST:
         return
     row, others = int(np.argmax(part.Fz)), np.sort(part.Fz)[:-1]
-    if part.Fz[row] > constants.LONE_LOAD * others[-1]:
+    if part.Fz[row] > constants.BEYOND_LOADS * others[-1]:
         facts = {"load": part.Fz[row], "others": others[-1]}
         yield Finding(facts, line=_line(part, row), column="Fz_N")
 
 
 @of_file(
     id="wild-force",
-    limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
+    limits=(constants.LARGEST_FRICTION, constants.FEWEST),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
 def wild_force(part: Points, config: Config) -> Iterator[Finding]:
     """Fy per load of one or two rows."""
     friction = np.abs(part.Fy) / part.Fz
-    if 0 < np.sum(friction > constants.LARGEST_FRICTION) < constants.FEWEST_POINTS_OF_FRICTION:
+    if 0 < np.sum(friction > constants.LARGEST_FRICTION) < constants.FEWEST:
         row = int(np.argmax(friction))
         facts = {"force": part.Fy[row], "friction": friction[row]}
         yield Finding(facts, line=_line(part, row), column="Fy_N")
@@ -152,14 +152,14 @@ def wild_force(part: Points, config: Config) -> Iterator[Finding]:
 
 @of_file(
     id="load-in-another-unit",
-    limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
+    limits=(constants.LARGEST_FRICTION, constants.FEWEST),
     sentence="side forces reach {friction:.0f} times the load ({load:.0f} N), which no tyre does: the load looks like kgf, or "
     'the force like another unit; map it with its unit, Fz_N = {{ column = "Fz_N", unit = "kgf" }} in [sweep.columns]',
 )
 def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
     """Fy per load of more rows; the loads of the file are too small."""
     friction = np.abs(part.Fy) / part.Fz
-    if np.sum(friction > constants.LARGEST_FRICTION) >= constants.FEWEST_POINTS_OF_FRICTION:
+    if np.sum(friction > constants.LARGEST_FRICTION) >= constants.FEWEST:
         row = int(np.argmax(friction))
         yield Finding({"friction": friction[row], "load": part.Fz[row]}, column="Fz_N")
 

@@ -71,9 +71,9 @@ def signatures(points: Points) -> Signatures:
     points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
     forward = points.direction > 0
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
-    upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= constants.UPRIGHT_FOR_SLOPES.rad)
-    straight = (sideslip <= constants.STRAIGHT_FOR_SLOPES.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
-    gentle = sideslip <= constants.SIDESLIP_OF_MOMENT_SLOPE.rad
+    upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= constants.SMALL_ANGLE.rad)
+    straight = (sideslip <= constants.SMALL_ANGLE.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
+    gentle = sideslip <= constants.SIDESLIP_OF_SLOPES.rad
     return Signatures(
         cornering=slope(points, points.Fy, "alpha", forward & upright),
         camber=slope(points, points.Fy, "gamma", forward & straight),
@@ -91,7 +91,7 @@ def overturning_slope(points: Points) -> SlopeWithError:
     """
     points = points.select((points.mount > 0) & (points.direction > 0))
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
-    straight = (sideslip <= constants.STRAIGHT_FOR_SLOPES.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
+    straight = (sideslip <= constants.SMALL_ANGLE.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
     return slope(points, points.Mx, "gamma", straight)
 
 
@@ -100,7 +100,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
     used = used & np.isfinite(response)
     other = points.gamma if angle == "alpha" else points.alpha
     x, y = getattr(points, angle)[used], (response / points.Fz)[used]
-    if len(x) < constants.FEWEST_POINTS_OF_SLOPE or np.ptp(x) < constants.SMALLEST_RANGE_OF_SLOPE.rad:
+    if len(x) < constants.FEWEST:
         return UNKNOWN
     columns = [np.ones_like(x), x]
     if np.ptp(other[used]) > 0.0:
@@ -132,8 +132,8 @@ def _outward(points: Points) -> float:
 
 def _thrust(points: Points) -> float:
     """Odd camber thrust at large camber; NaN without both signs of camber."""
-    straight = np.abs(points.alpha) <= constants.STRAIGHT_FOR_SLOPES.rad
-    leaning = np.abs(points.gamma) > constants.CAMBER_OF_THRUST.rad
+    straight = np.abs(points.alpha) <= constants.SMALL_ANGLE.rad
+    leaning = np.abs(points.gamma) > constants.CAMBER_OF_SLOPES.rad
     used = straight & leaning & (points.direction > 0)
     Fy, Fz, gamma = points.Fy[used], points.Fz[used], points.gamma[used]
     if not (np.any(gamma > 0) and np.any(gamma < 0)):

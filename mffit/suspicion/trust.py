@@ -3,8 +3,8 @@
 Some rules look at the direct measurement only, and hold without a fit, too; all others judge a fitted model.
 
 Where a noise is stated, the misfit is compared with it. Real tyres do not follow the formula to within the scatter of a sensor:
-if no noise is stated, or many sweeps miss it alike and predict each other as well as they are fitted, then the prediction of
-left-out sweeps and the share of the variance that is explained decide.
+what it misses smoothly and alike in all sweeps is a limit, which is said with its size, and no fault of the readings. Sweeps that
+contradict the others, scatter beyond the noise, and errors of the rig that take the place of such a miss are reasons.
 """
 
 from __future__ import annotations
@@ -19,14 +19,16 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.constants import ODD_SWEEP_RATIO
+from mffit.linearised import LinearisedFit
 from mffit.measured import SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
-from mffit.quantities import CHANNELS, column
+from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig import Readings
 from mffit.scatter import finite_median, rms
 from mffit.suspicion import constants
+from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
 from mffit.suspicion.unpublished import CamberReduction, causes
 
@@ -39,7 +41,6 @@ class LeftOutSweeps:
     fitted: float  #: rms of the residuals of the fit
     predicted: float  #: rms of the predictions of left-out sweeps
     typical: float  #: median over the sweeps of the rms of their predictions
-    uneven: float  #: rms of the worst sweep's residuals over that of the median sweep
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +70,12 @@ class FinishedFit(JudgedMeasurement):
     used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
     r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
     left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
-    structured: frozenset[str] = frozenset()  #: channels whose residuals are not random
-    structure: str = ""  #: where, in words
+    linear: LinearisedFit | None = None
+    """What the fit leaves; None if all that the model misses counts as noise."""
+    against: tuple[Doubt, ...] = ()  #: sweeps that contradict the others, the worst first
+    structure: str = ""  #: where residuals are not random, in words
     cause: str = ""  #: the effect that would explain most of the residuals, in words
-    cause_is_certain: bool = False  #: whether chance does not explain it
+    cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
     held: tuple[HeldNumber, ...] = ()
     left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
@@ -103,9 +106,16 @@ class FinishedFit(JudgedMeasurement):
         """By channel, misfit over stated noise; NaN where none is stated."""
         return {name: self.misfit(name).ratio for name in self.used}
 
+    def rough(self, channel: str) -> OverNoise:
+        """The part of the misfit that is neither smooth and alike in all sweeps nor a difference of runs."""
+        seen = self.misfit(channel)
+        if self.linear is None or channel not in self.linear.channels:
+            return seen
+        return seen._replace(ratio=min(seen.ratio, self.linear.channels[channel].components.noise))
+
     def doubtful(self, channel: str) -> bool:
-        """Whether a channel misses the noise."""
-        return far(self.misfit(channel), constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+        """Whether the rough part of a misfit is more than noise."""
+        return far(self.rough(channel), constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
 
     def at_the_noise(self, channel: str) -> bool:
         """Whether all that the model misses of a channel is noise, as stated or, where none is, as neighbours show it.
@@ -113,25 +123,27 @@ class FinishedFit(JudgedMeasurement):
         Readings that miss the model by far less than their stated noise are in another unit.
         """
         stated, seen = self.misfit(channel), self.over_scatter(channel)
-        if far(seen, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) or self.doubtful(channel):
+        if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
-        return stated.ratio > constants.LEAST_MISFIT_OF_NOISE if stated.n else bool(seen.n)
+        return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
-        """Whether a channel misses the noise so far that the fit is not trusted."""
+        """Whether a channel misses the noise so far that the fit is not trusted, whatever the misfit looks like."""
         return far(self.misfit(channel, rows), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
 
-    def of_the_formula(self, channel: str) -> bool:
-        """Whether the misfit is the formula's: structure that all sweeps share, and that is predicted as well as fitted."""
-        seen = self.left_out.get(channel)
-        return (
-            seen is not None
-            and channel in self.structured
-            and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA
-            and seen.predicted <= constants.PREDICTED_AS_WELL_AS_FITTED * seen.fitted
-            and seen.uneven <= constants.UNEVEN_SWEEPS
-            and self.r2[channel] >= constants.SHARE_OF_A_GOOD_FORMULA
+    def contradicts(self, channel: str, k: int) -> bool:
+        """Whether the others do not predict a sweep."""
+        return self.linear is None or any(
+            k in self.points.sweep[one.index] and channel in one.channels for one in self.against
         )
+
+    def of_the_formula(self, channel: str) -> bool:
+        """Whether the formula limits a channel: its misfit exceeds the noise by far, and smoothly."""
+        if self.linear is None or channel not in self.linear.channels:
+            return False
+        seen = self.linear.channels[channel]
+        over = OverNoise(seen.misfit / seen.components.noise, len(seen.rows))
+        return far(over, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) and not self.doubtful(channel)
 
 
 def far(found: OverNoise, limit: float, sigma: float) -> bool:
@@ -180,15 +192,16 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.CARRIED_MISFIT),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
     outcome=Outcome.DISTRUSTED,
     sentence="the model misses {channel} by {ratio:.1f} times its stated uncertainty{carriers}; {cause}; look at these sweeps, "
     "or run mffit diagnose",
 )
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of the model over the stated uncertainty, channel by channel, unless it is the formula's."""
+    """Scatter over the stated uncertainty, channel by channel, or a misfit that an effect explains better than a smooth miss."""
     for name in fit.used:
-        if fit.wrong(name) and not fit.of_the_formula(name):
+        rough = far(fit.rough(name), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
+        if rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
             yield {**facts, "cause": _cause(fit)}
 
@@ -201,15 +214,18 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "{others}{cause}; check this sweep or repeat it",
 )
 def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Chi-square of the misfit of a sweep against its number of readings, channel by channel, unless it is the formula's."""
+    """Chi-square of the misfit of a sweep against its number of readings, where the sweep contradicts all others."""
     for name in fit.used:
-        if fit.of_the_formula(name):
-            continue
-        off = {k: row for k, row in _by_sweep(fit, name).items() if _sweep_is_far(fit, name, k)}
+        off = {
+            k: row
+            for k, row in _by_sweep(fit, name).items()
+            if _sweep_is_far(fit, name, k) and fit.contradicts(name, k)
+        }
         if off:
-            worst = max(off, key=lambda k: off[k])
+            first = {int(fit.points.sweep[one.index[0]]): -i for i, one in enumerate(fit.against)}
+            worst = max(off, key=lambda k: (first.get(k, -len(first)), off[k]))
             others = [fit.points.sweep_names[k] for k in sorted(off, key=lambda k: -off[k]) if k != worst]
-            said = f" (also {', '.join(others[: constants.SWEEPS_NAMED_WITH_MISFIT])})" if others else ""
+            said = f" (also {', '.join(others[: constants.MOST_NAMED])})" if others else ""
             sweep = fit.points.sweep_names[worst]
             cause = "" if any(above_noise.find(fit)) else f"; {_cause(fit)}"
             yield {"channel": name, "sweep": sweep, "ratio": off[worst], "others": said, "cause": cause}
@@ -223,11 +239,9 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "{ratio:.1f} times the scatter of neighbouring readings (none states its uncertainty); check this sweep or repeat it",
 )
 def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of a sweep that states no uncertainty, over the median sweep's and over its scatter, unless it is the formula's."""
+    """Misfit of a sweep without a stated uncertainty over the median sweep's and its scatter, if it contradicts all others."""
     sweeps = np.unique(fit.points.sweep).tolist()
     for name in fit.used:
-        if fit.of_the_formula(name):
-            continue
         missed = np.where(fit.used[name], fit.model[name] - fit.points.channel(name), np.nan)
         own = {k: rms(missed[fit.points.sweep == k]) for k in sweeps}
         usual = finite_median(np.array(list(own.values())))
@@ -236,7 +250,11 @@ def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             for k in sweeps
             if own[k] > ODD_SWEEP_RATIO * usual
         }
-        off = [k for k, z in seen.items() if far(z, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)]
+        off = [
+            k
+            for k, z in seen.items()
+            if far(z, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA) and fit.contradicts(name, k)
+        ]
         if off:
             worst = max(off, key=lambda k: own[k])
             yield {
@@ -257,9 +275,9 @@ def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "{cause}; check this sweep and the stated uncertainty",
 )
 def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of the model over the stated uncertainty, below the limit of trust."""
+    """Scatter about the model and its smooth miss over the stated uncertainty, below the limit of trust."""
     for name in fit.used:
-        ratio, _ = fit.misfit(name)
+        ratio, _ = fit.rough(name)
         if fit.doubtful(name) and ratio <= constants.DISTRUSTED_MISFIT:
             rows = _by_sweep(fit, name)
             worst = max(rows, key=lambda k: rows[k])
@@ -284,7 +302,7 @@ def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="unpredicted-sweeps",
-    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST_SWEEPS_OF_A_FORMULA),
+    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST),
     outcome=Outcome.DISTRUSTED,
     sentence="a sweep that is left out is predicted from the others to {typical:.3g} {unit} (median) where the fit misses "
     "{fitted:.3g} {unit}: the model explains less than half of {channel} where it was not fitted; check that all sweeps are of "
@@ -295,7 +313,7 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     for name, seen in fit.left_out.items():
         spread = float(np.nanstd(getattr(fit.points, name)))
         poor = seen.typical**2 > (1.0 - constants.EXPLAINED_VARIANCE) * spread**2
-        if poor and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA and not fit.misfit(name).n:
+        if poor and seen.sweeps >= constants.FEWEST and not fit.misfit(name).n:
             unit = CHANNELS[name].unit
             yield {"channel": name, "typical": seen.typical, "fitted": seen.fitted, "unit": unit}
 
@@ -420,7 +438,7 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     said = any(
         any(r.find(fit)) for r in (above_noise, sweep_above_noise, sweep_beyond_others, doubtful_misfit)
     )
-    if fit.cause_is_certain and _noise_is_stated(fit) and not said:
+    if fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said:
         yield {"cause": fit.cause}
 
 
@@ -447,8 +465,8 @@ def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 REMARKED = (
-    "what limits {channel} is the formula, not the noise: it misses {fitted:.3g} {unit} rms in all sweeps alike, explains "
-    "{percent:.2f} % of the variance, and predicts left-out sweeps to {predicted:.3g} {unit}"
+    "what limits {channel} is the formula, not the readings: alike in all sweeps it misses {size:.3g} {unit} rms, {percent:.1f} "
+    "% of the largest {channel}, and most at {where} ({most:.3g} {unit})"
 )
 
 
@@ -463,7 +481,8 @@ def judge(found: JudgedMeasurement) -> Trust:
         return Trust(said(REASONS), said(DOUBTS))
     if strange := said((of_another_tyre,)):
         return Trust(reasons=strange, over_noise=found.over_noise)
-    return Trust(said(REASONS), said(DOUBTS), tuple(_remarks(found)), found.over_noise)
+    reasons = said(REASONS)
+    return Trust(reasons, said(DOUBTS), () if reasons else tuple(_remarks(found)), found.over_noise)
 
 
 OF_READINGS = (above_noise, sweep_above_noise, sweep_beyond_others, unexplained, unpredicted)
@@ -491,25 +510,32 @@ DOUBTS = (
 
 def _remarks(fit: FinishedFit) -> Iterator[str]:
     """What limits a sound result, where that is not the noise."""
-    limited = [
-        name for name in fit.left_out if fit.of_the_formula(name) and not _reaches_the_noise(fit, name)
-    ]
-    for name in limited:
-        seen, unit = fit.left_out[name], CHANNELS[name].unit
-        facts = {"fitted": seen.fitted, "predicted": seen.predicted, "percent": 100.0 * fit.r2[name]}
-        yield REMARKED.format(channel=name, unit=unit, **facts)
-    if limited:
-        yield f"of what the formula misses, {_cause(fit)}"
-
-
-def _reaches_the_noise(fit: FinishedFit, channel: str) -> bool:
-    return bool(fit.misfit(channel).n) and not fit.doubtful(channel)
+    for name in fit.used:
+        if fit.linear is None or not fit.of_the_formula(name):
+            continue
+        seen = fit.linear.channels[name]
+        missed = seen.missed_at_readings
+        worst = int(np.argmax(np.abs(missed)))
+        at = fit.points.select(seen.rows[[worst]])
+        where = ", ".join(
+            f"{at.condition(heading)[0]:.{digits}f} {CONDITIONS[heading].unit} of {CONDITIONS[heading].word}"
+            for heading, digits in (("alpha_deg", 1), ("gamma_deg", 0), ("Fz_N", 0))
+        )
+        largest = float(np.max(np.abs(fit.model[name][seen.rows])))
+        yield REMARKED.format(
+            channel=name,
+            unit=CHANNELS[name].unit,
+            size=seen.size,
+            percent=100.0 * seen.size / max(largest, 1e-12),
+            where=where,
+            most=abs(missed[worst]),
+        )
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
-    """Whether residuals are judged by a noise: a channel states one, and no misfit is the formula's."""
+    """Whether residuals are judged by a noise: a channel states one, and the formula limits none of these."""
     stated = [name for name in fit.used if fit.misfit(name).n]
-    return bool(stated) and not any(fit.of_the_formula(n) and fit.doubtful(n) for n in stated)
+    return bool(stated) and not any(fit.of_the_formula(name) for name in stated)
 
 
 def _cause(fit: FinishedFit) -> str:
@@ -530,6 +556,6 @@ def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
 def _carriers(fit: FinishedFit, channel: str) -> str:
     """The sweeps with most of a misfit, in words."""
     total, own = fit.misfit(channel).ratio, _by_sweep(fit, channel)
-    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.CARRIED_MISFIT * total]
-    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
+    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.DISTRUSTED_MISFIT * total]
+    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.MOST_NAMED])
     return f", most of it in {names}" if names else ""

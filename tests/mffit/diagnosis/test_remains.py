@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +11,6 @@ from small_rigs import LEAN, built, disc
 from mffit.diagnosis import wording
 from mffit.diagnosis.one_step import best_effect
 from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
-from mffit.diagnosis.remains import odd_sweep
 from mffit.diagnosis.structure import structure
 from mffit.effects import CATALOG
 
@@ -140,20 +138,6 @@ def test_left_out_sweeps_are_predicted_worse_than_they_are_fitted(left, falling)
         assert found[channel].sweeps == len(left.points.sweep_names)
         assert found[channel].fitted == pytest.approx(agreement.rmse, rel=0.1)
         assert found[channel].predicted > found[channel].typical > found[channel].fitted
-
-
-def test_a_sweep_with_an_offset_of_its_own_is_named_with_it(left, drawn):
-    """30 N is ten times the noise of a point."""
-    k = left.points.sweep_names.index("coupled")
-    rows = np.zeros(len(left.residual))
-    rows[: len(left.points)] = np.where(left.points.sweep == k, 30.0 / left.sigma[: len(left.points)], 0.0)
-    found = odd_sweep(
-        replace(drawn[2], residual=drawn[2].residual + left.outside(rows)),
-        {"Fy": 1.0, "Mz": 1.0, "alpha": 1.0, "gamma": 1.0},
-    )
-    assert found.name == "coupled"
-    assert re.match(r"a zero offset of \+(2[6-9]|3[0-4])", found.looks)
-    assert odd_sweep(drawn[2], {"Fy": 1.0, "Mz": 1.0, "alpha": 1.0, "gamma": 1.0}) is None
 
 
 @pytest.mark.parametrize("amount", [-2.26, 2.26])

@@ -25,7 +25,6 @@ from mffit.quantities import SIDEWAYS
 from mffit.report.text import build_explained, spin_summary
 from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS, number_of
-from mffit.suspicion.prediction import _common
 
 FAULTS = {
     "left": {"F0_N": 8.0, "alpha_0_deg": 0.05, "gamma_0_deg": 0.5},
@@ -157,12 +156,6 @@ def test_a_zero_far_beyond_its_declaration_is_named_in_its_set_up(tmp_path):
     said = wording.remedy(effect, found.signs)
     assert said.startswith("set-up right: turn the steering axis by -0.")
     assert "set-up left" not in said
-
-
-def test_a_sweep_of_either_set_up_is_predicted_with_the_zeros_of_its_own_free(result):
-    assert set(NAMES) < set(_common(result.points, SIDEWAYS))
-    one = result.points.select(result.points.setup == 0)
-    assert not any("@" in name for name in _common(one, SIDEWAYS))
 
 
 def test_the_scatter_of_repeated_set_ups_is_the_prior(result):

@@ -13,10 +13,8 @@ import mffit.diagnosis.constants
 import mffit.rig.constants
 from mffit.diagnosis.remainder import remainder
 from mffit.diagnosis.structure import structure
-from mffit.fit.fitting import _as_model
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.least_squares import Linear, condensed
-from mffit.suspicion.prediction import groups, leverage, predictions
 
 
 @pytest.fixture(scope="module")
@@ -82,21 +80,6 @@ def test_the_choice_of_influences_is_that_in_one_piece(built, in_small_blocks):
         assert dict(new.beside) == pytest.approx(dict(old.beside), rel=1e-7)
         assert dict(new.without) == pytest.approx(dict(old.without), rel=1e-7)
     assert any(verdict.without for verdict in before)
-
-
-def test_predicted_sweeps_are_those_in_one_piece(built, in_small_blocks):
-    model = _as_model(built.fit.search)
-    noise = np.concatenate(list(model.weights.values()))
-    found = groups(model.points)
-    before = [predictions(leverage(model, noise), group) for group in found]
-    in_small_blocks()
-    apart = leverage(model, noise)
-    for group, old in zip(found, before, strict=True):
-        for channel, new in predictions(apart, group).items():
-            assert new.error == pytest.approx(
-                old[channel].error, rel=1e-3, abs=1e-3
-            )  # sums of products hold half the digits
-            assert np.diag(new.covariance) == pytest.approx(np.diag(old[channel].covariance), rel=1e-3)
 
 
 def test_of_many_points_some_are_examined_with_their_own_uncertainty(built, monkeypatch):

@@ -49,7 +49,7 @@ def test_the_first_warning_is_distrust_and_names_the_sweep(rough):
     first, *others = rough.result["warnings"]
     assert "Fy" in first
     assert "not to be trusted" in first
-    assert "most of it in camber_1400;" in first
+    assert "misses Fy of camber_1400" in first
     assert not any("Mz by" in warning for warning in others)
 
 
@@ -59,11 +59,11 @@ def test_the_result_says_so_everywhere(rough):
     assert list(rough.result)[:2] == ["trusted", "reasons"]
     assert rough.result["trusted"] is False
     (reason, *_) = rough.result["reasons"]
-    assert "misses Fy by" in reason
+    assert "misses Fy of camber_1400" in reason
     page = (rough.out / "report.html").read_text(encoding="utf-8")
     assert page.index("Not to be trusted") < page.index("What this file is for")
     tyre = tir.read(rough.out / rough.result["tir"])
-    assert "misses Fy by" in tyre.provenance["NOT TO BE TRUSTED"]
+    assert "misses Fy of camber_1400" in tyre.provenance["NOT TO BE TRUSTED"]
 
 
 def test_the_misfit_over_the_stated_noise_is_that_of_the_points(rough):

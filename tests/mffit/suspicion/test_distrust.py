@@ -24,7 +24,6 @@ RNG = np.random.default_rng(3)
 SWEEPS, EACH, U = 10, 20, 6.0
 NAMES = tuple(f"sweep_{k}" for k in range(SWEEPS))
 SWEEP = np.repeat(np.arange(SWEEPS), EACH)
-ALIKE = LeftOutSweeps(sweeps=SWEEPS, fitted=30.0, predicted=31.0, typical=31.0, uneven=1.3)
 
 
 def judged(off: np.ndarray, *, u: float = U, r2: float = 0.999, **more) -> Trust:
@@ -128,33 +127,6 @@ def test_the_sweeps_with_most_of_the_misfit_are_named_worst_first():
     assert "most of it in sweep_2, sweep_7;" in judged(off).reasons[0]
 
 
-def test_the_formula_s_own_misfit_is_a_limit_and_no_reason():
-    """All sweeps miss alike, by more than the scatter of the sensor, and are predicted as well as they are fitted."""
-    formula = {"left_out": {"Fy": ALIKE}, "structured": frozenset({"Fy"})}
-    found = judged(noise(5.0), **formula)
-    assert found.trusted
-    assert found.doubts == ()
-    assert "31 N" in found.remarks[0]
-    assert "99.90 %" in found.remarks[0]
-    assert judged(noise(5.0), u=np.nan, **formula).remarks == found.remarks
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {"structured": frozenset()},  # scatter, so the stated noise is wrong
-        {"left_out": {}},
-        {"left_out": {"Fy": LeftOutSweeps(4, 30.0, 31.0, 31.0, 1.3)}},
-        {"left_out": {"Fy": LeftOutSweeps(10, 30.0, 34.0, 31.0, 1.3)}},
-        {"left_out": {"Fy": LeftOutSweeps(10, 30.0, 31.0, 31.0, 2.1)}},
-        {"r2": 0.94},
-    ],
-)
-def test_a_misfit_that_might_be_a_mistake_s_is_a_reason(changed):
-    given = {"left_out": {"Fy": ALIKE}, "structured": frozenset({"Fy"}), **changed}
-    assert not judged(noise(5.0), **given).trusted
-
-
 def test_a_model_explains_half_of_the_variance_or_is_not_trusted():
     """Its misfit follows a slow curve in every sweep, beside which neighbouring readings hardly scatter."""
     off = noise(0.1) + U * np.tile(np.sin(np.linspace(0.0, 6.0, EACH)), SWEEPS)
@@ -181,7 +153,7 @@ def test_a_sweep_without_a_stated_noise_is_judged_by_the_others_and_its_own_scat
     assert judged(np.where(SWEEP == 3, 1.0, off), u=u).trusted
 
 
-@pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.51, True), (0.49, False), (1.25, False)])
+@pytest.mark.parametrize(("scale", "trusted"), [(1.0, True), (0.11, True), (0.09, False), (1.25, False)])
 def test_a_channel_with_nothing_but_its_stated_noise_has_nothing_to_explain(scale, trusted):
     """Mx of a wheel that is only driven and braked; readings far below their noise are in another unit."""
     assert judged(noise(scale), r2=0.1).trusted == trusted
@@ -203,7 +175,7 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
             0.0, 0.0, 1500.0, Fy=Fy, u_Fy=u, p=2e5, V=11.0, phi_t=0.0, sweep=SWEEP, sweep_names=NAMES
         )
         used = {"Fy": np.ones(n, bool), "Mz": np.zeros(n, bool)}
-        left_out = {"Fy": LeftOutSweeps(SWEEPS, 10.0, 200.0, typical, 1.0)}
+        left_out = {"Fy": LeftOutSweeps(SWEEPS, 10.0, 200.0, typical)}
         return judge(
             FinishedFit(
                 points=points,

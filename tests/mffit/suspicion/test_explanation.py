@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import tir
+from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.suspicion.explanation import explanation
-from mffit.suspicion.prediction import PredictedChannel
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 SAE = ISO | {"alpha": -1.0, "Fy": -1.0, "gamma": -1.0, "Mz": -1.0}
@@ -29,13 +29,17 @@ def sweep():
     return make_points(alpha.ravel(), gamma.ravel(), 1400.0, p=250e3, V=6.0, phi_t=0.0)
 
 
+def off(error, variance) -> LeftOutReadings:
+    """Readings that are off their prediction, each with its own scatter."""
+    return LeftOutReadings(np.arange(len(error)), error, np.diag(np.broadcast_to(variance, len(error))))
+
+
 def said(simulation, points, Fy, Mz, signs=ISO) -> str:
     """What explains the readings of a sweep, beside the simulation of its labels."""
     out = simulation.readings(points)
-    n = len(points)
     errors = {
-        "Fy": PredictedChannel(error=out.Fy - Fy, covariance=36.0 * np.eye(n)),
-        "Mz": PredictedChannel(error=out.Mz - Mz, covariance=0.36 * np.eye(n)),
+        "Fy": off(Fy - out.Fy, 36.0),
+        "Mz": off(Mz - out.Mz, 0.36),
     }
     return explanation(points.replace(Fy=Fy, Mz=Mz), errors, simulation, signs)
 
@@ -108,20 +112,19 @@ def test_four_fifths_of_the_error_must_be_explained(simulation, sweep):
 
 def test_a_channel_that_was_not_measured_is_left_out(simulation, sweep):
     out = simulation.readings(sweep)
-    errors = {"Fy": PredictedChannel(error=np.full(16, -40.0), covariance=36.0 * np.eye(16))}
+    errors = {"Fy": off(np.full(16, 40.0), 36.0)}
     points = sweep.replace(Fy=out.Fy + 40.0)
     assert explanation(points, errors, simulation, ISO) == "a zero offset of +40.0 N in Fy_N"
     some = points.replace(Fy=np.where(np.arange(16) == 3, np.nan, points.Fy))
-    errors = {"Fy": PredictedChannel(error=np.full(15, -40.0), covariance=36.0 * np.eye(15))}
+    errors = {"Fy": off(np.full(15, 40.0), 36.0)}
     assert explanation(some, errors, simulation, ISO) == "a zero offset of +40.0 N in Fy_N"
 
 
 def test_the_scatter_of_every_point_counts(simulation, sweep):
     """A point of large uncertainty may be anywhere."""
     out = simulation.readings(sweep)
-    error = np.where(np.arange(16) == 5, 500.0, -40.0)
-    covariance = np.diag(np.where(np.arange(16) == 5, 1e8, 36.0))
-    errors = {"Fy": PredictedChannel(error=error, covariance=covariance)}
+    error = np.where(np.arange(16) == 5, -500.0, 40.0)
+    errors = {"Fy": off(error, np.where(np.arange(16) == 5, 1e8, 36.0))}
     assert (
         explanation(sweep.replace(Fy=out.Fy), errors, simulation, ISO) == "a zero offset of +40.0 N in Fy_N"
     )

@@ -62,14 +62,14 @@ SINGLE_FILES = [
         tyre(0.0, CAMBER, Fy=1.2 * np.sin(CAMBER), Mz=300.0 * np.sin(CAMBER)),
     ),
     ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
-    ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
-    ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
-    ("force-in-kilonewtons", tyre(0.0, [DEG * 5.1] * 3, Fy=28.0), tyre(0.0, [DEG * 4.9] * 3, Fy=28.0)),
-    ("lone-load", tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE), tyre(Fz=changed(LOADS, [2], 7490.0), Fy=FORCE)),
+    ("force-in-kilonewtons", tyre(alpha=ALPHA[[0, 1, 0, 1]], Fy=28.0), tyre(alpha=ALPHA[[0, 1, 0]], Fy=28.0)),
+    ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 4, Fy=28.0), tyre(alpha=[DEG * 1.9] * 4, Fy=28.0)),
+    ("force-in-kilonewtons", tyre(0.0, [DEG * 5.1] * 4, Fy=28.0), tyre(0.0, [DEG * 4.9] * 4, Fy=28.0)),
+    ("lone-load", tyre(Fz=changed(LOADS, [2], 4510.0), Fy=FORCE), tyre(Fz=changed(LOADS, [2], 4490.0), Fy=FORCE)),
     ("lone-load", tyre(alpha=ALPHA[:4], Fz=[1e3, 1e3, 1e3, 6e3]), tyre(alpha=ALPHA[:3], Fz=[1e3, 1e3, 6e3])),
     ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 5990.0))),
-    ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0))),
-    ("load-in-another-unit", tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 6010.0))),
+    ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3, 4], 6010.0))),
+    ("load-in-another-unit", tyre(Fy=changed(FORCE, [1, 2, 3, 4], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0))),
     ("moment-in-newton-millimetres", tyre(Mz=changed(FORCE, [0], -1510.0)), tyre(Mz=0.99 * FORCE)),
     ("moment-in-newton-millimetres", tyre(Mx=changed(FORCE, [0], -1510.0)), tyre(Mx=0.99 * FORCE)),
     ("pressure-in-psi", tyre(p=36e3), tyre(p=88e3)),
@@ -94,23 +94,22 @@ def test_a_slope_is_significant_from_four_standard_errors_on():
     assert SlopeWithError(value=4.0, error=1.0, freedom=10**6, scatter=1.0).sign == 0
 
 
-def test_a_slope_needs_four_points_and_a_range_of_angles():
-    everything = np.ones(4, dtype=bool)
-    fine, finer = (tyre(alpha=np.radians([0.0, 0.007, 0.014, span])) for span in (0.021, 0.019))
-    assert np.isfinite(slope(fine, fine.Fy, "alpha", everything).value)
-    assert np.isnan(slope(finer, finer.Fy, "alpha", everything).value)
+def test_a_slope_needs_four_points_and_two_angles():
+    one_angle = tyre(alpha=np.full(7, 0.01))
+    assert np.isfinite(slope(SOUND, SOUND.Fy, "alpha", np.arange(7) < 4).value)
+    assert np.isnan(slope(one_angle, one_angle.Fy, "alpha", np.arange(7) < 7).value)
     assert np.isnan(slope(SOUND, SOUND.Fy, "alpha", np.arange(7) < 3).value)
 
 
 @pytest.mark.parametrize(
     ("name", "angle", "limit"),
     [
-        ("cornering", "alpha", 4.0),
-        ("cornering", "gamma", 5.0),
-        ("camber", "gamma", 25.0),
-        ("camber", "alpha", 1.5),
+        ("cornering", "alpha", 3.0),
+        ("cornering", "gamma", 2.0),
+        ("camber", "gamma", 20.0),
+        ("camber", "alpha", 2.0),
         ("aligning", "alpha", 3.0),
-        ("aligning", "gamma", 5.0),
+        ("aligning", "gamma", 2.0),
     ],
 )
 def test_slopes_are_read_from_small_angles_only(name, angle, limit):
@@ -193,12 +192,12 @@ def test_without_a_path_there_is_no_turn_slip_force_to_be_weak():
 def test_moments_follow_the_force_with_half_the_radius_only_about_another_point(lever, cases):
     ten = tyre(alpha=np.r_[ALPHA, ALPHA[:3]], gamma=np.radians(1.9))
     assert found("moments-about-another-point", ten.replace(Mx=lever * ten.Fy)) == cases
-    nine = ten.select(np.arange(9))
+    few = ten.select(np.array([0, 3, 6]))
     leaning = ten.replace(gamma=np.radians(2.1))
     per_range = 1500.0 / np.ptp(ten.Fy)
     weak, enough = (ten.replace(Fy=share * per_range * ten.Fy) for share in (0.45, 0.55))
     assert found("moments-about-another-point", enough.replace(Mx=lever * enough.Fy)) == cases
-    for other in (nine, leaning, weak):
+    for other in (few, leaning, weak):
         assert found("moments-about-another-point", other.replace(Mx=lever * other.Fy)) == 0
 
 
@@ -249,7 +248,7 @@ def sentence(rule: str, points: Points) -> str:
         ("wild-force", tyre(Fy=changed(FORCE, [1, 2], -7500.0)), "-7500 N is 5 times the load"),
         (
             "load-in-another-unit",
-            tyre(Fy=changed(FORCE, [1, 2, 3], 7500.0)),
+            tyre(Fy=changed(FORCE, [1, 2, 3, 4], 7500.0)),
             "reach 5 times the load (1500 N)",
         ),
         ("moment-in-newton-millimetres", tyre(Mz=changed(FORCE, [0], -3000.0)), "reaches 2 m times the load"),

@@ -1,0 +1,72 @@
+"""Points that share a mistake, if there is one: every sweep, and every condition of a sweep that holds several."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points, levels
+from mffit.suspicion import constants
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
+    """Points that share a mistake, if there is one."""
+
+    name: str  #: for sentences
+    file: str
+    index: np.ndarray  #: (m,) rows of the points
+    whole: bool  #: all points of a sweep rather than those of one condition
+
+
+def groups(points: Points) -> list[Group]:
+    """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
+    found = [*_sweeps(points), *_conditions(points)]
+    unique = {group.index.tobytes(): group for group in reversed(found)}
+    fewest, most = constants.FEWEST, constants.LARGEST_SWEEP * len(points)
+    return [g for g in reversed(unique.values()) if fewest <= len(g.index) <= most]
+
+
+def _sweeps(points: Points) -> Iterator[Group]:
+    for k in np.unique(points.sweep):
+        index = np.flatnonzero(points.sweep == k)
+        file = points.files[points.file[index[0]]]
+        yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
+
+
+def parts_of_sweeps(points: Points) -> np.ndarray:
+    """Number (n,) of each point's part, from 0: a sweep, or each load, pressure, direction and camber of one with several."""
+    out = np.empty(len(points), dtype=int)
+    for k, (_, rows, _) in enumerate(_parts(points)):
+        out[rows] = k
+    return out
+
+
+def _conditions(points: Points) -> Iterator[Group]:
+    for sweep, rows, by_camber in _parts(points):
+        if len(rows) < len(sweep.index):
+            part = points.select(rows)
+            said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
+            if by_camber:
+                said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
+            yield Group(name=f"{sweep.name} at {said}", file=sweep.file, index=rows, whole=False)
+
+
+def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
+    """Each sweep with the rows (m,) of one of its conditions, and whether camber is one of the conditions."""
+    load = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    pressure = levels.nearest_labels(points.p, levels.PRESSURE)
+    camber = levels.nearest_labels(points.gamma, levels.CAMBER)
+    for sweep in _sweeps(points):
+        i = sweep.index
+        own = levels.count(points.gamma[i], levels.CAMBER)
+        keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
+        # In a sweep of camber the angles are not conditions.
+        few = own * constants.FEWEST <= len(i)
+        by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
+        if by_camber:
+            keys = np.column_stack([keys, camber[i]])
+        for rows in levels.rows_of_equal(keys):
+            yield sweep, i[rows], by_camber

@@ -1,0 +1,95 @@
+"""A tyre that is no Magic Formula, a brush whose bristles lose grip as they slide: its sweeps on a flat track, with noise.
+
+Bristles deflect from the front to the rear of the contact (x from +a to -a) by the slip angle, and by the spin of a leaning
+wheel, which bends their path. They slide where the deflection exceeds what the pressure, higher in the middle, holds. The grip
+falls with the slip and with the load, and the contact grows with the square root of the load.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+FY, MZ = 6.0, 0.3
+"""Noise of a point [N], [Nm]."""
+LOADS = (1000, 1700, 2600)
+SLIP = (-8, -6, -5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 8)
+LEAN = (-10, -8, -6, -4, -2, -1, 0, 1, 2, 4, 6, 8, 10)
+SHORT = (-8, -6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6, 8)
+PROJECT = """
+[tyre]
+name = "brush"
+unloaded_radius = 0.31
+width = 0.15
+rim_radius = 0.2159
+nominal_load = 1700
+nominal_pressure = 250
+[rig]
+type = "flat-track"
+axes = "iso"
+u_loadcell_offset_N = 10
+u_camber_alignment_deg = 0.5
+u_slip_alignment_N = 25
+"""
+
+
+class Brush(NamedTuple):
+    """Numbers of the tyre, at 1700 N."""
+
+    a: float = 0.05  #: half length of the contact [m]
+    stiffness: float = 4.0e6  #: of the bristles [N/m^2]
+    mu: float = 1.2
+    mu_load: float = -0.08  #: change of grip by twice the load [-]
+    fading: float = 0.6  #: relative loss of grip per slip of 1
+    crown: float = 0.3  #: pressure in the middle over a parabola's
+    reduction: float = -0.1  #: camber reduction factor
+
+    def forces(self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Fy [N] and Mz [Nm] in ISO-W at angles [rad] and loads [N], each (n,)."""
+        alpha, gamma, Fz = (np.asarray(x, dtype=float)[:, None] for x in (alpha, gamma, Fz))
+        x = np.linspace(1.0, -1.0, 801)
+        over = Fz / 1700.0
+        a = self.a * np.sqrt(over)
+        spin = -(1.0 - self.reduction) * np.sin(gamma) / 0.3
+        wanted = a * (1.0 - x) * -np.tan(alpha) + 0.5 * spin * a**2 * (1.0 - x**2)
+        shape = (1.0 - x**2) * (1.0 + self.crown * (1.0 - 5.0 * x**2) / 4.0)
+        grip = self.mu * (1.0 + self.mu_load * (over - 1.0)) / (1.0 + self.fading * np.abs(np.tan(alpha)))
+        most = grip * Fz * 0.75 / a * np.maximum(shape, 0.0)
+        force = np.clip(self.stiffness * over**-0.2 * wanted, -most, most)
+        length = 2.0 * a[:, 0] / (len(x) - 1)
+        return force.sum(axis=1) * length, (force * a * x).sum(axis=1) * length
+
+
+def sweeps() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Sideslip [deg], camber [deg] and load [N] of every sweep."""
+    plan: dict[str, tuple[tuple[float, ...], tuple[float, ...], int]] = {}
+    for load in LOADS:
+        plan[f"sideslip_{load}"] = (SLIP, (0.0,), load)
+        plan[f"camber_{load}"] = ((0.0,), LEAN, load)
+    for lean, load in ((2, 1700), (4, 1700), (7, 1700), (4, 2600)):
+        plan[f"coupled_{load}_{lean}"] = (SHORT, (-lean, lean), load)
+    return {
+        name: tuple(np.array([(a, g, load) for g in gamma for a in alpha], dtype=float).T)
+        for name, (alpha, gamma, load) in plan.items()
+    }
+
+
+def written(tyre: Brush, folder: Path, seed: int, play: float = 0.0) -> Path:
+    """The project of a campaign of the tyre; the sideslip axis has ``play`` [deg] that nothing declares."""
+    rng = np.random.default_rng(seed)
+    lines = [PROJECT]
+    for name, (alpha, gamma, Fz) in sweeps().items():
+        Fy, Mz = tyre.forces(np.radians(alpha), np.radians(gamma), Fz)
+        table = {
+            "alpha_deg": alpha + 0.5 * play * np.sign(Mz), "gamma_deg": gamma, "Fz_N": Fz, "p_kPa": 250.0, "V_mps": 10.0,
+            "Fy_N": Fy + FY * rng.standard_normal(len(Fy)), "Mz_Nm": Mz + MZ * rng.standard_normal(len(Fy)),
+            "u_Fy_N": FY, "u_Mz_Nm": MZ,
+        }  # fmt: skip
+        pd.DataFrame(table).to_csv(folder / f"{name}.csv", index=False)
+        lines.append(f'[[sweep]]\nfile = "{name}.csv"\n')
+    path = folder / "tyre.toml"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
