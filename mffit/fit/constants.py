@@ -401,21 +401,6 @@ MOST_KEPT_NOISE = Real(
     "-",
     "Largest share of the noise that the next sample keeps: beyond it, offset and gain of a run of steps are lost in it.",
 )
-STEPS_OF_RATES = Count(
-    4, "-", "Steps to a relaxation length from sweeps: it moves the part of the lag that is built up by 4 %."
-)
-DELAY_OF_CHANNELS = Real(
-    0.003,
-    "s",
-    "Standard uncertainty of the delay of a force behind the angle in filters and samplers: sweeps are run fast, and speed times "
-    "this delay adds to the relaxation length.",
-)
-RATIO_OF_RATES = Real(3.0, "-", "Rate that is proposed over the present one, at least.")
-CLEAR_SHIFT = Real(
-    5.0,
-    "-",
-    "Shift over its uncertainty that is proposed: the relaxation length is then known to a quarter or better.",
-)
 LEAST_MOVE_OF_A_STEP = Real(
     0.02,
     "-",

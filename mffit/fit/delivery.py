@@ -24,7 +24,6 @@ from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, roll
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files, make_files
 from mffit.points import Points
-from mffit.points.lag import Lag
 from tir import Tyre
 
 NO_ZERO = Declaration(0.0, 0.0)
@@ -38,7 +37,6 @@ class Beside:
     steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by the setting that steps
     sister: Sister | None = None
     campaigns: Sequence[FittedCampaign] = ()
-    lags: Sequence[Lag] = ()  #: of moving sweeps of the sideslip angle
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +69,7 @@ def deliver(
     rolling = _rolling_resistance(config, known, points)
     for name, q in rolling.found.items():
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
-    lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held, beside.lags)
+    lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
     lags = {name: q for direction in lag for name, q in direction.found.items()}
     known = known.having({name: q.value for name, q in lags.items()}, "fitted")
     own = (beside.radii.beside, rolling.beside, *(direction.beside for direction in lag))

@@ -41,7 +41,6 @@ from mffit.fit.wording import explanations, warnings
 from mffit.fit.written.files import plain_use
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.points.lag import Lag
 from mffit.progress import Progress, silent
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, outliers
 from tir import Tyre
@@ -56,7 +55,6 @@ def fit(
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
     campaigns: Sequence[FittedCampaign] = (),
-    lags: Sequence[Lag] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -70,7 +68,6 @@ def fit(
     progress : called with a sentence before each step
     steps : samples of steps of the sideslip angle and of slip, by the setting that steps
     campaigns : others of the same tyre, whose coefficients are taken where these points determine none
-    lags : of moving sweeps of the sideslip angle
 
     Raises
     ------
@@ -104,7 +101,7 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    beside = Beside(radii, steps, sister, campaigns, lags)
+    beside = Beside(radii, steps, sister, campaigns)
     made = deliver(config, known, points, measured, base, fitted, beside)
     files = made.files
     temperature = None

@@ -151,7 +151,7 @@ def _fitted(
 
     def fit(measured: Measured) -> FitResult:
         return fitting.fit(
-            config, points, parts, measured, base, progress, reading.steps, campaigns, reading.lags
+            config, points, parts, measured, base, progress, reading.steps, campaigns
         )
 
     fitted = fit(measured)

@@ -237,14 +237,6 @@ def _relaxation_of(found: Relaxation) -> dict[str, Any]:
         ],
         "coefficients": list(found.found),
         "missing": found.missing or None,
-        "rates": None
-        if found.rates is None
-        else {
-            "sweeps": found.rates.sweeps,
-            "slowest_deg_per_s": math.degrees(found.rates.rates[0]),
-            "fastest_deg_per_s": math.degrees(found.rates.rates[1]),
-            "hysteresis_deg": math.degrees(found.rates.hysteresis),
-        },
     }
 
 
