@@ -26,7 +26,7 @@ import mffit
 import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import DIRECTIONS, relaxation
+from mffit.fit.relaxation import DIRECTIONS, Relaxation, relaxation
 from mffit.points.loading import read
 from mffit.rig import Simulation
 from mffit.scatter import rms
