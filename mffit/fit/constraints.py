@@ -44,7 +44,7 @@ def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndar
 
 def violations(p: Any, envelope: Envelope) -> np.ndarray:
     """Violation (k,) of each limit at each condition of the envelope, dimensionless; 0 where the limit is kept."""
-    return np.maximum(limits(p, envelope)[0], 0.0)
+    return np.asarray(np.maximum(limits(p, envelope)[0], 0.0))
 
 
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:

@@ -100,7 +100,7 @@ def _straight_on(points: Points) -> np.ndarray:
     """Mask (n,) of an upright wheel that rolls freely straight on: radii depend on its load and pressure, stiffnesses do not."""
     upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
     straight = (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
-    return upright & straight & points.free_rolling
+    return np.asarray(upright & straight & points.free_rolling)
 
 
 def coverage(

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import Any
 
 import numpy as np
 
-from mffit.config import Declaration, declared_rig
+from mffit.config import Config, Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.borrowed.campaign import FittedCampaign, Joined, join
@@ -23,6 +22,7 @@ from mffit.fit.relaxation import Relaxation, relaxation
 from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files, make_files
+from mffit.measured import Measured
 from mffit.points import Points
 from tir import Tyre
 
@@ -55,10 +55,10 @@ class Delivered:
 
 
 def deliver(
-    config: Any,
+    config: Config,
     known: Known,
     points: Points,
-    measured: Any,
+    measured: Measured,
     base: Tyre | None,
     fitted: Fitted,
     beside: Beside,
@@ -91,10 +91,10 @@ def deliver(
     return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)
 
 
-def _rolling_resistance(config: Any, known: Known, points: Points) -> Resistance:
+def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:
     """Rolling resistance from the measured moment My; where that is missing, from Fx of the wheel that coasts."""
     declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
-    hand, side = known.hand.held, config.tyre.side or "left"
+    hand, side = known.hand.held, config.tyre.side
     if np.any(np.isfinite(points.My)):
         return rolling_resistance(known.values, points, declared.get(MY_ZERO, NO_ZERO), hand, side)
     zero = declared.get(FX_ZERO, NO_ZERO)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config import axis_signs
+from mffit.config import Config, axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.borrowed.campaign import FittedCampaign, campaign_sentence
@@ -39,6 +39,7 @@ from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.wording import explanations, warnings
 from mffit.fit.written.files import plain_use
+from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -47,10 +48,10 @@ from tir import Tyre
 
 
 def fit(
-    config: Any,
+    config: Config,
     points: Points,
     parts: Parts,
-    measured: Any,
+    measured: Measured,
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
@@ -85,7 +86,7 @@ def fit(
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
-    overturning = overturning_terms(points, known.values, config.tyre.side or "left", hand)
+    overturning = overturning_terms(points, known.values, config.tyre.side, hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),
         **overturning.start,
@@ -159,7 +160,7 @@ def fit(
 
 
 def _fitted_and_judged(
-    config: Any, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
+    config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> tuple[NuisanceFit, tuple[Doubt, ...]]:
     """The fits to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
 
@@ -195,8 +196,8 @@ def _as_model(fitted: Fitted) -> FittedModel:
     )
 
 
-def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Any) -> float | None:
+def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Measured) -> float | None:
     """eps_gamma of the fitted model; None on a flat track."""
-    if measured.epsilon_gamma is None:
+    if measured.epsilon_gamma is None or measured.r_e is None:
         return None
     return epsilon_gamma_of_model(values, points, measured.F_phit_load, measured.r_e.value)

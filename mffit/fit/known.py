@@ -6,13 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
+from mffit.config.models import TyreTable
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, radius_coefficients
+from mffit.measured import Measured
 from mffit.points import Points
 from mffit.rig import reference_speed
 from tir import Tyre
@@ -44,9 +47,9 @@ class Known:
 
 
 def known_before_fit(
-    config: Any,
+    config: Config,
     points: Points,
-    measured: Any,
+    measured: Measured,
     base: Tyre | None,
     fleet: Mapping[str, Prior],
     hand: Hand = NO_HAND,
@@ -131,7 +134,7 @@ def _is_stated(tyre: Any, name: str) -> bool:
     return name not in KEYS_OF_TYRE or KEYS_OF_TYRE[name] in tyre.model_fields_set
 
 
-def given_values(tyre: Any) -> dict[str, Any]:
+def given_values(tyre: TyreTable) -> dict[str, Any]:
     """Values of ``[tyre]``, stated or by default, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
     given = {
         "FNOMIN": tyre.nominal_load,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.config.constants import PLAUSIBLE_CONICITY
 from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
@@ -20,6 +20,7 @@ from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
 from mffit.least_squares import FreeNumber
+from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
 
@@ -97,9 +98,9 @@ def channels_of(points: Points) -> tuple[str, ...]:
 
 
 def fit_plan(
-    config: Any,
+    config: Config,
     points: Points,
-    measured: Any,
+    measured: Measured,
     known: Known,
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
@@ -110,7 +111,7 @@ def fit_plan(
 
     ``turning`` are zeros that determine PECP1 where eps_gamma was not measured; ``predicting`` as in :func:`coverage`.
     """
-    cover = coverage(points, config.tyre.side or "left", known.hand.held, predicting)
+    cover = coverage(points, config.tyre.side, known.hand.held, predicting)
     channels = fitted_channels(cover, points)
     turned = len(np.unique(points.mount)) > 1
     rig = rig_numbers(config, measured, points.used_setups, channels, turned=turned)

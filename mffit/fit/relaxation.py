@@ -265,7 +265,7 @@ class _Means(NamedTuple):
         """Means (m,) or (m, k) of a series (n,) or (n, k)."""
         sums = np.zeros((len(self.size), *x.shape[1:]))
         np.add.at(sums, self.label, x)
-        return sums / self.size.reshape(-1, *[1] * (x.ndim - 1))
+        return np.asarray(sums / self.size.reshape(-1, *[1] * (x.ndim - 1)))
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:

@@ -31,7 +31,7 @@ def robust_scale(residual: np.ndarray) -> float:
 def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     """Factor (n,) >= 1 that enlarges the uncertainty of points beyond the Huber threshold."""
     size = np.abs(residual) / (constants.HUBER_THRESHOLD * scale)
-    return np.sqrt(np.maximum(size, 1.0))
+    return np.asarray(np.sqrt(np.maximum(size, 1.0)))
 
 
 def enlarged(

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.fit import constants
 from mffit.fit.bands import BandOfCombined, BandOfOtherSide, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
@@ -19,6 +20,7 @@ from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
+from mffit.measured import Measured
 from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
@@ -30,7 +32,7 @@ RARE = "the range of usual tyres"
 
 
 def explanations(
-    config: Any, files: Files, values: Mapping[str, Any], measured: Any, hand: Hand = NO_HAND
+    config: Config, files: Files, values: Mapping[str, Any], measured: Measured, hand: Hand = NO_HAND
 ) -> list[str]:
     """Everything that the report explains about the files, the most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)

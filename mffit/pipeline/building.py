@@ -150,9 +150,7 @@ def _fitted(
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(
-            config, points, parts, measured, base, progress, reading.steps, campaigns
-        )
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, campaigns)
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)

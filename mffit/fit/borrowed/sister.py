@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, violations
@@ -98,7 +99,7 @@ class Lent:
         return found
 
 
-def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
+def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | None:
     """The sister tyre that ``[sister]`` declares; None without that table.
 
     Raises
@@ -106,7 +107,7 @@ def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
     InputError
         The base file states no longitudinal force that somebody measured, or longitudinal force was measured on this tyre too.
     """
-    if config.sister is None or base is None:
+    if config.sister is None or base is None or config.tyre.base is None:
         return None
 
     def refused(sentence: str) -> InputError:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+from mffit.config import Config
 from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
@@ -56,7 +57,7 @@ class Files:
 
 
 def make_files(
-    config: Any,
+    config: Config,
     known: Known,
     points: Points,
     base: Tyre | None,
@@ -111,7 +112,7 @@ def make_files(
 class _Derivation(NamedTuple):
     """What the derived files are made from."""
 
-    config: Any
+    config: Config
     model: Mapping[str, Any]
     points: Points
     tested: Mapping[str, float]
@@ -183,7 +184,7 @@ def name_at_temperature(name: str) -> str:
     return f"{name}-at-temperature.tir"
 
 
-def plain_use(config: Any) -> str:
+def plain_use(config: Config) -> str:
     """The use whose file has the plain name."""
     return config.spin.exact if config.rig.on_disc else "normal"
 

@@ -80,7 +80,7 @@ def weights(road: Road, tested: Mapping[str, float], weight: str = "everything")
     both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
     corner = CORNER[weight]
     share = np.where(inside(road, tested), 1.0, constants.WEIGHT_OUTSIDE_TESTED)
-    return share * (corner + (1.0 - corner) / (1.0 + both))
+    return np.asarray(share * (corner + (1.0 - corner) / (1.0 + both)))
 
 
 def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[str, float]:
@@ -91,9 +91,8 @@ def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[st
 
 def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
     """Mask (n,) of the conditions inside the tested ranges; rounding of their ends does not count."""
-    within = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
+    within: np.ndarray = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
     within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
-    return (
-        within & (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
-    )
+    within &= (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
+    return within
