@@ -107,7 +107,7 @@ def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, chan
 
 def needed_fall(candidates: int) -> float:
     """Standard errors by which a prediction must fall if the best of several candidates is taken."""
-    return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
+    return float(-ndtri(constants.FALSE_ALARM / max(candidates, 1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class Support:
 
     def beyond_chance(self, candidates: int = 1) -> bool:
         """Whether they explain more than the best of several candidates does by chance."""
-        return self.chance < constants.PREDICTION_FALSE_ALARM / max(candidates, 1)
+        return self.chance < constants.FALSE_ALARM / max(candidates, 1)
 
 
 def alone(information: np.ndarray, gradient: np.ndarray, more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -161,7 +161,7 @@ def improves(
 def _larger(before: np.ndarray, after: np.ndarray) -> bool:
     """Whether the second misfit (s,) is the larger one beyond chance, if each group counts as one reading."""
     ratio = float(np.sum(after)) / max(float(np.sum(before)), np.finfo(float).tiny)
-    return bool(fdtrc(len(before), len(before), ratio) < constants.PREDICTION_FALSE_ALARM)
+    return bool(fdtrc(len(before), len(before), ratio) < constants.FALSE_ALARM)
 
 
 def _z(change: np.ndarray) -> float:

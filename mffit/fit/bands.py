@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import COVERAGE_FACTOR_95, ZERO_SIDESLIP
 from mffit.fit import constants
 from mffit.fit.coverage import side_run
 from mffit.fit.posterior import Posterior, spread_through
@@ -68,7 +68,7 @@ def band_of_other_side(posterior: Posterior, tyre: Simulation, points: Points) -
         return None
     alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
     tested = tested_ranges(points)
-    Fz = np.linspace(tested["FZMIN"], tested["FZMAX"], int(constants.BAND_GRID[0]))
+    Fz = np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID)
     p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
     half, opposite = (
         rms(posterior.band(tyre, make_points(a, 0.0, Fz, p=p, V=V, phi_t=0.0), ("Fy",)).Fy)
@@ -79,17 +79,16 @@ def band_of_other_side(posterior: Posterior, tyre: Simulation, points: Points) -
 
 def band_of_combined(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfCombined | None:
     """The band of Fx at the one sideslip with longitudinal slip, and before it; None without such, and with several."""
-    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > constants.COUPLED_ALPHA.rad]
+    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > ZERO_SIDESLIP.rad]
     sizes = {int(k) for k in levels.nearest_labels(np.abs(run), levels.SIDESLIP)} if run else set()
     if len(sizes) != 1 or "Fx" not in points.measured:
         return None
     tested = tested_ranges(points)
-    loads, _, slips = (int(n) for n in constants.BAND_GRID)
     Fz, kappa = (
         axis.ravel()
         for axis in np.meshgrid(
-            np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
-            np.linspace(tested["KPUMIN"], tested["KPUMAX"], slips),
+            np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
+            np.linspace(tested["KPUMIN"], tested["KPUMAX"], constants.STEPS_OF_A_GRID),
         )
     )
     p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
@@ -115,9 +114,7 @@ def bands_by_pressure(
     main = float(np.median(points.p[main_pressure(points)]))
     nominal = float(tyre.values["NOMPRES"])
     pressures = np.array([*levels.level_values(points.p, levels.PRESSURE), nominal])
-    others = tuple(
-        sorted({float(p) for p in pressures if abs(p - main) > constants.SINGLE_PRESSURE_SPREAD * main})
-    )
+    others = tuple(sorted({float(p) for p in pressures if abs(p - main) > levels.PRESSURE.tolerance}))
     at_main = _over_tested(posterior, tyre, points, (main,))
     half, exact = (rms(_half(at_main, one)) for one in (posterior, posterior.given(zeros)))
     if not others:
@@ -164,11 +161,10 @@ def _over_tested(
 ) -> np.ndarray:
     """Derivatives (n, k) of Fy on a grid over the tested angles and loads."""
     tested = tested_ranges(points)
-    loads, cambers, angles = (int(n) for n in constants.BAND_GRID)
     axes = (
-        np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
-        np.linspace(0.0, tested["CAMMAX"], cambers if tested["CAMMAX"] > 0.0 else 1),
-        np.linspace(tested["ALPMIN"], tested["ALPMAX"], angles),
+        np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
+        np.linspace(0.0, tested["CAMMAX"], constants.CAMBERS_OF_A_GRID if tested["CAMMAX"] > 0.0 else 1),
+        np.linspace(tested["ALPMIN"], tested["ALPMAX"], constants.STEPS_OF_A_GRID),
         np.array(pressures),
     )
     Fz, gamma, alpha, p = (axis.ravel() for axis in np.meshgrid(*axes))

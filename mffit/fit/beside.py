@@ -42,7 +42,7 @@ class BesideNumbers:
         names, mean = list(self.values), np.array(list(self.values.values()))
         if self.leans_on:
             mean = mean + self.slope @ [float(values[n]) - float(best[n]) for n in self.leans_on]
-        for _ in range(constants.DRAWS_PER_MEMBER):
+        for _ in range(constants.MOST_DRAWS):
             draw = mean + root(self.covariance) @ random.standard_normal(len(mean))
             drawn = dict(zip(names, draw.tolist(), strict=True))
             if all(x > 0.0 for name, x in drawn.items() if name.endswith("STIFFNESS")):

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from mffit.fit import constants
+from scipy.special import ndtri
+
+from mffit.constants import FALSE_ALARM
 from mffit.fit.fitted import Fitted
 from mffit.fit.priors import Prior
 from tir import Quantity
@@ -29,14 +31,15 @@ def contradicted_priors(fitted: Fitted) -> Iterator[Contradiction]:
     follows from posterior and prior.
     """
     stderr = fitted.posterior.stderr
+    far = float(-ndtri(FALSE_ALARM / (2.0 * max(len(fitted.hand.priors), 1))))
     for name, prior in fitted.hand.priors.items():
         if name not in fitted.values or name in fitted.at_bound:
             continue
         both, own = stderr[name] ** -2.0, prior.spread**-2.0
-        if not both > (1.0 + constants.LEAST_INFORMATION_OF_POINTS) * own:
+        if not both > own:  # the points say nothing
             continue
         value = (both * fitted.values[name] - own * prior.expected) / (both - own)
         u = (both - own) ** -0.5
         apart = abs(value - prior.expected) / math.hypot(u, prior.spread)
-        if apart > constants.CONTRADICTED_PRIOR:
+        if apart > far:
             yield Contradiction(name, Quantity(value, u, BY_NAME[name].unit), prior, apart)

@@ -7,8 +7,10 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from mffit.constants import ZERO_SIDESLIP
 from mffit.fit import constants
-from mffit.points import Points
+from mffit.points import Points, levels
+from tir.parameters import BY_NAME
 
 
 def driven_starts(values: Mapping[str, float], points: Points, held: Collection[str]) -> dict[str, float]:
@@ -33,18 +35,13 @@ def peak_curvature(C: float, B: float, peak: float) -> float:
 
     There C arctan(B x - E (B x - arctan(B x))) is a right angle; Pacejka, Tire and Vehicle Dynamics, 3rd ed., 4.E14.
     """
-    return curvature_through(C, B, peak, 0.5 * math.pi)
-
-
-def curvature_through(C: float, B: float, slip: float, angle: float) -> float:
-    """Curvature factor E with which C arctan(B x - E (B x - arctan(B x))) is an angle [rad] at the slip x."""
-    x = B * slip
-    return (x - math.tan(angle / C)) / (x - math.atan(x))
+    x = B * peak
+    return (x - math.tan(0.5 * math.pi / C)) / (x - math.atan(x))
 
 
 def _sweeps(points: Points, *, sideslip: bool) -> list[Points]:
     """Sweeps of longitudinal slip in which Fx was measured, with sideslip or without."""
-    slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
+    slipping = np.abs(points.alpha) > ZERO_SIDESLIP.rad
     used = np.isfinite(points.Fx) & (slipping == sideslip)
     out = []
     for k in np.unique(points.sweep[used]):
@@ -89,7 +86,7 @@ def _pure(values: dict[str, float], sweeps: list[Points]) -> dict[str, float]:
     found = {
         "PKX1": PKX1,
         "PKX2": PKX2,
-        "PDX1": max(PDX1, float(constants.LEAST_STARTING_FRICTION)),
+        "PDX1": BY_NAME["PDX1"].inside(PDX1),
         "PDX2": PDX2,
     }
     curved = []
@@ -100,14 +97,13 @@ def _pure(values: dict[str, float], sweeps: list[Points]) -> dict[str, float]:
         if x > 0.0 and 0.0 < peak < constants.PEAK_INSIDE * float(np.max(np.abs(sweep.kappa))):
             curved.append(peak_curvature(C, K / (C * mu), peak))
     if curved:
-        low, high = constants.STARTING_CURVATURES
-        found["PEX1"] = float(np.clip(np.median(curved), low, high))
+        found["PEX1"] = BY_NAME["PEX1"].inside(float(np.median(curved)))
     return found
 
 
 def _line(x: np.ndarray, y: np.ndarray, slope: float) -> tuple[float, float]:
-    """Value at x = 0 and slope of the line nearest to values that may all have one x; then the slope is kept."""
-    if np.ptp(x) < constants.SAME_LOAD_OF_SWEEPS:
+    """Value at x = 0 and slope of the line nearest to values over relative loads; of one load the slope is kept."""
+    if levels.count(1.0 + x, levels.LOAD) < 2:
         return float(np.median(y - slope * x)), slope
     slope, value = np.polyfit(x, y, 1)
     return float(value), float(slope)
@@ -147,5 +143,4 @@ def _slope_factor(name: str, weight: np.ndarray, slip: np.ndarray, C: float) -> 
     if not np.any(clear):
         return {}
     angle = np.minimum(np.arccos(weight[clear]) / C, 0.49 * math.pi)
-    lower, upper = constants.STARTING_SLOPES_OF_WEIGHT
-    return {name: float(np.clip(np.median(np.tan(angle) / slip[clear]), lower, upper))}
+    return {name: BY_NAME[name].inside(float(np.median(np.tan(angle) / slip[clear])))}

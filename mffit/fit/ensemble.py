@@ -29,14 +29,13 @@ def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, flo
     """
     random = np.random.default_rng(seed)
     envelope = fitted.problem.envelope
-    allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
     members: list[dict[str, float]] = []
-    for _ in range(constants.DRAWS_PER_MEMBER * count):
+    for _ in range(constants.MOST_DRAWS * count):
         if len(members) == count:
             break
         member = _drawn(fitted, random)
         p = SimpleNamespace(**{**fitted.simulation.values, **member})
-        if envelope is None or np.max(violations(p, envelope)) <= allowed:
+        if envelope is None or np.max(violations(p, envelope)) <= constants.LIMIT_MARGIN:
             members.append(member)
     return members
 

@@ -27,9 +27,7 @@ class Fitted:
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
     stderr: Mapping[str, float]
-    """Standard uncertainty of every number: of the posterior, or from its 95 % interval where a bent valley makes this wider."""
-    intervals: Mapping[str, tuple[float, float]]
-    """95 % intervals of the numbers of a bent valley of equally good fits."""
+    """Standard uncertainty of every number."""
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
@@ -80,7 +78,5 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
     free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
-    solution = solve(
-        problem.free([n.name for n in numbers]), numbers, tolerance=constants.FREE_EPSILON_TOLERANCE
-    )
+    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
     return problem.with_values(solution.values).simulation

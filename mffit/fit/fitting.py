@@ -24,7 +24,7 @@ from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import at_reference
 from mffit.fit.influences.nuisance_wording import nuisance_sentences, unmodelled_sentences
 from mffit.fit.influences.temperature import at_temperature
-from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_equally_good_fits
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_doubt
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
@@ -178,8 +178,7 @@ def _fitted_and_judged(
     found = fit_with_nuisances(
         config, problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
     )
-    progress("looking for other fits that are as good")
-    found = with_equally_good_fits(found)
+    found = with_doubt(found)
     return found, judged(found, When.AFTER)
 
 

@@ -15,6 +15,7 @@ from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage, coverage, side_run
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
+from mffit.fit.priors import scatter as scatter_of
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.fit.rig.zeros import TurningZeros
@@ -132,7 +133,7 @@ def fit_plan(
         debiased = measured.epsilon_gamma_debiased if config.spin.pecp1 == "debiased" else None
         held["PECP1"] = (debiased or measured.epsilon_gamma).u
     elif turning is not None:
-        scatter.setdefault("PECP1", constants.CAMBER_REDUCTION_SPREAD)
+        scatter.setdefault("PECP1", scatter_of("PECP1", start["PECP1"], from_base=False, curved=True))
         for name in turning.start:
             held.pop(name, None)
             expected[name] = turning.before[name]

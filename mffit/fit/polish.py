@@ -1,25 +1,17 @@
-"""The joint polish: all free coefficients and rig errors together, fitted to all points; and fits that are as good as it."""
+"""The joint polish: all free coefficients and rig errors together, fitted to all points."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
-import numpy as np
-
-from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.other_ends import other_ends
 from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
-from mffit.fit.profile import follow
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
 from mffit.rig_errors import error_of
-
-Intervals = Mapping[str, tuple[float, float]]
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -31,35 +23,6 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     problem, scale = _approached(stated, plan).with_noise_of_misfit().reweighted()
     problem, solution = _solved(problem, plan.numbers(problem))
     return _fitted(problem, solution, plan.numbers(problem), plan, scale)
-
-
-def with_equally_good(fitted: Fitted) -> Fitted:
-    """The fit with errors that cover what is as good: a bent valley is followed, and other ends are searched.
-
-    It is the better one where the valley or another end holds a better fit.
-    """
-    problem, numbers = fitted.problem, fitted.problem.starting_here(fitted.numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers, max_steps=0)
-    decided = _within_their_priors(_errors(solution), numbers)
-    valley = follow(problem, numbers, solution, decided)
-    if valley is not None and valley.better:
-        problem, solution = _solved(problem.with_values(valley.better), numbers)
-    ends = other_ends(problem, problem.starting_here(numbers), solution)
-    if ends.better:
-        problem, solution = _solved(problem.with_values(ends.better), numbers)
-    if problem is not fitted.problem:
-        moved = _fitted(problem, solution, numbers, fitted, fitted.scale)
-        fitted = replace(moved, stages=fitted.stages, attempts=fitted.attempts)
-    intervals = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
-    stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in fitted.stderr.items()}
-    return replace(
-        fitted,
-        intervals=intervals,
-        stderr=stderr,
-        rig={name: (v, stderr[name]) for name, (v, _) in fitted.rig.items()},
-        regularised=fitted.regularised
-        | (_with_prior(numbers).keys() - _within_their_priors(stderr, numbers)),
-    )
 
 
 def _fitted(
@@ -78,7 +41,6 @@ def _fitted(
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
         stderr=stderr,
-        intervals={},
         problem=problem,
         numbers=tuple(problem.starting_here(numbers)),
         held=given.held,
@@ -91,19 +53,6 @@ def _fitted(
         cost=solution.cost,
         hand=given.hand,
     )
-
-
-def _wider_of(one: Intervals, other: Intervals) -> dict[str, tuple[float, float]]:
-    """The intervals that contain both."""
-    return {**one, **other} | {
-        name: (min(one[name][0], other[name][0]), max(one[name][1], other[name][1]))
-        for name in one.keys() & other.keys()
-    }
-
-
-def _half_width(interval: tuple[float, float] | None) -> float:
-    """The standard uncertainty that belongs to a 95 % interval; 0 without one."""
-    return 0.0 if interval is None else (interval[1] - interval[0]) / (2.0 * COVERAGE_FACTOR_95)
 
 
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
@@ -131,11 +80,6 @@ def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProb
     numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
     return problem.with_values(solution.values), solution
-
-
-def _errors(solution: Solution) -> dict[str, float]:
-    """Standard error of every free number; held ones count as exact."""
-    return dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)).tolist(), strict=True))
 
 
 def _with_prior(numbers: Sequence[FreeNumber]) -> dict[str, float]:

@@ -47,10 +47,6 @@ class FitProblem:
         nominal = {name: share[index] for name, share in self.nominal.items()}
         return replace(self, points=self.points.select(index), sigma=sigma, nominal=nominal)
 
-    def without_limits(self) -> FitProblem:
-        """The same without physical limits over the range to be written."""
-        return replace(self, envelope=None)
-
     def thinned(self, stride: int) -> FitProblem:
         """The problem of every ``stride``-th point, each counted that often so that priors keep their relative weight."""
         if stride == 1:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
@@ -101,7 +102,7 @@ def _fit_stage(stage: Stage, names: Sequence[str], problem: FitProblem, plan: Fi
         minimum(
             here.free(names),
             plan.coefficients(names, here),
-            max_steps=constants.STAGE_STEPS,
+            max_steps=constants.REFIT_STEPS,
             tolerance=constants.STAGE_TOLERANCE,
         )
         for here in (part, *_from_elsewhere(stage, names, part, plan))
@@ -123,9 +124,9 @@ def _points_of(stage: Stage, points: Points) -> np.ndarray:
     if stage.main_pressure:
         used &= main_pressure(points)
     if stage.zero_camber:
-        used &= np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
+        used &= np.abs(points.gamma) < ZERO_CAMBER.rad
     if "alpha" not in stage.slips:
-        used &= np.abs(points.alpha) < constants.COUPLED_ALPHA.rad
+        used &= np.abs(points.alpha) < ZERO_SIDESLIP.rad
     if "kappa" not in stage.slips:
         used &= points.free_rolling
     index = np.flatnonzero(used)

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit import constants
+from mffit.constants import ZERO_CAMBER
 from mffit.fit.driven_start import driven_starts
 from mffit.measured import Measured
 from mffit.points import Points, main_pressure
+from tir.parameters import BY_NAME
 
 NONZERO_STARTS = {
     "QBZ1": 8.0,
@@ -52,10 +53,9 @@ def starting_values(
     for name, value in NONZERO_STARTS.items():
         if abs(start[name]) < 1e-9 and name not in held:
             start[name] = value
-    upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
+    upright = np.abs(points.gamma) < ZERO_CAMBER.rad
     if np.any(upright) and "PDY1" not in held:
-        friction = np.max(np.abs(points.Fy[upright]) / points.Fz[upright])
-        start["PDY1"] = max(float(friction), constants.LEAST_STARTING_FRICTION)
+        start["PDY1"] = BY_NAME["PDY1"].inside(float(np.max(np.abs(points.Fy[upright]) / points.Fz[upright])))
     start |= driven_starts(start, points, held)
     C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
@@ -111,8 +111,7 @@ def _cornering_stiffness_terms(
             return {}
         shape = np.sin(values["PKY4"] * np.arctan(load / values["PKY2"]))
         return {"PKY1": float(shape @ stiffness / (shape @ shape))}
-    lowest, highest = constants.PKY2_STARTS
-    PKY2 = np.linspace(lowest, highest, constants.PKY2_START_COUNT)
+    PKY2 = np.linspace(*BY_NAME["PKY2"].usual, 78)  # in steps of 0.1
     shapes = np.sin(values["PKY4"] * np.arctan(load / PKY2[:, None]))
     PKY1 = (shapes @ stiffness) / np.sum(shapes**2, axis=1)
     if "PKY1" in held:

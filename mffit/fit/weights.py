@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtri
 
+from mffit.constants import FALSE_ALARM
 from mffit.fit import constants
 from mffit.scatter import robust
 
@@ -64,7 +65,7 @@ def outlying(
     known = np.isfinite(apart)
     # At least the stated uncertainty: among points without noise every tiny difference would count as an outlier.
     local = np.maximum(robust_scale(apart[known]), least)
-    far = float(-ndtri(constants.OUTLIER_FALSE_ALARM / (2.0 * len(used))))
+    far = float(-ndtri(FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out
 

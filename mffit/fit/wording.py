@@ -72,7 +72,7 @@ def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
         _use_sentence(files, names),
         f"{names['turn-slip']} is the fitted model itself.",
         _misfit_sentence(files.by_use["normal"], names["normal"], files.camber_limit),
-        *_otherwise_sentences(files, names["normal"]),
+        *_limit_sentences(files),
         _lacking_sentence(files, names["normal"]),
         ranges_sentence(files),
     ]
@@ -110,33 +110,17 @@ def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str
     )
 
 
-def _otherwise_sentences(files: Files, name: str) -> list[str]:
-    """What the other choice under [normal] would give."""
-    if files.otherwise is None:
-        return []
-    here, there = files.by_use["normal"], files.otherwise
-    slope = files.by_use["turn-slip"].camber_stiffness
-    loss = [1.0 - file.camber_stiffness / slope for file in (here, there)]
+def _limit_sentences(files: Files) -> list[str]:
+    """What became of the camber to which [normal] holds a file."""
     if files.camber_limit is not None:
-        limit = f"{np.degrees(files.camber_limit):.0f} deg"
         return [
-            f"{name} is held to {limit} of camber, as [normal] camber_max_deg asks, and CAMMAX is written accordingly. Without "
-            f"this limit it would reproduce all tested camber to {there.straight['Fy'].rms:.0f} N rms, and lack {loss[1]:.0%} "
-            f"instead of {loss[0]:.0%} of the camber stiffness at zero."
+            f"CAMMAX of this file is {np.degrees(files.camber_limit):.0f} deg, as [normal] camber_max_deg asks."
         ]
-    beyond = []
-    if files.wide_limit is not None:
-        beyond = [
-            f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
-            f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
-        ]
-    other = "road" if files.weight == "everything" else "everything"
-    Fy, would = here.straight["Fy"], there.straight["Fy"]
+    if files.wide_limit is None:
+        return []
     return [
-        *beyond,
-        f'With [normal] weight = "{other}" {name} would be off by {would.ridden:.1f} instead of {Fy.ridden:.1f} N rms where '
-        f"vehicles are ridden, by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
-        f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero.",
+        f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
+        f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
     ]
 
 

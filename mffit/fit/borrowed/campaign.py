@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.constants import ZERO_CAMBER
 from mffit.fit import constants
 from mffit.fit.bands import BandOfCombined
 from mffit.fit.borrowed.sister import BY_FRICTION, LENT, OVER_SLIP
@@ -126,7 +127,7 @@ def shared_conditions(one: Points, other: Points) -> tuple[np.ndarray, float] | 
 
 def _swept(points: Points) -> list[tuple[float, float, int]]:
     """Load, pressure and number of points of every condition with a sweep of the upright wheel to either side."""
-    upright = points.select(points.free_rolling & (np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad))
+    upright = points.select(points.free_rolling & (np.abs(points.gamma) < ZERO_CAMBER.rad))
     if not len(upright):
         return []
     load, p = levels.level_values(upright.Fz, levels.LOAD), levels.level_values(upright.p, levels.PRESSURE)

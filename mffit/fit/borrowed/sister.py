@@ -28,7 +28,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.priors import NOT_MEASURED, scatter
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.upright import sideways
-from mffit.points import Points, main_pressure
+from mffit.points import Points, levels, main_pressure
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
@@ -84,19 +84,18 @@ class Lent:
     def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
         """Borrowed coefficients of a tyre drawn from the posterior, whose other ``values`` were drawn before.
 
-        What each coefficient has of its own is drawn again until the physical limits hold, and reduced after many draws.
+        What each coefficient has of its own is drawn again until the physical limits hold, and left out after many draws.
         """
         sister = self.sister
         errors = (sister.u_friction * random.standard_normal(), sister.u_stiffness * random.standard_normal())
         mean = _scaled(values, self.theirs, sister, errors).values
-        allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
-        for share in (*(1.0,) * int(constants.SISTER_DRAWS), *constants.SISTER_SHARES_OF_A_DRAW):
-            own = {name: share * u * random.standard_normal() for name, u in self.spread.items()}
+        for _ in range(constants.MOST_DRAWS):
+            own = {name: u * random.standard_normal() for name, u in self.spread.items()}
             found = {name: BY_NAME[name].inside(mean[name] + x) for name, x in own.items()}
             p = SimpleNamespace(**{**values, **self.theirs, **found})
-            if np.max(violations(p, sister.envelope)) <= allowed:
-                break
-        return found
+            if np.max(violations(p, sister.envelope)) <= constants.LIMIT_MARGIN:
+                return found
+        return {name: mean[name] for name in self.spread}
 
 
 def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | None:
@@ -131,15 +130,15 @@ def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | Non
             )
     ranges = covered_ranges(points)
     low, high = ranges["FZMIN"], ranges["FZMAX"]
-    if high - low < constants.SAME_LOAD_OF_SWEEPS * config.tyre.nominal_load:
-        share = float(constants.SISTER_LOADS_AROUND_ONE)
+    if levels.count(points.Fz, levels.LOAD) < 2:
+        share = float(constants.AROUND_A_SINGLE_VALUE)
         low, high = (1.0 - share) * low, (1.0 + share) * high
     return Sister(
         file=config.tyre.base,
         tyre=base,
         u_friction=config.sister.u_friction,
         u_stiffness=config.sister.u_stiffness,
-        loads=np.linspace(low, high, constants.SISTER_LOADS),
+        loads=np.linspace(low, high, constants.STEPS_OF_A_GRID),
         pressure=float(points.p[main_pressure(points)].mean()),
         envelope=envelope(ranges)._replace(kappa=float(constants.SISTER_SLIP)),
     )

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import polish, with_equally_good
+from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
@@ -95,11 +94,10 @@ def fit_with_nuisances(
     return first[0] if first else extended(fitted)
 
 
-def with_equally_good_fits(found: NuisanceFit) -> NuisanceFit:
-    """The fits, each with errors that cover fits as good as it, and the plain one with its distance from the full one."""
-    full = with_equally_good(found.full)
-    plain = _doubted(with_equally_good(found.plain), full) if found.at_temperature else full
-    return replace(found, plain=plain, full=full)
+def with_doubt(found: NuisanceFit) -> NuisanceFit:
+    """The fits, the plain one with its distance from the full one."""
+    plain = _doubted(found.plain, found.full) if found.at_temperature else found.full
+    return replace(found, plain=plain)
 
 
 def _polished(
@@ -131,16 +129,8 @@ def _doubted(plain: Fitted, full: Fitted) -> Fitted:
     """
     names = plain.posterior.names
     shift = {name: plain.values[name] - full.values[name] for name in names if name in full.values}
-    reach = {name: COVERAGE_FACTOR_95 * size for name, size in shift.items()}
-    intervals = {
-        name: (value - math.hypot(value - low, reach[name]), value + math.hypot(high - value, reach[name]))
-        for name, (low, high) in plain.intervals.items()
-        if name in reach
-        for value in [plain.values[name]]
-    }
     return replace(
         plain,
         posterior=plain.posterior.shifted(np.array([shift.get(name, 0.0) for name in names])),
         stderr={name: math.hypot(u, shift.get(name, 0.0)) for name, u in plain.stderr.items()},
-        intervals={**plain.intervals, **intervals},
     )

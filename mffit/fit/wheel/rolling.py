@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Declaration
+from mffit.constants import ZERO_SIDESLIP
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
@@ -32,16 +33,7 @@ def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float)
 
 ROLLING = tuple(row.name for row in TABLE if row.channel == "My")
 """Coefficients of rolling resistance."""
-SPREADS = {
-    "QSY1": constants.QSY1_SPREAD,
-    "QSY2": constants.QSY2_SPREAD,
-    "QSY3": constants.QSY3_SPREAD,
-    "QSY4": constants.QSY4_SPREAD,
-    "QSY5": constants.QSY5_SPREAD,
-    "QSY6": constants.QSY6_SPREAD,
-    "QSY7": constants.QSY7_SPREAD,
-    "QSY8": constants.QSY8_SPREAD,
-}
+SPREADS = dict(zip(ROLLING, constants.ROLLING_SPREADS, strict=True))
 """Standard deviation of each among tyres."""
 BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
 MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
@@ -97,9 +89,7 @@ def coasting(points: Points, values: Mapping[str, Any]) -> Points:
 
     Nothing drives such a wheel, so that the moments about its axis balance: My = Fx times the loaded radius.
     """
-    straight = (
-        points.free_rolling & (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
-    )
+    straight = points.free_rolling & (np.abs(points.alpha) < ZERO_SIDESLIP.rad) & (points.phi_t == 0.0)
     driven = np.unique(points.sweep[~straight])
     used = np.isfinite(points.Fx) & ~np.isin(points.sweep, driven)
     rolling = points.select(used)

@@ -68,48 +68,18 @@ def derive(
         begin = {name: measured.get(name, float(values[name])) for name in names}
         ends = [
             Imitation(channel, found, coarse, *limits).solve(
-                _numbers({**begin, **{n: x for n, x in start.items() if n in begin}}, measured, hand),
-                steps=constants.COARSE_GRID_STEPS,
-                tolerance=constants.COARSE_GRID_TOLERANCE,
+                _numbers({**begin, **{n: x for n, x in start.items() if n in begin}}, hand),
+                tolerance=constants.STAGE_TOLERANCE,
             )
             for start in STARTS[channel]
         ]
         best = min(ends, key=lambda end: end.cost)
         refined = Imitation(channel, found, fine, *limits).solve(
-            _numbers(best.values, measured, hand),
-            steps=constants.FINE_GRID_STEPS,
+            _numbers(best.values, hand),
             tolerance=constants.REFIT_TOLERANCE,
         )
         found = {**found, **refined.values}
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
-
-
-def side_force_for(
-    weight: str,
-    values: Mapping[str, Any],
-    found: Mapping[str, float],
-    tested: Mapping[str, float],
-    written: Mapping[str, float],
-    measured: Mapping[str, float],
-    *,
-    symmetric: bool = False,
-    hand: Hand = NO_HAND,
-) -> dict[str, float]:
-    """Coefficients of the side force in the file for turn slip off with another weight, from those of :func:`derive`."""
-    road = road_grid(tested, written, float(values["FNOMIN"]))
-    names = hand.without_held(_free(both=False, symmetric=symmetric)["Fy"])
-    aim = Imitation(
-        "Fy",
-        values,
-        _goals(values, road, tested, None, weight),
-        envelope(written),
-        _lines(values, written),
-    )
-    start = {name: float(found.get(name, values[name])) for name in names}
-    end = aim.solve(
-        _numbers(start, measured, hand), steps=constants.FINE_GRID_STEPS, tolerance=constants.REFIT_TOLERANCE
-    )
-    return {**found, **end.values}
 
 
 def _goals(
@@ -146,15 +116,11 @@ def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
     return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
-def _numbers(start: Mapping[str, float], measured: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
-    """The numbers within their usual ranges, or as far as they start; camber stiffness has a weak prior at the measured one."""
-    size = max(abs(measured.get("PKY6", 1.0)), constants.LEAST_CAMBER_STIFFNESS)
-    spread = constants.CAMBER_STIFFNESS_TIE * size / constants.CAMBER_STIFFNESS_TIE_WEIGHT
+def _numbers(start: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
+    """The numbers within their usual ranges, or as far as they start."""
     out = []
     for name, value in start.items():
-        tied = name in CAMBER_STIFFNESS and name in measured
-        prior = {"expected": measured[name], "spread": spread} if tied else {}
         lower, upper = hand.bounded.get(name, BY_NAME[name].usual)
         begin = hand.inside(name, value)
-        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin), **prior))
+        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin)))
     return out

@@ -52,7 +52,7 @@ def road_grid(
 
 def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
     """Lines of camber without sideslip over the written range, one per load; and the number of conditions of each."""
-    loads, n = (int(k) for k in constants.CAMBER_LINE_GRID)
+    loads, n = int(constants.LOADS_OF_A_GRID), 2 * int(constants.STEPS_OF_A_GRID) - 1
     Fz, gamma = np.meshgrid(
         np.linspace(written["FZMIN"], written["FZMAX"], loads),
         np.linspace(-written["CAMMAX"], written["CAMMAX"], n),
@@ -64,7 +64,7 @@ def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
 
 CORNER = {
     "everything": float(constants.WEIGHT_IN_CORNER),
-    "road": float(constants.WEIGHT_IN_CORNER_OF_THE_ROAD),
+    "road": float(constants.LITTLE_WEIGHT),
 }
 """By ``[normal] weight``, the weight of conditions with much lean and much sideslip."""
 
@@ -79,7 +79,7 @@ def weights(road: Road, tested: Mapping[str, float], weight: str = "everything")
     """
     both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
     corner = CORNER[weight]
-    share = np.where(inside(road, tested), 1.0, constants.WEIGHT_OUTSIDE_TESTED)
+    share = np.where(inside(road, tested), 1.0, constants.LITTLE_WEIGHT)
     return np.asarray(share * (corner + (1.0 - corner) / (1.0 + both)))
 
 

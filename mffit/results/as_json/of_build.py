@@ -21,7 +21,6 @@ from mffit.fit.influences.nuisance_choice import Verdict
 from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.written.files import Files
-from mffit.fit.written.misfit import FileFigures
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.points.left_out import LeftOut
@@ -397,14 +396,6 @@ def _coefficient(found: Coefficient) -> dict[str, Any]:
     }
 
 
-def _otherwise(file: FileFigures) -> dict[str, Any]:
-    """The misfit of the file for turn slip off by the other choice under [normal]."""
-    return {
-        "straight": {channel: asdict(misfit) for channel, misfit in file.straight.items()},
-        "camber_stiffness_N_per_rad": file.camber_stiffness,
-    }
-
-
 def _files(files: Files) -> dict[str, Any]:
     """Misfits of each written file by use, and the ranges."""
     out: dict[str, Any] = {
@@ -425,7 +416,6 @@ def _files(files: Files) -> dict[str, Any]:
             "camber_stiffness_loss": files.stiffness_loss,
             "weight": files.weight,
             "camber_max_deg": None if files.camber_limit is None else math.degrees(files.camber_limit),
-            "otherwise": None if files.otherwise is None else _otherwise(files.otherwise),
             "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
         }
     return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}

@@ -135,8 +135,6 @@ def test_the_stated_misfit_is_that_of_the_two_files(files):
     assert stated.weighted == pytest.approx(
         np.sqrt(np.sum(weight * off[within] ** 2) / weight.sum()), rel=1e-6
     )
-    lean = within & (np.abs(grid.gamma) < np.radians(30.5))
-    assert stated.lean_30 == pytest.approx(np.sqrt(np.mean(off[lean] ** 2)), rel=1e-6)
 
 
 def test_camber_stiffness_and_its_loss_are_slopes_at_zero(files):
