@@ -72,19 +72,26 @@ def deliver(
     lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
     lags = {name: q for direction in lag for name, q in direction.found.items()}
     known = known.having({name: q.value for name, q in lags.items()}, "fitted")
-    own = (beside.radii.beside, rolling.beside, *(direction.beside for direction in lag))
+    own: tuple[BesideNumbers, ...] = (
+        beside.radii.beside,
+        rolling.beside,
+        *(direction.beside for direction in lag),
+    )
     posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
     lent = None if beside.sister is None else lend(beside.sister, known, posterior)
-    borrowed = {} if lent is None else dict(lent.found)
-    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    posterior = posterior if lent is None else lent.posterior
-    joined = []
+    joined: list[Joined] = []
+    if lent is not None:
+        known = known.having(lent.beside.values, "sister")
+        posterior = posterior.without(lent.found).with_numbers(lent.beside)
     for campaign in beside.campaigns:
         joined.append(join(campaign, known, posterior))
         known = known.having(joined[-1].values, "campaign")
-        borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
-        posterior = joined[-1].posterior
-    found = {**rolling.found, **beside.radii.found, **lags, **borrowed}
+        posterior = posterior.without(joined[-1].found).with_numbers(joined[-1].beside)
+    given: list[Lent | Joined] = [*([lent] if lent else []), *joined]
+    own = (*own, *(one.beside for one in given))
+    found = {**rolling.found, **beside.radii.found, **lags}
+    for one in given:
+        found |= {name: q for name, q in one.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
