@@ -2,8 +2,7 @@
 
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.ensemble import ensemble
-from mffit.fit.fitted import left_by, with_free_epsilon
+from mffit.fit.fitted import ensemble, left_by, with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
