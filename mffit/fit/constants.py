@@ -45,10 +45,6 @@ SAME_NOMINAL_CONDITION = Real(
 
 # Starting values
 
-SLIP_OF_THE_SLOPE = Real(0.025, "-", "Longitudinal slip up to which Fx is a straight line for the start.")
-PEAK_INSIDE = Real(0.9, "-", "Slip of the largest Fx over the largest slip below which it is a peak.")
-READABLE_WEIGHTS = Series((0.1, 0.95), "-", "Weights of combined slip from which a slope factor is read.")
-
 LEAST_GAIN_OF_MORE_TERMS = Real(
     0.1,
     "-",

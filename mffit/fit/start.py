@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from mffit.constants import ZERO_CAMBER
-from mffit.fit.driven_start import driven_starts
 from mffit.measured import Measured
 from mffit.points import Points, main_pressure
 from tir.parameters import BY_NAME
@@ -56,7 +55,6 @@ def starting_values(
     upright = np.abs(points.gamma) < ZERO_CAMBER.rad
     if np.any(upright) and "PDY1" not in held:
         start["PDY1"] = BY_NAME["PDY1"].inside(float(np.max(np.abs(points.Fy[upright]) / points.Fz[upright])))
-    start |= driven_starts(start, points, held)
     C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
         start |= _cornering_stiffness_terms(start, C_alpha, held)
