@@ -16,6 +16,9 @@ from tir.derivatives import gradient, plain, traced
 NEGLIGIBLE = 0.01
 """Share of the fall that ends a search below which a step is not worth trying, and a rise is none."""
 
+EXACT = 1e-9
+"""Spread of a number that is exactly known."""
+
 UNDAMPED = 1e-9
 """Damping that only keeps a form positive where rounding would not."""
 

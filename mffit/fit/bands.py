@@ -133,7 +133,7 @@ def bands_by_pressure(
         half,
         others,
         float(np.sqrt(variance)),
-        unseen if share > constants.WIDENING_SHARE else "",
+        unseen if share > 0.5 else "",
         share,
         exact,
     )

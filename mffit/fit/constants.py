@@ -59,10 +59,6 @@ SISTER_SLIP = Real(
 )
 
 # Other campaigns of the same tyre
-SAME_LOAD_OF_CAMPAIGNS = Real(0.05, "-", "Relative difference of loads at which friction is compared.")
-SIDESLIP_THAT_SHOWS_GRIP = Real(
-    4.0, "deg", "Sideslip to either side from which a sweep shows friction, not only stiffness."
-)
 UNKNOWN_RATIO_OF_GRIPS = Real(
     0.1, "-", "Relative uncertainty of the ratio of two surfaces' grips where nothing was run on both."
 )
@@ -123,10 +119,6 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 POINTS_OF_A_STAGE = Count(600, "-", "Most points of a stage or first pass; the polish uses all.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
 RESTART_MISFIT = Real(1.3, "-", "Misfit over stated noise above which alternative starting values are tried.")
-RESTART_GAIN = Real(0.97, "-", "A restart is kept if its sum of squares over the best one is below this.")
-FEWEST_SIDESLIPS_OF_A_SHAPE = Count(
-    5, "-", "Fewest levels of sideslip that show the shape of its curve, where Fx is fitted too."
-)
 STAGE_TOLERANCE = Real(1e-3, "-", "Relative gain that ends a stage or an early pass.")
 POLISH_TOLERANCE = Real(1e-6, "-", "Relative gain that ends the joint polish.")
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
@@ -136,24 +128,10 @@ REFIT_STEPS_UNDER_SLIP = Count(
     "-",
     "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape.",
 )
-STEPS_BACK_FROM_A_BOUND = Count(
-    6,
-    "-",
-    "Most steps of a refit with a coefficient put back from its bound: left-out sweeps are then predicted as at its end.",
-)
 
 # Bands
-WIDENING_SHARE = Real(
-    0.5, "-", "Share of the variance above which one coefficient is named as what widens the bands."
-)
 WIDER_BANDS = Real(
-    1.5, "-", "Ratio of bands between pressures to those at the usual one above which the report explains it."
-)
-
-MOST_SIDESLIPS_NAMED = Count(
-    7,
-    "-",
-    "Most sideslips of combined slip that a sentence lists; more fill a line and are given by their ends.",
+    1.5, "-", "Ratio of a band or an uncertainty to the usual one above which the report explains it."
 )
 
 # Ensemble
@@ -189,8 +167,8 @@ LITTLE_WEIGHT = Real(
     'Weight of what is kept plausible at little cost: untested conditions, and with [normal] weight = "road" a fall.',
 )
 WEIGHT_IN_CORNER = Real(0.5, "-", "Weight of conditions with large sideslip and large camber.")
-ROAD_ALPHA_SCALE = Real(4.0, "deg", "Sideslip that counts as large together with large camber.")
-ROAD_GAMMA_SCALE = Real(25.0, "deg", "Camber that counts as large together with large sideslip.")
+LARGE_SIDESLIP = Real(4.0, "deg", "Sideslip that counts as large: it shows friction, not only stiffness.")
+LARGE_CAMBER = Real(25.0, "deg", "Camber that counts as large together with large sideslip.")
 ROAD_RADII = Series((100.0, 30.0, 10.0), "m", "Roads for which the missing turn-slip force is stated.")
 
 # Derived files
@@ -210,10 +188,6 @@ FLAT_TRACK_ZERO_REACH = Real(
     "-",
     "Standard uncertainties that a zero of a flat track with one set-up may move. Ply-steer and conicity take up a larger one; "
     "beyond it, what looks like a zero is misfit of the formula that follows the sweeps.",
-)
-
-LEAST_CONICITY = Real(
-    1e-5, "-", "Smallest prior standard deviation of PVY1, where [rig] declares none: the fit divides by it."
 )
 
 SPIN_CORRECTION_OF_MODEL = Real(
@@ -240,14 +214,13 @@ RUN_SCATTER_STEPS = Count(25, "-", "Most steps of the search for this scatter.")
 RUN_SCATTER_TOLERANCE = Real(0.01, "-", "Relative change of the scatter that ends this search.")
 FEWEST_RUNS = Count(3, "-", "Fewest runs whose grip and stiffness can differ from one another.")
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
-NAMED_COEFFICIENTS = Count(4, "-", "Most coefficients named that moved.")
+NAMED_COEFFICIENTS = Count(
+    4, "-", "Most coefficients or sideslips that a sentence names; of more sideslips it gives the ends."
+)
 RUNS_ALONG = Real(
     0.5,
     "-",
     "Correlation of temperature and a setting of the plan above which both run along with each other.",
-)
-GROWN_UNCERTAINTY = Real(
-    1.5, "-", "Growth of a coefficient's uncertainty by temperature terms from which the order is criticised."
 )
 
 # Relaxation lengths from steps
@@ -270,7 +243,4 @@ CARCASS_TERM_SPREAD = Series(
     (0.2, 0.1, 0.3),
     "-",
     "Standard deviations of PCFX1-3 and PCFY1-3 that no run shows: public files have 0.1 to 0.2, -0.02 to -0.05, and 0.1 to 0.4.",
-)
-LARGEST_CARCASS_TERM = Real(
-    3.0, "-", "Size of PCFX1-3 and PCFY1-3 beyond which a carcass would be softer than none at tested loads."
 )

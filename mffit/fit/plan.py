@@ -10,7 +10,6 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.config.constants import PLAUSIBLE_CONICITY
-from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage, coverage, side_run
 from mffit.fit.known import Known
@@ -20,7 +19,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
-from mffit.least_squares import FreeNumber
+from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
@@ -120,7 +119,7 @@ def fit_plan(
     unseen = {name for row in cover for name in row.held if side_run(points)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)), unseen=unseen)
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
-        scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))
+        scatter["PVY1"] = config.rig.u_conicity or EXACT
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     absent |= {name for stage in STAGES if stage.if_predicted for name in stage.parameters}

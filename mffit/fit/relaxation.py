@@ -377,8 +377,7 @@ def _fitted(
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
     nominal, *terms = direction.names
-    most = float(constants.LARGEST_CARCASS_TERM)
-    numbers = {name: FreeNumber(name, 0.0, -most, most) for name in terms}
+    numbers = {name: FreeNumber(name, 0.0) for name in terms}
     for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
         if name not in names:  # not shown by these runs, and yet not exactly as in the file
             numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)

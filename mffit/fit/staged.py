@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
+from mffit.constants import FALSE_ALARM, ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
@@ -19,11 +20,14 @@ from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
 from mffit.least_squares import minimum
-from mffit.points import Points, levels, main_pressure
+from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS, column
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
+
+CLEARLY_LESS = -2.0 * math.log(FALSE_ALARM)
+"""Fall of a sum of squares that makes a fit so much likelier that chance seldom does it."""
 
 
 def fit_staged(
@@ -47,7 +51,7 @@ def fit_staged(
     for shape, values in ALTERNATIVE_STARTS.items():
         progress(f"starting again from {shape}")
         other = _fit_from({**start, **values}, problem, plan, silent)
-        if other.cost < constants.RESTART_GAIN * best.cost:
+        if other.cost < best.cost - CLEARLY_LESS:
             best = other
     return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
 
@@ -56,14 +60,7 @@ def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
     """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
     shapes = (fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES
-    return far or bool(shapes and _shapes_show(fitted.problem.points, plan))
-
-
-def _shapes_show(points: Points, plan: FitPlan) -> bool:
-    """Whether curves over sideslip were swept; sweeps of longitudinal slip alone leave their shape to bounds and priors."""
-    return "Fx" not in plan.channels or (
-        levels.count(points.alpha, levels.SIDESLIP) >= constants.FEWEST_SIDESLIPS_OF_A_SHAPE
-    )
+    return far or bool(shapes)
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, progress: Progress) -> Fitted:

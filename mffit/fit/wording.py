@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
 from mffit.config import Config
+from mffit.constants import FALSE_ALARM
 from mffit.fit import constants
 from mffit.fit.bands import BandOfCombined, BandOfOtherSide, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
-from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
-from mffit.fit.priors import Prior
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
@@ -24,7 +25,6 @@ from mffit.measured import Measured
 from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
-from tir import Quantity
 from tir.parameters import BY_NAME
 
 RARE = "the range of usual tyres"
@@ -175,7 +175,7 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
     degrees = [round(float(np.degrees(alpha)), 1) + 0.0 for alpha in sideslips]
     if not any(degrees):
         return "without sideslip"
-    if len(degrees) > constants.MOST_SIDESLIPS_NAMED:
+    if len(degrees) > constants.NAMED_COEFFICIENTS:
         return f"at sideslips of {degrees[0]:g} to {degrees[-1]:g} deg"
     *others, last = (f"{alpha:g}" for alpha in degrees)
     return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
@@ -340,14 +340,30 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
             "its prior counts as its value and uncertainty" if name in hand.priors else "nothing was searched"
         )
         out.append(f"{name} is set in [coefficients], but the points do not free it{why}: {given}")
-    return out + [_contradiction(*row) for row in contradicted_priors(fitted)]
+    return [*out, *contradicted_priors(fitted)]
 
 
-def _contradiction(name: str, points: Quantity, prior: Prior, apart: float) -> str:
-    return (
-        f"the points alone give {name} = {points.value:.4g} +- {points.u:.2g}, {apart:.1f} standard deviations from the "
-        f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
-    )
+def contradicted_priors(fitted: Fitted) -> Iterator[str]:
+    """The priors set by hand that differ from the points by more than chance explains.
+
+    The posterior of one number is the mean of prior and points, weighted by their information, so that the part of the points
+    follows from posterior and prior.
+    """
+    stderr = fitted.posterior.stderr
+    far = float(-ndtri(FALSE_ALARM / (2.0 * max(len(fitted.hand.priors), 1))))
+    for name, prior in fitted.hand.priors.items():
+        if name not in fitted.values or name in fitted.at_bound:
+            continue
+        both, own = stderr[name] ** -2.0, prior.spread**-2.0
+        if not both > own:  # the points say nothing
+            continue
+        value, u = (both * fitted.values[name] - own * prior.expected) / (both - own), (both - own) ** -0.5
+        apart = abs(value - prior.expected) / math.hypot(u, prior.spread)
+        if apart > far:
+            yield (
+                f"the points alone give {name} = {value:.4g} +- {u:.2g}, {apart:.1f} standard deviations from the "
+                f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
+            )
 
 
 def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:

@@ -99,7 +99,7 @@ def shared_conditions(one: Points, other: Points) -> tuple[np.ndarray, float] | 
         (0.5 * (a + c), 0.5 * (b + d), k)
         for a, b, k in mine
         for c, d, _ in theirs
-        if abs(a / c - 1.0) < constants.SAME_LOAD_OF_CAMPAIGNS and abs(b - d) < levels.PRESSURE.tolerance
+        if abs(a / c - 1.0) < levels.LOAD.tolerance and abs(b - d) < levels.PRESSURE.tolerance
     ]
     if not pairs:
         return None
@@ -118,7 +118,7 @@ def _swept(points: Points) -> list[tuple[float, float, int]]:
     found = []
     for where in {(a, b) for a, b in zip(load.tolist(), p.tolist(), strict=True) if np.isfinite(a + b)}:
         alpha = upright.alpha[(load == where[0]) & (p == where[1])]
-        if min(alpha.max(), -alpha.min()) >= constants.SIDESLIP_THAT_SHOWS_GRIP.rad:
+        if min(alpha.max(), -alpha.min()) >= constants.LARGE_SIDESLIP.rad:
             found.append((*where, len(alpha)))
     return found
 

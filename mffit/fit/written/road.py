@@ -77,7 +77,7 @@ def weights(road: Road, tested: Mapping[str, float], weight: str = "everything")
     the corner of 8 deg of sideslip and 50 deg of camber. With ``weight = "road"`` a fiftieth remains in the corner instead of
     1/2. Conditions outside the tested ranges have a fiftieth of it.
     """
-    both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
+    both = (road.alpha / constants.LARGE_SIDESLIP.rad * road.gamma / constants.LARGE_CAMBER.rad) ** 2
     corner = CORNER[weight]
     share = np.where(inside(road, tested), 1.0, constants.LITTLE_WEIGHT)
     return np.asarray(share * (corner + (1.0 - corner) / (1.0 + both)))
