@@ -6,7 +6,6 @@ from mffit.fit.fitted import ensemble, left_by, with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
-from mffit.fit.stages import StageRecord
 from mffit.fit.straight import straight_cornering_stiffness
 from mffit.fit.written.files import file_names, name_at_temperature, plain_use
 
@@ -15,7 +14,6 @@ __all__ = [
     "Coefficient",
     "FitResult",
     "Posterior",
-    "StageRecord",
     "ensemble",
     "file_names",
     "fit",

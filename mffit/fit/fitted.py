@@ -12,7 +12,6 @@ from mffit.fit.beside import BesideNumbers
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
-from mffit.fit.stages import StageRecord
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
@@ -40,7 +39,6 @@ class Fitted:
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
     cost: float  #: sum of squares of data, priors and broken limits
-    stages: tuple[StageRecord, ...] = ()
     attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 

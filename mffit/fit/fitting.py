@@ -124,7 +124,6 @@ def fit(
         rig={**fitted.rig, **made.zeros},
         model=readings,
         posterior=made.posterior,
-        stages=fitted.stages,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),

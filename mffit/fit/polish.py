@@ -1,17 +1,69 @@
-"""The joint polish: all free coefficients and rig errors together, fitted to all points."""
+"""The joint fit: all free coefficients and rig errors together, fitted to all points, from one start or from several."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from mffit.constants import FALSE_ALARM
+from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
+from mffit.fit.same_curve import with_expected_signs
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
+from mffit.points import Points
+from mffit.progress import Progress
+from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
+from tir.parameters import BY_NAME
+
+CLEARLY_LESS = -2.0 * math.log(FALSE_ALARM)
+"""Fall of a sum of squares that makes a fit so much likelier that chance seldom does it."""
+
+
+def best_fit(
+    problem: FitProblem,
+    start: Mapping[str, float],
+    plan: FitPlan,
+    progress: Progress,
+    *,
+    restarts: bool = True,
+    explained: Callable[[Fitted], bool] = lambda fitted: False,
+) -> Fitted:
+    """The best fit from ``start`` and, if that one ends far above the noise, from alternative starting values.
+
+    ``explained`` is called with the first fit before alternatives are tried: they are not if it returns True, and it may refuse
+    the data.
+    """
+    _require_enough_points(problem.points, plan.free)
+    progress("fitting tyre and rig")
+    best = _fit_from(start, problem, plan)
+    if not restarts or not restart_worthwhile(best, plan) or explained(best):
+        return best
+    for shape, values in ALTERNATIVE_STARTS.items():
+        progress(f"starting again from {shape}")
+        other = _fit_from({**start, **values}, problem, plan)
+        if other.cost < best.cost - CLEARLY_LESS:
+            best = other
+    return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
+
+
+def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
+    """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
+    far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
+    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES)
+
+
+def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
+    return polish(problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)}), plan)
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -20,7 +72,10 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
     readings that state no uncertainty get that of their misfit.
     """
-    problem, scale = _approached(stated, plan).with_noise_of_misfit().reweighted()
+    near = _approached(stated, plan)
+    expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
+    near = near.with_values(with_expected_signs(near.simulation.values, expected))
+    problem, scale = near.with_noise_of_misfit().reweighted()
     problem, solution = _solved(problem, plan.numbers(problem))
     return _fitted(problem, solution, plan.numbers(problem), plan, scale)
 
@@ -91,3 +146,14 @@ def _within_their_priors(errors: Mapping[str, float], numbers: Sequence[FreeNumb
     """Coefficients that the points determine better than their priors do."""
     share = constants.FITTED_SHARE_OF_PRIOR
     return frozenset(name for name, spread in _with_prior(numbers).items() if errors[name] < share * spread)
+
+
+def _require_enough_points(points: Points, free: Sequence[str]) -> None:
+    needed = Counter(BY_NAME[name].channel or "Fy" for name in free)
+    for channel in CHANNELS:
+        available = int(np.sum(np.isfinite(points.channel(channel))))
+        if needed[channel] and available <= needed[channel]:
+            raise InputError(
+                f"{available} points of {column(channel)} cannot determine the {needed[channel]} coefficients that these sweeps "
+                "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
+            )

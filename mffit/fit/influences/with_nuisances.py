@@ -14,9 +14,8 @@ from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, c
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import polish
+from mffit.fit.polish import best_fit, polish, restart_worthwhile
 from mffit.fit.problem import FitProblem
-from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 
@@ -61,13 +60,13 @@ def fit_with_nuisances(
         held = {name: plan.expected[name] for name in plan.free if name not in known.free}
         if held:
             again = polish(fitted.problem.with_values(held), known)
-            fitted = replace(again, stages=fitted.stages, attempts=fitted.attempts)
+            fitted = replace(again, attempts=fitted.attempts)
             near = near.with_values(held)
 
         def refit(rows: np.ndarray) -> Fitted:
             part, key = problem.select(rows), (rows.tobytes(), *known.free)
             if key not in staged:
-                staged[key] = fit_staged(part, start, known, silent, restarts=False)
+                staged[key] = best_fit(part, start, known, silent, restarts=False)
             return _polished(config, part, known, choice, choice.modelled, staged[key])
 
         if choice.modelled:
@@ -90,7 +89,7 @@ def fit_with_nuisances(
         before_restarts(found)
         return False
 
-    fitted = fit_staged(problem, start, plan, progress, explained=explained)
+    fitted = best_fit(problem, start, plan, progress, explained=explained)
     return first[0] if first else extended(fitted)
 
 
@@ -119,7 +118,7 @@ def _polished(
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
     found = polish(here.with_noise_of_misfit(), plan)
-    return replace(found, stages=fitted.stages, attempts=fitted.attempts)
+    return replace(found, attempts=fitted.attempts)
 
 
 def _doubted(plain: Fitted, full: Fitted) -> Fitted:

@@ -24,7 +24,6 @@ from mffit.fit.written.files import Files
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.points.left_out import LeftOut
-from mffit.quantities import column
 from mffit.results.as_json.values import picked, plain, stated
 from mffit.results.records import BuildResult
 from mffit.rig_errors import unit_of
@@ -136,11 +135,6 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         ],
         "bands": _bands(found.bands, found.band_of_combined) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
-        "stages": [
-            picked(stage, "name", "parameters")
-            | {f"rmse_{column(channel)}": rmse for channel, rmse in stage.rmse.items()}
-            for stage in found.stages
-        ],
         "coverage": [picked(row, "stage", "supported", "held", "missing") for row in found.coverage],
         "left": found.left,
         "files": _files(found.files) if found.files is not None else {},

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from mffit.fit import staged
+from mffit.fit import polish
 from mffit.fit.start import ALTERNATIVE_STARTS
 from mffit.progress import silent
 
@@ -24,8 +24,8 @@ class End:
 def test_a_restart_is_kept_only_where_it_is_clearly_better(monkeypatch, fall, kept):
     """A fit is a hundred times likelier if the sum of squares is lower by 2 ln 100 = 9.2."""
     costs = iter([1000.0, *(1000.0 - fall,) * len(ALTERNATIVE_STARTS)])
-    monkeypatch.setattr(staged, "_fit_from", lambda *_: End(next(costs)))
-    monkeypatch.setattr(staged, "restart_worthwhile", lambda *_: True)
-    monkeypatch.setattr(staged, "_require_enough_points", lambda *_: None)
-    found = staged.fit_staged(SimpleNamespace(points=None), {}, SimpleNamespace(free=[]), silent)
+    monkeypatch.setattr(polish, "_fit_from", lambda *_: End(next(costs)))
+    monkeypatch.setattr(polish, "restart_worthwhile", lambda *_: True)
+    monkeypatch.setattr(polish, "_require_enough_points", lambda *_: None)
+    found = polish.best_fit(SimpleNamespace(points=None), {}, SimpleNamespace(free=[]), silent)
     assert found == End(kept, tuple(ALTERNATIVE_STARTS))
