@@ -17,7 +17,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
-from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, SHAPES_OF_FX
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
 from mffit.points import Points
 from mffit.progress import Progress
@@ -63,16 +63,17 @@ def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
-    return polish(problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)}), plan)
+    here = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
+    return polish(here, plan, SHAPES_OF_FX if "PCX1" in plan.free else ())
 
 
-def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
+def polish(stated: FitProblem, plan: FitPlan, shapes: Sequence[Mapping[str, float]] = ()) -> Fitted:
     """The joint fit with its errors, those of the quadratic form around it.
 
     Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
     readings that state no uncertainty get that of their misfit.
     """
-    near = _approached(stated, plan)
+    near = _approached(stated, plan, shapes)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
     problem, scale = near.with_noise_of_misfit().reweighted()
@@ -110,15 +111,20 @@ def _fitted(
     )
 
 
-def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
-    """The problem near its solution, by passes over more and more of its points."""
+def _approached(problem: FitProblem, plan: FitPlan, shapes: Sequence[Mapping[str, float]] = ()) -> FitProblem:
+    """The problem near its solution, by passes over more and more of its points; the first one from further ``shapes`` too."""
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
-        numbers = plan.numbers(thinned)
-        near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
-        problem = problem.with_values(near.values)
+        ends = []
+        for shape in ({}, *shapes):
+            begin = thinned.with_values(
+                {n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free}
+            )
+            numbers = plan.numbers(begin)
+            ends.append(minimum(begin.free([n.name for n in numbers]), numbers, tolerance=tolerance))
+        problem, shapes = problem.with_values(min(ends, key=lambda end: end.cost).values), ()
     return problem
 
 

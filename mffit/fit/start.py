@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,8 @@ ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
     "a long trail": {"QBZ1": 5.0, "QCZ1": 1.1, "QEZ1": -3.0, "QEZ2": 0.0},
 }
 """Alternative starting values, tried if the first fit ends far above the noise."""
+SHAPES_OF_FX: Sequence[Mapping[str, float]] = ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4})
+"""Further starts of the longitudinal force, whose shape factor can have several minima."""
 SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in values)
 """Coefficients of the shape of a curve, which can compensate for each other."""
 
