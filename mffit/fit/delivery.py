@@ -22,7 +22,6 @@ from mffit.fit.relaxation import Relaxation, relaxation
 from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files, make_files
-from mffit.measured import Measured
 from mffit.points import Points
 from tir import Tyre
 
@@ -58,7 +57,6 @@ def deliver(
     config: Config,
     known: Known,
     points: Points,
-    measured: Measured,
     base: Tyre | None,
     fitted: Fitted,
     beside: Beside,
@@ -93,7 +91,7 @@ def deliver(
     for one in given:
         found |= {name: q for name, q in one.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
-    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
+    files = make_files(config, known, points, base, only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
     return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)
 

@@ -103,11 +103,11 @@ def fit(
     progress("deriving the property files")
     use = plain_use(config)
     beside = Beside(radii, steps, sister, campaigns)
-    made = deliver(config, known, points, measured, base, fitted, beside)
+    made = deliver(config, known, points, base, fitted, beside)
     files = made.files
     temperature = None
     if found.at_temperature:
-        special = deliver(config, known, points, measured, base, full, beside, only=use)
+        special = deliver(config, known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 

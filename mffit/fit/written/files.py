@@ -11,11 +11,10 @@ from mffit.fit import constants
 from mffit.fit.known import Known
 from mffit.fit.ranges import NAMES as RANGES
 from mffit.fit.ranges import plausible_ranges, sideslips_with_slip, tested_ranges, with_room
-from mffit.fit.start import camber_stiffness_terms
 from mffit.fit.written.misfit import FileFigures, Reference
 from mffit.fit.written.normal import derive
 from mffit.fit.written.road import held_to_camber, road_grid
-from mffit.points import Points, main_path, main_pressure
+from mffit.points import Points, main_path
 from tir import Tyre
 
 
@@ -58,13 +57,12 @@ def make_files(
     known: Known,
     points: Points,
     base: Tyre | None,
-    C_gamma: Mapping[float, float],
     *,
     only: str | None = None,
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one.
 
-    ``C_gamma`` is the measured camber stiffness [N/rad] by load [N]; empty on a flat track. ``only``: the file for one use.
+    ``only``: the file for one use.
     """
     disc = config.rig.on_disc
     tested = tested_ranges(points)
@@ -75,8 +73,6 @@ def make_files(
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
     asked = config.normal.camber_max if disc else None
     camber = None if asked is None or asked >= written["CAMMAX"] else asked
-    main = float(points.p[main_pressure(points)].mean())
-    terms = camber_stiffness_terms(model, C_gamma, main, known.hand.held)
     symmetric = config.tyre.side == "symmetric"
 
     def changed(use: str) -> dict[str, float]:
@@ -89,7 +85,6 @@ def make_files(
             model,
             held_to_camber(tested, to),
             held_to_camber(written, to),
-            terms,
             both_on=main_path(points) if both else None,
             symmetric=symmetric,
             hand=known.hand,

@@ -19,29 +19,14 @@ class Road(NamedTuple):
     pressure: np.ndarray  #: [Pa]
 
 
-class _Density(NamedTuple):
-    """Numbers of values of a grid."""
-
-    gamma: int
-    alpha_tested: int
-    alpha_beyond: int  #: to either side
-    Fz_tested: int
-
-
-COARSE, FINE = _Density(7, 7, 1, 2), _Density(11, 13, 3, 4)
-
-
-def road_grid(
-    tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float, *, dense: bool = True
-) -> Road:
+def road_grid(tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float) -> Road:
     """Conditions over the written ranges: denser inside the tested ones, pressures off the middle at one load only."""
-    density = FINE if dense else COARSE
-    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], density.gamma)
-    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], density.alpha_tested)
-    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], density.alpha_beyond + 1)[1:]
+    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], 11)
+    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], 13)
+    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], 4)[1:]
     alpha = np.unique(np.concatenate([-beyond, inside, beyond]))
     main = 0.5 * (tested["PRESMIN"] + tested["PRESMAX"])
-    within = np.linspace(tested["FZMIN"], tested["FZMAX"], density.Fz_tested)
+    within = np.linspace(tested["FZMIN"], tested["FZMAX"], 4)
     loads = np.unique([written["FZMIN"], *within, written["FZMAX"]])
     middle = float(np.clip(nominal_load, tested["FZMIN"], tested["FZMAX"]))
     cases = [(load, main) for load in loads]

@@ -124,8 +124,7 @@ def test_the_missing_force_and_stiffness_of_the_normal_file_are_stated(result):
 
 def test_with_the_weight_of_the_road_the_file_is_better_where_one_rides(result):
     files, values = result.fit.files, dict(result.tyre.values)
-    terms = {name: values[name] for name in ("PKY6", "PKY7")}
-    made = derive(values, files.tested, files.written, terms, weight="road")
+    made = derive(values, files.tested, files.written, weight="road")
     road = road_grid(files.tested, files.written, values["FNOMIN"])
     aim = forces(values, road, turn_slip=True).Fy
     off = forces({**values, **made}, road, turn_slip=False).Fy - aim
@@ -210,9 +209,8 @@ def test_one_file_for_both_uses_is_better_than_either_in_the_other_ones_use(samp
     truth = tir.read(SAMPLES / sample / "true.tir")
     values, tested = dict(truth.values), normal_study.tested(truth)
     written = {**tested}
-    terms = {name: values[name] for name in ("PKY6", "PKY7")}
-    both = {**values, **derive(values, tested, written, terms, both_on=-1 / 1.323)}
-    normal = {**values, **derive(values, tested, written, terms)}
+    both = {**values, **derive(values, tested, written, both_on=-1 / 1.323)}
+    normal = {**values, **derive(values, tested, written)}
     road = normal_study.box(values["FNOMIN"], values["NOMPRES"])
 
     def misfit(file, *, turn_slip, phi_t=0.0):
