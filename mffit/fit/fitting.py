@@ -32,8 +32,7 @@ from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import relaxation_sentences
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.rig.zeros import turning_zeros
+from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
 from mffit.fit.start import starting_values
 from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.fit.rig.virtual_zero import BESIDE_ZERO
+from mffit.fit.rig.zeros import BESIDE_ZERO
 from mffit.fit.written.imitation import forces
 from mffit.fit.written.road import Road, inside, weights
 from mffit.scatter import rms
