@@ -17,6 +17,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
+from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, SHAPES_OF_FX
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
 from mffit.points import Points
@@ -69,17 +70,29 @@ def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
-    here = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
-    return polish(here, plan, SHAPES_OF_FX if "PCX1" in plan.free else ())
+    """The polish, after a first pass in which only coefficients of the upright wheel on a straight path are free.
+
+    The weights of that pass are those of the start, whose misfit says little. With every number free from there, a search can end
+    where limits hold the curvature of a curve that camber or spin bent.
+    """
+    problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
+    part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
+    ends = []
+    for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
+        begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
+        numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
+        found = minimum(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+        ends.append(found)
+    return polish(problem.with_values(min(ends, key=lambda end: end.cost).values), plan)
 
 
-def polish(stated: FitProblem, plan: FitPlan, shapes: Sequence[Mapping[str, float]] = ()) -> Fitted:
+def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit with its errors, those of the quadratic form around it.
 
     Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
     readings that state no uncertainty get that of their misfit.
     """
-    near = _approached(stated, plan, shapes)
+    near = _approached(stated, plan)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
     problem, scale = near.with_noise_of_misfit().reweighted()
@@ -117,27 +130,21 @@ def _fitted(
     )
 
 
-def _approached(problem: FitProblem, plan: FitPlan, shapes: Sequence[Mapping[str, float]] = ()) -> FitProblem:
-    """The problem near its solution, by passes over more and more of its points; the first one from further ``shapes`` too."""
+def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
+    """The problem near its solution, by passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
-        ends = []
-        for shape in ({}, *shapes):
-            begin = thinned.with_values(
-                {n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free}
-            )
-            numbers = plan.numbers(begin)
-            ends.append(minimum(begin.free([n.name for n in numbers]), numbers, tolerance=tolerance))
-        problem, shapes = problem.with_values(min(ends, key=lambda end: end.cost).values), ()
+        numbers = plan.numbers(thinned)
+        near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+        problem = problem.with_values(near.values)
     return problem
 
 
 def _strides(n: int) -> Iterator[int]:
     """Strides that thin n points in successive passes before the final fit to all of them."""
     stride = max(1, n // constants.POINTS_OF_A_STAGE)
-    yield stride  # with the weights of the start, whose misfit says little
     yield stride
     while stride > constants.STRIDE_DIVISOR**2:
         stride //= constants.STRIDE_DIVISOR

@@ -62,3 +62,7 @@ ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
 """Prior standard deviation, from road tyres, of coefficients that a disc shows only together with a larger effect: conicity with
 the turn-slip force, ply-steer with the zero of the sideslip axis."""
+OF_CAMBER_OR_SPIN = frozenset(
+    row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled", "curvature")
+)
+"""Coefficients that act only on a cambered wheel or on a curved path."""
