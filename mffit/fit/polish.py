@@ -52,15 +52,16 @@ def best_fit(
     for shape, values in ALTERNATIVE_STARTS.items():
         progress(f"starting again from {shape}")
         other = _fit_from({**start, **values}, problem, plan)
-        if _deviance(other, problem) < _deviance(best, problem) - CLEARLY_LESS:
+        if _cost(other, best.problem) < _cost(best, best.problem) - CLEARLY_LESS:
             best = other
     return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
 
 
-def _deviance(fitted: Fitted, stated: FitProblem) -> float:
-    """-2 log likelihood, but for a constant: weights that are reduced for a misfit are no gain."""
-    shares = [np.log(u / stated.sigma[name]) for name, u in fitted.problem.sigma.items()]
-    return fitted.cost + 2.0 * sum(float(np.sum(share[np.isfinite(share)])) for share in shares)
+def _cost(fitted: Fitted, weighted: FitProblem) -> float:
+    """Sum of squares of a fit by the weights of another: its own are reduced where it misses, which is no gain."""
+    data = replace(weighted, simulation=fitted.problem.simulation).misfit().values()
+    priors = [(n.start - n.expected) / n.spread for n in fitted.numbers]  # 0 without a prior
+    return float(sum(z @ z for z in data) + np.sum(np.square(priors)))
 
 
 def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
@@ -70,10 +71,10 @@ def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
-    """The polish, after a first pass in which only coefficients of the upright wheel on a straight path are free.
+    """The polish, after a pass in which only coefficients of the upright wheel on a straight path are free, and one with all.
 
-    The weights of that pass are those of the start, whose misfit says little. With every number free from there, a search can end
-    where limits hold the curvature of a curve that camber or spin bent.
+    With every number free at once, a search can end where limits hold the curvature of a curve that camber or spin bent. Both
+    passes have the weights of the start: those of an upright fit would count what it lacks as outliers.
     """
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
@@ -83,7 +84,10 @@ def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) ->
         numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
         found = minimum(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
         ends.append(found)
-    return polish(problem.with_values(min(ends, key=lambda end: end.cost).values), plan)
+    best = part.with_values(min(ends, key=lambda end: end.cost).values)
+    numbers = plan.numbers(best)
+    near = minimum(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    return polish(problem.with_values(near.values), plan)
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:

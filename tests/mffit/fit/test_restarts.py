@@ -10,32 +10,48 @@ import pytest
 
 from mffit.fit import polish
 from mffit.fit.start import ALTERNATIVE_STARTS
+from mffit.least_squares import FreeNumber
 from mffit.progress import silent
 
 
 @dataclass(frozen=True)
 class End:
-    """As much of a fit as the choice needs: the misfit of 100 readings, by which their weights are reduced."""
+    """As much of a fit as the choice needs."""
 
-    misfit: float
+    cost: float
+    problem: None = None
     attempts: tuple[str, ...] = ()
 
-    @property
-    def cost(self):
-        return 100.0
 
-    @property
-    def problem(self):
-        return SimpleNamespace(sigma={"Fy": np.full(100, self.misfit)})
-
-
-@pytest.mark.parametrize(("other", "kept"), [(1.97, 2.0), (1.5, 1.5), (3.0, 2.0)])
-def test_a_restart_is_kept_only_where_it_is_clearly_better(monkeypatch, other, kept):
-    """A fit is a hundred times likelier if -2 log likelihood is lower by 9.2, here with 100 readings at a misfit below 1.91."""
-    ends = iter([End(2.0), *(End(other),) * len(ALTERNATIVE_STARTS)])
+@pytest.mark.parametrize(("fall", "kept"), [(5.0, 1000.0), (15.0, 985.0)])
+def test_a_restart_is_kept_only_where_it_is_clearly_better(monkeypatch, fall, kept):
+    """A fit is a hundred times likelier if the sum of squares is lower by 2 ln 100 = 9.2."""
+    ends = iter([End(1000.0), *(End(1000.0 - fall),) * len(ALTERNATIVE_STARTS)])
     monkeypatch.setattr(polish, "_fit_from", lambda *_: next(ends))
+    monkeypatch.setattr(polish, "_cost", lambda fitted, weighted: fitted.cost)
     monkeypatch.setattr(polish, "restart_worthwhile", lambda *_: True)
     monkeypatch.setattr(polish, "_require_enough_points", lambda *_: None)
-    stated = SimpleNamespace(points=None, sigma={"Fy": np.ones(100)})
-    found = polish.best_fit(stated, {}, SimpleNamespace(free=[]), silent)
-    assert found == End(kept, tuple(ALTERNATIVE_STARTS))
+    found = polish.best_fit(SimpleNamespace(points=None), {}, SimpleNamespace(free=[]), silent)
+    assert found == End(kept, None, tuple(ALTERNATIVE_STARTS))
+
+
+def test_fits_are_compared_by_the_same_weights():
+    """A fit that misses readings by 3 of their uncertainty is no better because it gives them a third of the weight."""
+
+    @dataclass(frozen=True)
+    class Weighted:
+        sigma: float
+        simulation: float
+
+        def misfit(self):
+            return {"Fy": np.full(10, self.simulation / self.sigma)}
+
+    def fit(sigma, misses):
+        return SimpleNamespace(
+            problem=Weighted(sigma, misses),
+            numbers=[FreeNumber("a", 3.0, expected=1.0, spread=1.0), FreeNumber("b", 9.0)],
+        )
+
+    good, bad = fit(1.0, 1.0), fit(3.0, 3.0)
+    assert polish._cost(good, good.problem) == pytest.approx(10.0 + 4.0)
+    assert polish._cost(bad, good.problem) == pytest.approx(90.0 + 4.0)
