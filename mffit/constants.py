@@ -60,7 +60,9 @@ NEARLY_CERTAIN = Real(0.99, "-", "Confidences above this are written as more tha
 LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a terminal shows it whole.")
 
 # Judged by prediction
-PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any candidate pass (Bonferroni).")
+PREDICTION_FALSE_ALARM = Real(
+    0.01, "-", "Probability that chance lets any of several candidates, readings or sweeps pass (Bonferroni)."
+)
 LEAST_PREDICTED_SHARE = Real(
     0.02, "-", "Share of the misfit that a candidate must remove; a channel that loses less is no worse."
 )

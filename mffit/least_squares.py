@@ -16,6 +16,9 @@ from tir.derivatives import gradient, plain, traced
 NEGLIGIBLE = 0.01
 """Share of the fall that ends a search below which a step is not worth trying, and a rise is none."""
 
+EXACT = 1e-9
+"""Spread of a number that is exactly known."""
+
 UNDAMPED = 1e-9
 """Damping that only keeps a form positive where rounding would not."""
 
@@ -46,7 +49,7 @@ class Linear:
 
 def broken(limits: np.ndarray) -> np.ndarray:
     """What physical limits (l,) cost: their residuals where they are broken, 0 where they are kept."""
-    return np.maximum(limits, 0.0)
+    return np.asarray(np.maximum(limits, 0.0))
 
 
 def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
@@ -224,14 +227,14 @@ def inverse(information: np.ndarray) -> np.ndarray:
     scale = np.sqrt(np.maximum(np.diag(information), 1e-24))
     size, axes = np.linalg.eigh(information / np.outer(scale, scale))
     floor = 1e-14 * max(size.max(initial=0.0), 1e-300)
-    return (axes / np.maximum(size, floor)) @ axes.T / np.outer(scale, scale)
+    return np.asarray((axes / np.maximum(size, floor)) @ axes.T / np.outer(scale, scale))
 
 
 def root(covariance: np.ndarray) -> np.ndarray:
     """A matrix (k, k) whose product with its transpose is the covariance; the numbers may differ by orders of magnitude."""
     scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
-    return scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0))
+    return np.asarray(scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0)))
 
 
 class _Objective(NamedTuple):

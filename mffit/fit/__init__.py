@@ -2,12 +2,10 @@
 
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.ensemble import ensemble
-from mffit.fit.fitted import left_by, with_free_epsilon
+from mffit.fit.fitted import ensemble, left_by, with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
-from mffit.fit.stages import StageRecord
 from mffit.fit.straight import straight_cornering_stiffness
 from mffit.fit.written.files import file_names, name_at_temperature, plain_use
 
@@ -16,7 +14,6 @@ __all__ = [
     "Coefficient",
     "FitResult",
     "Posterior",
-    "StageRecord",
     "ensemble",
     "file_names",
     "fit",

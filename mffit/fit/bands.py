@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
 from mffit.fit import constants
 from mffit.fit.coverage import side_run
 from mffit.fit.posterior import Posterior, spread_through
@@ -67,38 +67,30 @@ def band_of_other_side(posterior: Posterior, tyre: Simulation, points: Points) -
     if not side_run(points) or np.any(points.phi_t):
         return None
     alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
-    tested = tested_ranges(points)
-    Fz = np.linspace(tested["FZMIN"], tested["FZMAX"], int(constants.BAND_GRID[0]))
-    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
-    half, opposite = (
-        rms(posterior.band(tyre, make_points(a, 0.0, Fz, p=p, V=V, phi_t=0.0), ("Fy",)).Fy)
-        for a in (alpha, -alpha)
-    )
-    return BandOfOtherSide(alpha, half, opposite)
+    return BandOfOtherSide(alpha, *(_half_at(posterior, tyre, points, "Fy", a) for a in (alpha, -alpha)))
 
 
 def band_of_combined(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfCombined | None:
     """The band of Fx at the one sideslip with longitudinal slip, and before it; None without such, and with several."""
-    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > constants.COUPLED_ALPHA.rad]
+    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > STRAIGHT.rad]
     sizes = {int(k) for k in levels.nearest_labels(np.abs(run), levels.SIDESLIP)} if run else set()
     if len(sizes) != 1 or "Fx" not in points.measured:
         return None
+    halves = (_half_at(posterior, tyre, points, "Fx", alpha) for alpha in (run[-1], 0.5 * run[-1]))
+    return BandOfCombined(abs(run[-1]), *halves)
+
+
+def _half_at(posterior: Posterior, tyre: Simulation, points: Points, channel: str, alpha: float) -> float:
+    """Rms half width of the 95 % band of a channel at a sideslip, over the tested loads and, of Fx, longitudinal slips."""
     tested = tested_ranges(points)
-    loads, _, slips = (int(n) for n in constants.BAND_GRID)
-    Fz, kappa = (
-        axis.ravel()
-        for axis in np.meshgrid(
-            np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
-            np.linspace(tested["KPUMIN"], tested["KPUMAX"], slips),
-        )
+    ends = (tested["KPUMIN"], tested["KPUMAX"]) if channel == "Fx" else (0.0, 0.0)
+    Fz, kappa = np.meshgrid(
+        np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
+        np.linspace(*ends, constants.STEPS_OF_A_GRID if channel == "Fx" else 1),
     )
     p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
-
-    def half(alpha: float) -> float:
-        where = make_points(alpha, 0.0, Fz, kappa=kappa, p=p, V=V, phi_t=0.0)
-        return rms(posterior.band(tyre, where, ("Fx",)).Fx)
-
-    return BandOfCombined(abs(run[-1]), half(run[-1]), half(0.5 * run[-1]))
+    where = make_points(alpha, 0.0, Fz.ravel(), kappa=kappa.ravel(), p=p, V=V, phi_t=0.0)
+    return rms(posterior.band(tyre, where, (channel,))[channel])
 
 
 def bands_by_pressure(
@@ -113,65 +105,42 @@ def bands_by_pressure(
     ``held`` names the coefficients that the fit took as exact, ``zeros`` the zeros of the rig that it determined with the tyre.
     """
     main = float(np.median(points.p[main_pressure(points)]))
-    nominal = float(tyre.values["NOMPRES"])
-    pressures = np.array([*levels.level_values(points.p, levels.PRESSURE), nominal])
-    others = tuple(
-        sorted({float(p) for p in pressures if abs(p - main) > constants.SINGLE_PRESSURE_SPREAD * main})
-    )
-    at_main = _over_tested(posterior, tyre, points, (main,))
-    half, exact = (rms(_half(at_main, one)) for one in (posterior, posterior.given(zeros)))
+    pressures = [*levels.level_values(points.p, levels.PRESSURE), float(tyre.values["NOMPRES"])]
+    others = tuple(sorted({float(p) for p in pressures if abs(p - main) > levels.PRESSURE.tolerance}))
+    names = [name for name in posterior.names if name in BY_NAME]
+
+    def half(slopes: np.ndarray, known: Collection[str] = ()) -> float:
+        """Rms half width of the 95 % band, if some numbers were exactly known."""
+        left = posterior.given(known)
+        rows, columns = [left.names.index(n) for n in names if n in left.names], np.isin(names, left.names)
+        covariance = left.covariance[np.ix_(rows, rows)]
+        return COVERAGE_FACTOR_95 * rms(spread_through(slopes[:, columns], covariance))
+
+    at_main = _over_tested(names, tyre, points, (main,))
+    found = BandsByPressure(main, half(at_main), (), 0.0, half_of_exact_zeros=half(at_main, zeros))
     if not others:
-        return BandsByPressure(main, half, (), 0.0, half_of_exact_zeros=exact)
-    slopes = _over_tested(posterior, tyre, points, others)
-    variance = float(np.mean(_half(slopes, posterior) ** 2))
-    by_held = {
-        name: float(np.mean(_half(slopes, _only(posterior, name)) ** 2))
-        for name in held
-        if name in posterior.names
-    }
-    unseen = max(by_held, key=lambda name: by_held[name], default="")
-    share = by_held[unseen] / variance if unseen and variance else 0.0
-    return BandsByPressure(
-        main,
-        half,
-        others,
-        float(np.sqrt(variance)),
-        unseen if share > constants.WIDENING_SHARE else "",
-        share,
-        exact,
+        return found
+    slopes = _over_tested(names, tyre, points, others)
+    whole = half(slopes)
+    known = {name: half(slopes, (name,)) for name in held if name in posterior.names}
+    unseen = min(known, key=lambda name: known[name], default="")
+    share = 1.0 - (known[unseen] / whole) ** 2 if unseen and whole else 0.0
+    return replace(
+        found, others=others, half_of_others=whole, unseen=unseen if share > 0.5 else "", share=share
     )
-
-
-def _only(posterior: Posterior, name: str) -> Posterior:
-    """The part of the covariance that the error of one held coefficient makes."""
-    column = posterior.covariance[:, posterior.names.index(name)]
-    variance = column[posterior.names.index(name)]
-    return Posterior(posterior.names, np.outer(column, column) / variance)
-
-
-def _half(slopes: np.ndarray, posterior: Posterior) -> np.ndarray:
-    """Half widths (n,) of the 95 % band [N] for derivatives (n, k) by the coefficients."""
-    rows = _coefficients(posterior)
-    return COVERAGE_FACTOR_95 * spread_through(slopes, posterior.covariance[np.ix_(rows, rows)])
-
-
-def _coefficients(posterior: Posterior) -> list[int]:
-    return [i for i, name in enumerate(posterior.names) if name in BY_NAME]
 
 
 def _over_tested(
-    posterior: Posterior, tyre: Simulation, points: Points, pressures: tuple[float, ...]
+    names: Sequence[str], tyre: Simulation, points: Points, pressures: tuple[float, ...]
 ) -> np.ndarray:
-    """Derivatives (n, k) of Fy on a grid over the tested angles and loads."""
+    """Derivatives (n, k) of Fy by the named coefficients on a grid over the tested angles and loads."""
     tested = tested_ranges(points)
-    loads, cambers, angles = (int(n) for n in constants.BAND_GRID)
     axes = (
-        np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
-        np.linspace(0.0, tested["CAMMAX"], cambers if tested["CAMMAX"] > 0.0 else 1),
-        np.linspace(tested["ALPMIN"], tested["ALPMAX"], angles),
+        np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
+        np.linspace(0.0, tested["CAMMAX"], constants.CAMBERS_OF_A_GRID if tested["CAMMAX"] > 0.0 else 1),
+        np.linspace(tested["ALPMIN"], tested["ALPMAX"], constants.STEPS_OF_A_GRID),
         np.array(pressures),
     )
     Fz, gamma, alpha, p = (axis.ravel() for axis in np.meshgrid(*axes))
     where = make_points(alpha, gamma, Fz, p=p, V=float(np.median(points.V)), phi_t=0.0)
-    names = [posterior.names[i] for i in _coefficients(posterior)]
     return np.asarray(tyre.sensitivities(where, names)[1].Fy)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fit.priors import Prior
 from tir import Tyre
@@ -90,7 +91,7 @@ class Hand:
 NO_HAND = Hand()
 
 
-def hand_of(config: Any, base: Tyre | None) -> Hand:
+def hand_of(config: Config, base: Tyre | None) -> Hand:
     """What the configuration sets; an InputError if the base file lacks a value that is to come from it."""
     entries = config.coefficients
     held = {}
@@ -103,12 +104,16 @@ def hand_of(config: Any, base: Tyre | None) -> Hand:
         held=held,
         from_base=frozenset(name for name, entry in entries.items() if entry.from_base),
         bounded={name: entry.bounds(name) for name, entry in entries.items() if entry.bounded},
-        priors={name: Prior(e.value, e.u) for name, e in entries.items() if e.value is not None},
+        priors={
+            name: Prior(e.value, e.u)
+            for name, e in entries.items()
+            if e.value is not None and e.u is not None
+        },
         starts={name: e.start for name, e in entries.items() if e.start is not None},
     )
 
 
-def _of_base(config: Any, base: Tyre | None, name: str) -> float:
+def _of_base(config: Config, base: Tyre | None, name: str) -> float:
     key = f"coefficients.{name}"
     if base is None or name not in base.present:
         raise InputError(

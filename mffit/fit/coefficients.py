@@ -59,9 +59,7 @@ def coefficient_records(
             status=known.origin[name],
             correlated_with=partner,
             correlation=correlation,
-            interval=None
-            if u is None
-            else _within(fitted.intervals.get(name) or _interval(value, u), hand, name),
+            interval=None if u is None else _within(_interval(value, u), hand, name),
             by_hand=hand.mark(name),
             held=name in hand.held,
             bounds=hand.bounded.get(name),

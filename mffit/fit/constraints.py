@@ -44,7 +44,7 @@ def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndar
 
 def violations(p: Any, envelope: Envelope) -> np.ndarray:
     """Violation (k,) of each limit at each condition of the envelope, dimensionless; 0 where the limit is kept."""
-    return np.maximum(limits(p, envelope)[0], 0.0)
+    return np.asarray(np.maximum(limits(p, envelope)[0], 0.0))
 
 
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
@@ -75,13 +75,13 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     B_t = aligning.slope_factor(p, q)
     rows = [
         constants.LEAST_FRICTION - stiffness.lateral_friction(p, q, gamma),
-        (stiffness.cornering_stiffness(p, q, gamma) / Fz + constants.LEAST_CORNERING_STIFFNESS) / 5.0,
+        (stiffness.cornering_stiffness(p, q, gamma) / Fz + constants.LEAST_STIFFNESS) / 5.0,
         -stiffness.peak_load(p, q, gamma),
     ]
     for side in (-1.0, 1.0):
         rows.append(lateral.curvature(p, q, gamma, side) - 1.0)
         rows.append(aligning.curvature(p, q, B_t, side * envelope.alpha) - 1.0)
-    rows.append((constants.LEAST_TRAIL_SLOPE_FACTOR - B_t) / 10.0)
+    rows.append((constants.LEAST_SLOPE_FACTOR - B_t) / 10.0)
     rows.append((constants.LEAST_TRAIL - aligning.trail_at_zero(p, q)) / 0.1)
     if envelope.kappa > 0.0:
         rows += _longitudinal(p, q)
@@ -90,14 +90,11 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
 
 
 def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
-    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0 and like K_ya, E_x <= 1 driven and braked."""
-    K_xk, K_ya = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
-    lowest, highest = constants.STIFFNESS_RATIOS
+    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0, E_x <= 1 driven and braked."""
+    K_xk = stiffness.longitudinal_slip_stiffness(p, q)
     rows = [
         constants.LEAST_FRICTION - stiffness.longitudinal_friction(p, q),
-        (constants.LEAST_SLIP_STIFFNESS - K_xk / q.Fz) / 5.0,
-        (lowest * -K_ya - K_xk) / q.Fz / 5.0,
-        (K_xk - highest * -K_ya) / q.Fz / 5.0,
+        (constants.LEAST_STIFFNESS - K_xk / q.Fz) / 5.0,
     ]
     return rows + [longitudinal.curvature(p, q, side) - 1.0 for side in (-1.0, 1.0)]
 
@@ -108,11 +105,11 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     A driven wheel pushes and a braked one pulls; the weights G_xa and G_yk lie between 0 and a little above 1, their slope
     factors are positive, and their curvature factors at most 1.
     """
-    k, a = constants.LIMIT_REACH_OF_SLIP * envelope.kappa, max(constants.WRITTEN_ALPMAX.rad, envelope.alpha)
+    k, a = constants.BEYOND_TESTED * envelope.kappa, max(constants.WRITTEN_ALPMAX.rad, envelope.alpha)
     q = _with_slips(p, conditions, [(k, 0.0), (-k, 0.0)])
     K_xk, mu_x = stiffness.longitudinal_slip_stiffness(p, q), stiffness.longitudinal_friction(p, q)
     force = np.sign(q.kappa) * longitudinal.pure(p, q, turn_slip.NO_SPIN, K_xk, mu_x)
-    rows = [constants.LEAST_DRIVING_FORCE - force / q.Fz]
+    rows = [constants.LEAST_FRICTION - force / q.Fz]
     corners = [(side * k, other * a) for side in (-1.0, 1.0) for other in (-1.0, 1.0)]
     for weight, factors, ends in (
         (longitudinal.combined_weight, longitudinal.weight_factors, [(0.0, -a), (0.0, a)]),
@@ -121,8 +118,8 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
         G = weight(p, _with_slips(p, conditions, [*corners, *ends]))
         of = factors(p, _with_slips(p, conditions, [(0.0, 0.0)]))
         over_peak = cos(magic_angle(of.B, of.C, of.E, of.S_H))  # the weight is 1 at zero slip
-        rows += [constants.LEAST_WEIGHT - G, 1.0 / constants.LARGEST_WEIGHT - over_peak]
-        rows += [(constants.LEAST_SLOPE_OF_WEIGHT - of.B) / 10.0, of.E - 1.0]
+        rows += [-G, 1.0 / constants.LARGEST_WEIGHT - over_peak]
+        rows += [(constants.LEAST_SLOPE_FACTOR - of.B) / 10.0, of.E - 1.0]
     return rows
 
 
@@ -132,9 +129,9 @@ def _dented(p: Any, envelope: Envelope, by: Sequence[Traced]) -> tuple[np.ndarra
     Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven. With
     the derivatives, as in :func:`limits`: by hand, because a traced number knows no neighbours.
     """
-    loads, sideslips, slips = (int(n) for n in constants.ELLIPSE_GRID)
-    alpha = envelope.alpha * np.linspace(1.0 / sideslips, 1.0, sideslips)
-    kappa = float(constants.LIMIT_REACH_OF_SLIP) * envelope.kappa * np.linspace(-1.0, 1.0, slips)
+    loads, slips = int(constants.LOADS_OF_A_GRID), int(constants.STEPS_OF_A_GRID)
+    alpha = envelope.alpha * np.array([0.5, 1.0])
+    kappa = float(constants.BEYOND_TESTED) * envelope.kappa * np.linspace(-1.0, 1.0, slips)
     axes = np.meshgrid(np.linspace(*envelope.Fz, loads), np.concatenate([-alpha, alpha]), kappa)
     Fz, alpha, kappa = (axis.ravel() for axis in axes)
     conditions = {"Fz": Fz, "alpha": alpha, "kappa": kappa, "pressure": 0.5 * sum(envelope.pressure)}
@@ -155,8 +152,7 @@ def _dented(p: Any, envelope: Envelope, by: Sequence[Traced]) -> tuple[np.ndarra
         - y_by[:, :-1] * x[:, 1:, None]
         - y[:, :-1, None] * x_by[:, 1:]
     )
-    one = float(constants.ELLIPSE_TURN)
-    return (turn.ravel() - constants.LARGEST_DENT) / one, turn_by.reshape(turn.size, len(by)) / one
+    return turn.ravel() - constants.LARGEST_DENT, turn_by.reshape(turn.size, len(by))
 
 
 def _with_slips(
@@ -171,12 +167,11 @@ def _with_slips(
 @lru_cache(maxsize=8)
 def grid(envelope: Envelope) -> tuple[np.ndarray, ...]:
     """Load, camber and pressure (n,) of the conditions at which the limits are tested."""
-    loads, cambers, pressures = (int(n) for n in constants.LIMIT_GRID)
-    low, high = envelope.pressure
     axes = np.meshgrid(
-        np.linspace(*envelope.Fz, loads),
-        np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
-        np.linspace(low, high, pressures if high > low else 1),
+        np.linspace(*envelope.Fz, constants.LOADS_OF_A_GRID),
+        np.linspace(-envelope.gamma, envelope.gamma, constants.CAMBERS_OF_A_GRID if envelope.gamma > 0 else 1)
+        + 0.0,
+        np.unique(envelope.pressure),
     )
     found = tuple(axis.ravel() for axis in axes)
     for axis in found:

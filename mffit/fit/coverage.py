@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit import constants
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.fit.stages import STAGES, Stage
 from mffit.points import Points, levels
@@ -61,8 +61,8 @@ def design(points: Points, side: str) -> Design:
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_sides = len(np.unique(np.sign(points.phi_t))) > 1
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
-    cambered = np.abs(points.gamma) > constants.ZERO_CAMBER_LIMIT.rad
-    slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
+    cambered = np.abs(points.gamma) > UPRIGHT.rad
+    slipping = np.abs(points.alpha) > STRAIGHT.rad
     driven = ~points.free_rolling
     towards = np.sign(points.alpha)
     return Design(
@@ -92,15 +92,15 @@ def _both_signs(signs: np.ndarray) -> bool:
 
 def side_run(points: Points) -> bool:
     """Whether sideslip was run, and to one side only."""
-    seen = points.alpha[np.abs(points.alpha) > constants.COUPLED_ALPHA.rad]
+    seen = points.alpha[np.abs(points.alpha) > STRAIGHT.rad]
     return len(np.unique(np.sign(seen))) == 1
 
 
 def _straight_on(points: Points) -> np.ndarray:
     """Mask (n,) of an upright wheel that rolls freely straight on: radii depend on its load and pressure, stiffnesses do not."""
-    upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
-    straight = (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
-    return upright & straight & points.free_rolling
+    upright = np.abs(points.gamma) < UPRIGHT.rad
+    straight = (np.abs(points.alpha) < STRAIGHT.rad) & (points.phi_t == 0.0)
+    return np.asarray(upright & straight & points.free_rolling)
 
 
 def coverage(

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import Any
 
 import numpy as np
 
-from mffit.config import Declaration, declared_rig
+from mffit.config import Config, Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.borrowed.campaign import FittedCampaign, Joined, join
@@ -24,7 +23,6 @@ from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, roll
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files, make_files
 from mffit.points import Points
-from mffit.points.lag import Lag
 from tir import Tyre
 
 NO_ZERO = Declaration(0.0, 0.0)
@@ -38,7 +36,6 @@ class Beside:
     steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by the setting that steps
     sister: Sister | None = None
     campaigns: Sequence[FittedCampaign] = ()
-    lags: Sequence[Lag] = ()  #: of moving sweeps of the sideslip angle
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +54,9 @@ class Delivered:
 
 
 def deliver(
-    config: Any,
+    config: Config,
     known: Known,
     points: Points,
-    measured: Any,
     base: Tyre | None,
     fitted: Fitted,
     beside: Beside,
@@ -71,32 +67,39 @@ def deliver(
     rolling = _rolling_resistance(config, known, points)
     for name, q in rolling.found.items():
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
-    lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held, beside.lags)
+    lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
     lags = {name: q for direction in lag for name, q in direction.found.items()}
     known = known.having({name: q.value for name, q in lags.items()}, "fitted")
-    own = (beside.radii.beside, rolling.beside, *(direction.beside for direction in lag))
+    own: tuple[BesideNumbers, ...] = (
+        beside.radii.beside,
+        rolling.beside,
+        *(direction.beside for direction in lag),
+    )
     posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
     lent = None if beside.sister is None else lend(beside.sister, known, posterior)
-    borrowed = {} if lent is None else dict(lent.found)
-    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    posterior = posterior if lent is None else lent.posterior
-    joined = []
+    joined: list[Joined] = []
+    if lent is not None:
+        known = known.having(lent.beside.values, "sister")
+        posterior = posterior.without(lent.found).with_numbers(lent.beside)
     for campaign in beside.campaigns:
         joined.append(join(campaign, known, posterior))
         known = known.having(joined[-1].values, "campaign")
-        borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
-        posterior = joined[-1].posterior
-    found = {**rolling.found, **beside.radii.found, **lags, **borrowed}
+        posterior = posterior.without(joined[-1].found).with_numbers(joined[-1].beside)
+    given: list[Lent | Joined] = [*([lent] if lent else []), *joined]
+    own = (*own, *(one.beside for one in given))
+    found = {**rolling.found, **beside.radii.found, **lags}
+    for one in given:
+        found |= {name: q for name, q in one.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
-    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
+    files = make_files(config, known, points, base, only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
     return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)
 
 
-def _rolling_resistance(config: Any, known: Known, points: Points) -> Resistance:
+def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:
     """Rolling resistance from the measured moment My; where that is missing, from Fx of the wheel that coasts."""
     declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
-    hand, side = known.hand.held, config.tyre.side or "left"
+    hand, side = known.hand.held, config.tyre.side
     if np.any(np.isfinite(points.My)):
         return rolling_resistance(known.values, points, declared.get(MY_ZERO, NO_ZERO), hand, side)
     zero = declared.get(FX_ZERO, NO_ZERO)

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
-from mffit.fit.stages import StageRecord
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
+from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 
@@ -27,9 +28,7 @@ class Fitted:
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
     stderr: Mapping[str, float]
-    """Standard uncertainty of every number: of the posterior, or from its 95 % interval where a bent valley makes this wider."""
-    intervals: Mapping[str, tuple[float, float]]
-    """95 % intervals of the numbers of a bent valley of equally good fits."""
+    """Standard uncertainty of every number."""
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
@@ -40,7 +39,6 @@ class Fitted:
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
     cost: float  #: sum of squares of data, priors and broken limits
-    stages: tuple[StageRecord, ...] = ()
     attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 
@@ -80,7 +78,25 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
     free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
-    solution = solve(
-        problem.free([n.name for n in numbers]), numbers, tolerance=constants.FREE_EPSILON_TOLERANCE
-    )
+    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
     return problem.with_values(solution.values).simulation
+
+
+def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, float]]:
+    """Coefficients of ``count`` tyres drawn from the posterior, each within its bounds and the physical limits of the fit.
+
+    Parameters
+    ----------
+    fitted : the result of the fit
+    count : number of members
+    seed : of the random numbers; the same seed gives the same members
+    """
+    random, values, posterior = np.random.default_rng(seed), fitted.simulation.values, fitted.posterior
+    names = [name for name in posterior.names if error_of(name) is None]
+    rows = [posterior.names.index(name) for name in names]
+    own = BesideNumbers(
+        values={name: float(values[name]) for name in names},
+        covariance=posterior.covariance[np.ix_(rows, rows)],
+        envelope=fitted.problem.envelope,
+    )
+    return [fitted.hand.within(own.drawn(values, values, random)) for _ in range(count)]

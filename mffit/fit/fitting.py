@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config import axis_signs
+from mffit.config import Config, axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.borrowed.campaign import FittedCampaign, campaign_sentence
@@ -24,7 +24,7 @@ from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import at_reference
 from mffit.fit.influences.nuisance_wording import nuisance_sentences, unmodelled_sentences
 from mffit.fit.influences.temperature import at_temperature
-from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_equally_good_fits
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_doubt
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
@@ -32,32 +32,30 @@ from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import relaxation_sentences
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.rig.zeros import turning_zeros
+from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
 from mffit.fit.start import starting_values
 from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.wording import explanations, warnings
 from mffit.fit.written.files import plain_use
 from mffit.linearised import LinearisedFit
+from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.points.lag import Lag
 from mffit.progress import Progress, silent
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, outliers
 from tir import Tyre
 
 
 def fit(
-    config: Any,
+    config: Config,
     points: Points,
     parts: Parts,
-    measured: Any,
+    measured: Measured,
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
     campaigns: Sequence[FittedCampaign] = (),
-    lags: Sequence[Lag] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -71,7 +69,6 @@ def fit(
     progress : called with a sentence before each step
     steps : samples of steps of the sideslip angle and of slip, by the setting that steps
     campaigns : others of the same tyre, whose coefficients are taken where these points determine none
-    lags : of moving sweeps of the sideslip angle
 
     Raises
     ------
@@ -89,7 +86,7 @@ def fit(
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
-    overturning = overturning_terms(points, known.values, config.tyre.side or "left", hand)
+    overturning = overturning_terms(points, known.values, config.tyre.side, hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),
         **overturning.start,
@@ -105,12 +102,12 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    beside = Beside(radii, steps, sister, campaigns, lags)
-    made = deliver(config, known, points, measured, base, fitted, beside)
+    beside = Beside(radii, steps, sister, campaigns)
+    made = deliver(config, known, points, base, fitted, beside)
     files = made.files
     temperature = None
     if found.at_temperature:
-        special = deliver(config, known, points, measured, base, full, beside, only=use)
+        special = deliver(config, known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -127,7 +124,6 @@ def fit(
         rig={**fitted.rig, **made.zeros},
         model=readings,
         posterior=made.posterior,
-        stages=fitted.stages,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
@@ -164,7 +160,7 @@ def fit(
 
 
 def _fitted_and_judged(
-    config: Any, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
+    config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> tuple[NuisanceFit, LinearisedFit, tuple[Doubt, ...]]:
     """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
     the build."""
@@ -190,13 +186,12 @@ def _fitted_and_judged(
     found = fit_with_nuisances(
         config, problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
     )
-    progress("looking for other fits that are as good")
-    found = with_equally_good_fits(found)
+    found = with_doubt(found)
     return found, *judged(found, When.AFTER)
 
 
-def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Any) -> float | None:
+def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Measured) -> float | None:
     """eps_gamma of the fitted model; None on a flat track."""
-    if measured.epsilon_gamma is None:
+    if measured.epsilon_gamma is None or measured.r_e is None:
         return None
     return epsilon_gamma_of_model(values, points, measured.F_phit_load, measured.r_e.value)

@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
+from mffit.config.models import TyreTable
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.estimates import estimates
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, radius_coefficients
+from mffit.measured import Measured
 from mffit.points import Points
 from mffit.rig import reference_speed
 from tir import Tyre
@@ -44,9 +46,9 @@ class Known:
 
 
 def known_before_fit(
-    config: Any,
+    config: Config,
     points: Points,
-    measured: Any,
+    measured: Measured,
     base: Tyre | None,
     fleet: Mapping[str, Prior],
     hand: Hand = NO_HAND,
@@ -131,7 +133,7 @@ def _is_stated(tyre: Any, name: str) -> bool:
     return name not in KEYS_OF_TYRE or KEYS_OF_TYRE[name] in tyre.model_fields_set
 
 
-def given_values(tyre: Any) -> dict[str, Any]:
+def given_values(tyre: TyreTable) -> dict[str, Any]:
     """Values of ``[tyre]``, stated or by default, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
     given = {
         "FNOMIN": tyre.nominal_load,
@@ -145,3 +147,44 @@ def given_values(tyre: Any) -> dict[str, Any]:
         "FITTYP": 62,
     }
     return {name: value for name, value in given.items() if value is not None}
+
+
+ESTIMATED_SHAPES = {
+    "BREFF": 8.0,
+    "DREFF": 0.25,
+    "FREFF": 0.05,
+    "PCX1": 1.6,
+    "PEX1": 0.1,
+    "PKX3": -0.2,
+    "RBX1": 12.0,
+    "RBX2": 10.0,
+    "RCX1": 1.0,
+    "RBY1": 11.0,
+    "RBY2": 8.0,
+    "RCY1": 1.0,
+    "QSX3": 0.03,
+    "QSY1": 0.01,
+}
+"""Shapes that are common to road tyres: estimates that complete the file, so that a simulation can run."""
+
+
+def estimates(values: Mapping[str, Any]) -> dict[str, float]:
+    """Vertical, longitudinal, combined-slip, rolling and structural coefficients, scaled from what is known.
+
+    The static deflection at nominal load is 5 % of the unloaded radius, the longitudinal peak the lateral one, the longitudinal
+    slip stiffness 1.3 times the cornering stiffness, and the arm of the load half the width per radian of camber.
+    """
+    v = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
+    R0 = v["UNLOADED_RADIUS"]
+    vertical = v["FNOMIN"] / (0.05 * R0)
+    return {
+        "VERTICAL_STIFFNESS": vertical,
+        "VERTICAL_DAMPING": 0.0005 * vertical,
+        "LONGITUDINAL_STIFFNESS": 1.5 * vertical,
+        "LATERAL_STIFFNESS": 0.7 * vertical,
+        "PDX1": v["PDY1"],
+        "PDX2": v["PDY2"],
+        "PKX1": 1.3 * abs(v["PKY1"]),
+        "QSX2": 0.5 * v["WIDTH"] / R0,
+        **ESTIMATED_SHAPES,
+    }

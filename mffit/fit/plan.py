@@ -5,21 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.config.constants import PLAUSIBLE_CONICITY
-from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage, coverage, side_run
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
+from mffit.fit.priors import scatter as scatter_of
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
-from mffit.least_squares import FreeNumber
+from mffit.least_squares import EXACT, FreeNumber
+from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
 
@@ -97,9 +98,9 @@ def channels_of(points: Points) -> tuple[str, ...]:
 
 
 def fit_plan(
-    config: Any,
+    config: Config,
     points: Points,
-    measured: Any,
+    measured: Measured,
     known: Known,
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
@@ -110,7 +111,7 @@ def fit_plan(
 
     ``turning`` are zeros that determine PECP1 where eps_gamma was not measured; ``predicting`` as in :func:`coverage`.
     """
-    cover = coverage(points, config.tyre.side or "left", known.hand.held, predicting)
+    cover = coverage(points, config.tyre.side, known.hand.held, predicting)
     channels = fitted_channels(cover, points)
     turned = len(np.unique(points.mount)) > 1
     rig = rig_numbers(config, measured, points.used_setups, channels, turned=turned)
@@ -118,7 +119,7 @@ def fit_plan(
     unseen = {name for row in cover for name in row.held if side_run(points)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)), unseen=unseen)
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
-        scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))
+        scatter["PVY1"] = config.rig.u_conicity or EXACT
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     absent |= {name for stage in STAGES if stage.if_predicted for name in stage.parameters}
@@ -131,7 +132,7 @@ def fit_plan(
         debiased = measured.epsilon_gamma_debiased if config.spin.pecp1 == "debiased" else None
         held["PECP1"] = (debiased or measured.epsilon_gamma).u
     elif turning is not None:
-        scatter.setdefault("PECP1", constants.CAMBER_REDUCTION_SPREAD)
+        scatter.setdefault("PECP1", scatter_of("PECP1", start["PECP1"], from_base=False, curved=True))
         for name in turning.start:
             held.pop(name, None)
             expected[name] = turning.before[name]

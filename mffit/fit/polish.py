@@ -1,25 +1,93 @@
-"""The joint polish: all free coefficients and rig errors together, fitted to all points; and fits that are as good as it."""
+"""The joint fit: all free coefficients and rig errors together, fitted to all points, from one start or from several."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import PREDICTION_FALSE_ALARM
+from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.other_ends import other_ends
 from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
-from mffit.fit.profile import follow
+from mffit.fit.same_curve import with_expected_signs
+from mffit.fit.stages import OF_CAMBER_OR_SPIN
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, SHAPES_OF_FX
 from mffit.least_squares import FreeNumber, Solution, minimum, solve
+from mffit.points import Points
+from mffit.progress import Progress
+from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
+from tir.parameters import BY_NAME
 
-Intervals = Mapping[str, tuple[float, float]]
+CLEARLY_LESS = -2.0 * math.log(PREDICTION_FALSE_ALARM)
+"""Fall of a sum of squares that makes a fit so much likelier that chance seldom does it."""
+
+
+def best_fit(
+    problem: FitProblem,
+    start: Mapping[str, float],
+    plan: FitPlan,
+    progress: Progress,
+    *,
+    restarts: bool = True,
+    explained: Callable[[Fitted], bool] = lambda fitted: False,
+) -> Fitted:
+    """The best fit from ``start`` and, if that one ends far above the noise, from alternative starting values.
+
+    ``explained`` is called with the first fit before alternatives are tried: they are not if it returns True, and it may refuse
+    the data.
+    """
+    _require_enough_points(problem.points, plan.free)
+    progress("fitting tyre and rig")
+    best = _fit_from(start, problem, plan)
+    if not restarts or not restart_worthwhile(best, plan) or explained(best):
+        return best
+    for shape, values in ALTERNATIVE_STARTS.items():
+        progress(f"starting again from {shape}")
+        other = _fit_from({**start, **values}, problem, plan)
+        if _cost(other, best.problem) < _cost(best, best.problem) - CLEARLY_LESS:
+            best = other
+    return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
+
+
+def _cost(fitted: Fitted, weighted: FitProblem) -> float:
+    """Sum of squares of a fit by the weights of another: its own are reduced where it misses, which is no gain."""
+    data = replace(weighted, simulation=fitted.problem.simulation).misfit().values()
+    priors = [(n.start - n.expected) / n.spread for n in fitted.numbers]  # 0 without a prior
+    return float(sum(z @ z for z in data) + np.sum(np.square(priors)))
+
+
+def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
+    """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
+    far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
+    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES)
+
+
+def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
+    """The polish, after a pass in which only coefficients of the upright wheel on a straight path are free, and one with all.
+
+    With every number free at once, a search can end where limits hold the curvature of a curve that camber or spin bent. Both
+    passes have the weights of the start: those of an upright fit would count what it lacks as outliers.
+    """
+    problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
+    part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
+    ends = []
+    for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
+        begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
+        numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
+        found = minimum(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+        ends.append(found)
+    best = part.with_values(min(ends, key=lambda end: end.cost).values)
+    numbers = plan.numbers(best)
+    near = minimum(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    return polish(problem.with_values(near.values), plan)
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -28,38 +96,12 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
     readings that state no uncertainty get that of their misfit.
     """
-    problem, scale = _approached(stated, plan).with_noise_of_misfit().reweighted()
+    near = _approached(stated, plan)
+    expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
+    near = near.with_values(with_expected_signs(near.simulation.values, expected))
+    problem, scale = near.with_noise_of_misfit().reweighted()
     problem, solution = _solved(problem, plan.numbers(problem))
     return _fitted(problem, solution, plan.numbers(problem), plan, scale)
-
-
-def with_equally_good(fitted: Fitted) -> Fitted:
-    """The fit with errors that cover what is as good: a bent valley is followed, and other ends are searched.
-
-    It is the better one where the valley or another end holds a better fit.
-    """
-    problem, numbers = fitted.problem, fitted.problem.starting_here(fitted.numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers, max_steps=0)
-    decided = _within_their_priors(_errors(solution), numbers)
-    valley = follow(problem, numbers, solution, decided)
-    if valley is not None and valley.better:
-        problem, solution = _solved(problem.with_values(valley.better), numbers)
-    ends = other_ends(problem, problem.starting_here(numbers), solution)
-    if ends.better:
-        problem, solution = _solved(problem.with_values(ends.better), numbers)
-    if problem is not fitted.problem:
-        moved = _fitted(problem, solution, numbers, fitted, fitted.scale)
-        fitted = replace(moved, stages=fitted.stages, attempts=fitted.attempts)
-    intervals = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
-    stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in fitted.stderr.items()}
-    return replace(
-        fitted,
-        intervals=intervals,
-        stderr=stderr,
-        rig={name: (v, stderr[name]) for name, (v, _) in fitted.rig.items()},
-        regularised=fitted.regularised
-        | (_with_prior(numbers).keys() - _within_their_priors(stderr, numbers)),
-    )
 
 
 def _fitted(
@@ -78,7 +120,6 @@ def _fitted(
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
         stderr=stderr,
-        intervals={},
         problem=problem,
         numbers=tuple(problem.starting_here(numbers)),
         held=given.held,
@@ -91,19 +132,6 @@ def _fitted(
         cost=solution.cost,
         hand=given.hand,
     )
-
-
-def _wider_of(one: Intervals, other: Intervals) -> dict[str, tuple[float, float]]:
-    """The intervals that contain both."""
-    return {**one, **other} | {
-        name: (min(one[name][0], other[name][0]), max(one[name][1], other[name][1]))
-        for name in one.keys() & other.keys()
-    }
-
-
-def _half_width(interval: tuple[float, float] | None) -> float:
-    """The standard uncertainty that belongs to a 95 % interval; 0 without one."""
-    return 0.0 if interval is None else (interval[1] - interval[0]) / (2.0 * COVERAGE_FACTOR_95)
 
 
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
@@ -133,11 +161,6 @@ def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProb
     return problem.with_values(solution.values), solution
 
 
-def _errors(solution: Solution) -> dict[str, float]:
-    """Standard error of every free number; held ones count as exact."""
-    return dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)).tolist(), strict=True))
-
-
 def _with_prior(numbers: Sequence[FreeNumber]) -> dict[str, float]:
     """Standard deviation of the prior of every coefficient that has one."""
     return {n.name: n.spread for n in numbers if error_of(n.name) is None and math.isfinite(n.spread)}
@@ -147,3 +170,14 @@ def _within_their_priors(errors: Mapping[str, float], numbers: Sequence[FreeNumb
     """Coefficients that the points determine better than their priors do."""
     share = constants.FITTED_SHARE_OF_PRIOR
     return frozenset(name for name, spread in _with_prior(numbers).items() if errors[name] < share * spread)
+
+
+def _require_enough_points(points: Points, free: Sequence[str]) -> None:
+    needed = Counter(BY_NAME[name].channel or "Fy" for name in free)
+    for channel in CHANNELS:
+        available = int(np.sum(np.isfinite(points.channel(channel))))
+        if needed[channel] and available <= needed[channel]:
+            raise InputError(
+                f"{available} points of {column(channel)} cannot determine the {needed[channel]} coefficients that these sweeps "
+                "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
+            )

@@ -108,7 +108,7 @@ def beside_held(
 
 def spread_through(slopes: np.ndarray, covariance: np.ndarray) -> np.ndarray:
     """Standard deviation (n,) of quantities with derivatives (n, k) by numbers with covariance (k, k)."""
-    return np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", slopes, covariance, slopes), 0.0))
+    return np.asarray(np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", slopes, covariance, slopes), 0.0)))
 
 
 def strongest_correlations(posterior: Posterior, of: Sequence[str]) -> dict[str, tuple[str, float]]:

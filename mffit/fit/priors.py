@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.stages import SMALL_ON_A_DISC
@@ -61,7 +62,7 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
     }
 
 
-def of_fleet(config: Any) -> dict[str, Prior]:
+def of_fleet(config: Config) -> dict[str, Prior]:
     """The prior of each coefficient from the fleet that ``[tyre] priors`` names; empty if none is named.
 
     An InputError says that no fleet wrote the file, or that the fleet has another nominal load or pressure.
@@ -69,27 +70,28 @@ def of_fleet(config: Any) -> dict[str, Prior]:
     path = config.priors_path
     if path is None:
         return {}
-    place = {"file": config.path, "line": config.line_of("tyre.priors"), "key": "tyre.priors"}
+
+    def refused(sentence: str) -> InputError:
+        return InputError(sentence, file=config.path, line=config.line_of("tyre.priors"), key="tyre.priors")
+
     try:
         nominal, found = _read(path)
     except FileNotFoundError:
-        raise InputError(f"there is no file {path}; `mffit fleet` writes one", **place) from None
+        raise refused(f"there is no file {path}; `mffit fleet` writes one") from None
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
-        raise InputError(f"{path} is not a priors.json of `mffit fleet`; name one", **place) from None
+        raise refused(f"{path} is not a priors.json of `mffit fleet`; name one") from None
     own = {"FNOMIN": config.tyre.nominal_load, "NOMPRES": 1e3 * config.tyre.nominal_pressure}
     for name, value in own.items():
         theirs = nominal.get(name, 0.0)
         if not abs(theirs - value) <= constants.SAME_NOMINAL_CONDITION * value:
-            raise InputError(
+            raise refused(
                 f"{path} holds priors of tyres with {name} {theirs:g}, but this tyre has {value:g}, and coefficients are "
-                f"relative to it; name the priors of tyres with the same {name}, or none",
-                **place,
+                f"relative to it; name the priors of tyres with the same {name}, or none"
             )
     wrong = sorted(n for n, p in found.items() if n not in BY_NAME or not p.spread > 0.0)
     if wrong:
-        raise InputError(
-            f"{path}: {wrong[0]} is not a coefficient with a positive spread; write the file again with `mffit fleet`",
-            **place,
+        raise refused(
+            f"{path}: {wrong[0]} is not a coefficient with a positive spread; write the file again with `mffit fleet`"
         )
     return found
 

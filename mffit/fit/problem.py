@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
@@ -17,7 +18,7 @@ from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig.rig_numbers import known_faults, known_zeros
 from mffit.fit.wheel.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, condensed
-from mffit.measured import RadiusReading, radius_readings
+from mffit.measured import Measured, RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.points.noise import estimated_noise, stating
 from mffit.quantities import SIDEWAYS
@@ -45,10 +46,6 @@ class FitProblem:
         sigma = {name: u[index] for name, u in self.sigma.items()}
         nominal = {name: share[index] for name, share in self.nominal.items()}
         return replace(self, points=self.points.select(index), sigma=sigma, nominal=nominal)
-
-    def without_limits(self) -> FitProblem:
-        """The same without physical limits over the range to be written."""
-        return replace(self, envelope=None)
 
     def thinned(self, stride: int) -> FitProblem:
         """The problem of every ``stride``-th point, each counted that often so that priors keep their relative weight."""
@@ -181,7 +178,7 @@ class FitProblem:
         return np.append(data, radii), np.concatenate([slopes.reshape(c * n, -1), by_radii])
 
     def _used(self, channel: str) -> np.ndarray:
-        return np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel))
+        return np.asarray(np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel)))
 
     def radii_rows(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals of the measured effective radii and their derivatives.
@@ -217,9 +214,9 @@ class FitProblem:
 
 
 def fit_problem(
-    config: Any,
+    config: Config,
     points: Points,
-    measured: Any,
+    measured: Measured,
     values: Mapping[str, Any],
     channels: Iterable[str] = SIDEWAYS,
 ) -> FitProblem:

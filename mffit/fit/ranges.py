@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.constants import UPRIGHT
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, characteristics, grid, violations
 from mffit.points import Points, levels
@@ -42,22 +43,20 @@ def sideslips_with_slip(points: Points) -> tuple[float, ...]:
 
 def single_pressure(ranges: Mapping[str, float]) -> bool:
     """Whether only one pressure was run."""
-    low, high = ranges["PRESMIN"], ranges["PRESMAX"]
-    return high - low < constants.SINGLE_PRESSURE_SPREAD * high
+    return ranges["PRESMAX"] - ranges["PRESMIN"] < levels.PRESSURE.tolerance
 
 
 def single_load(ranges: Mapping[str, float]) -> bool:
     """Whether only one load was run."""
-    low, high = ranges["FZMIN"], ranges["FZMAX"]
-    return high - low < constants.SINGLE_LOAD_SPREAD * high
+    return ranges["FZMAX"] < (1.0 + levels.LOAD.tolerance) * ranges["FZMIN"]
 
 
 def covered_ranges(points: Points) -> dict[str, float]:
     """The tested ranges for the fit's own limits; a single pressure is widened to either side."""
     ranges = tested_ranges(points)
     if single_pressure(ranges):
-        ranges["PRESMIN"] *= 1.0 - constants.SINGLE_PRESSURE_COVER
-        ranges["PRESMAX"] *= 1.0 + constants.SINGLE_PRESSURE_COVER
+        ranges["PRESMIN"] *= 1.0 - constants.AROUND_A_SINGLE_VALUE
+        ranges["PRESMAX"] *= 1.0 + constants.AROUND_A_SINGLE_VALUE
     return ranges
 
 
@@ -113,10 +112,10 @@ def with_room(
     model = SimpleNamespace(**values)
     ranges, origin = dict(written), {}
     for word, low, high, small in (
-        ("camber", "CAMMIN", "CAMMAX", constants.UNTESTED_CAMBER.rad),
-        ("sideslip", "ALPMIN", "ALPMAX", constants.UNTESTED_SIDESLIP.rad),
+        ("camber", "CAMMIN", "CAMMAX", constants.UNTESTED_ANGLE.rad),
+        ("sideslip", "ALPMIN", "ALPMAX", constants.UNTESTED_ANGLE.rad),
     ):
-        if ranges[high] - ranges[low] > 2.0 * constants.UNVARIED_ANGLE.rad:
+        if ranges[high] - ranges[low] > 2.0 * UPRIGHT.rad:
             continue
         ranges |= {low: -small, high: small}
         origin[word] = f"{np.degrees(small):.0f} deg to either side"
@@ -131,7 +130,7 @@ def with_room(
             origin[word] = f"the base's {np.degrees(end):.0f} deg to either side"
     for word, low, high in (("load", "FZMIN", "FZMAX"), ("pressure", "PRESMIN", "PRESMAX")):
         if not ranges[low] < ranges[high]:
-            share = constants.UNTESTED_SHARE
+            share = constants.AROUND_A_SINGLE_VALUE
             ranges |= {low: (1.0 - share) * ranges[low], high: (1.0 + share) * ranges[high]}
             origin[word] = f"{share:.0%} to either side"
     return ranges, origin
@@ -139,10 +138,10 @@ def with_room(
 
 def _wished_ends(tested: Mapping[str, float]) -> dict[str, float]:
     alpha, gamma = tested["ALPMAX"], tested["CAMMAX"]
-    wider_gamma = min(constants.WRITTEN_CAMMAX_GROWTH * gamma, constants.WRITTEN_CAMMAX.rad)
+    wider_gamma = min(constants.BEYOND_TESTED * gamma, constants.WRITTEN_CAMMAX.rad)
     return {
         "FZMIN": constants.WRITTEN_FZMIN_SHARE * tested["FZMIN"],
-        "FZMAX": constants.WRITTEN_FZMAX_SHARE * tested["FZMAX"],
+        "FZMAX": constants.BEYOND_TESTED * tested["FZMAX"],
         "PRESMIN": (1.0 - constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMIN"],
         "PRESMAX": (1.0 + constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMAX"],
         "CAMMAX": max(gamma, wider_gamma),
@@ -173,7 +172,7 @@ def _as_in_public_tyres(
     """
     if ranges[name] == begin:
         return True
-    relative, n = name.startswith(("FZ", "PRES")), int(constants.STEPS_TO_AN_END)
+    relative, n = name.startswith(("FZ", "PRES")), int(constants.STEPS_OF_A_GRID)
     x = (np.geomspace if relative else np.linspace)(begin, ranges[name], n)
     others = grid(envelope(ranges))
     along = np.tile(x, others[0].size)

@@ -19,12 +19,11 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
-from mffit.fit.sweep_rates import OfRates, of_rates, rate_to_add
 from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
 from mffit.points import Points, levels
 from mffit.points.constants import LONGEST_STEP
-from mffit.points.lag import Lag, rolled_distance
+from mffit.points.lag import rolled_distance
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -125,7 +124,6 @@ class Relaxation:
     found: Mapping[str, Quantity] = field(default_factory=dict)
     beside: BesideNumbers = field(default_factory=BesideNumbers)  #: the same with their covariance
     missing: str = ""  #: why the others, or all, are held
-    rates: OfRates | None = None  #: of sweeps, if these gave the stiffness
 
     @property
     def coverage(self) -> StageCoverage:
@@ -147,7 +145,6 @@ def relaxation(
     simulation: Simulation,
     posterior: Posterior,
     held: Collection[str] = (),
-    lags: Sequence[Lag] = (),
 ) -> tuple[Relaxation, ...]:
     """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 
@@ -157,14 +154,10 @@ def relaxation(
     simulation : the fitted tyre on its rig
     posterior : of the fit
     held : coefficients that stay, by hand
-    lags : of moving sweeps of the sideslip angle, which count where no steps show the length
     """
-    sideways, slip = (
+    return tuple(
         _of_direction(one, steps.get(one.setting), simulation, posterior, held) for one in DIRECTIONS
     )
-    if not sideways.found and lags and sideways.direction.names[0] not in held:
-        sideways = _of_sweeps(sideways, lags, simulation.values, posterior)
-    return sideways, slip
 
 
 def _of_direction(
@@ -272,7 +265,7 @@ class _Means(NamedTuple):
         """Means (m,) or (m, k) of a series (n,) or (n, k)."""
         sums = np.zeros((len(self.size), *x.shape[1:]))
         np.add.at(sums, self.label, x)
-        return sums / self.size.reshape(-1, *[1] * (x.ndim - 1))
+        return np.asarray(sums / self.size.reshape(-1, *[1] * (x.ndim - 1)))
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:
@@ -384,8 +377,7 @@ def _fitted(
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
     nominal, *terms = direction.names
-    most = float(constants.LARGEST_CARCASS_TERM)
-    numbers = {name: FreeNumber(name, 0.0, -most, most) for name in terms}
+    numbers = {name: FreeNumber(name, 0.0) for name in terms}
     for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
         if name not in names:  # not shown by these runs, and yet not exactly as in the file
             numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)
@@ -413,62 +405,12 @@ def _fitted(
     )
 
 
-def _of_sweeps(
-    found: Relaxation, lags: Sequence[Lag], values: Mapping[str, Any], posterior: Posterior
-) -> Relaxation:
-    """The carcass stiffness from sweeps at several rates, or which rate they lack; the terms over load and pressure stay."""
-    direction = found.direction
-    load, pressure = (np.array([getattr(lag, name) for lag in lags]) for name in ("load", "pressure"))
-    nominal, *terms = direction.names
-    K = np.abs(plain(direction.slip_stiffness(*upright(values, load, pressure))))
-    relative = np.broadcast_to(_stiffness(direction, values, load, pressure) / values[nominal], K.shape)
-    shown = of_rates(lags, K / relative)
-    if not shown.u < constants.FITTED_SHARE_OF_PRIOR * shown.stiffness:
-        usual = float(np.median(K / relative)) / float(values[nominal])
-        slow, fast = np.degrees(shown.rates)
-        present = f"{fast:.2g} deg/s" if fast < 1.05 * slow else f"{slow:.2g} to {fast:.2g} deg/s"
-        rate = math.degrees(rate_to_add(shown, lags, usual))
-        sentence = (
-            f"{found.missing}; the sweeps ({present}) do not separate lag from hysteresis, sweeps at {rate:.0f} deg/s as well "
-            "would"
-        )
-        return replace(found, missing=sentence)
-    dfz, dpi = load / float(values["FNOMIN"]) - 1.0, pressure / float(values["NOMPRES"]) - 1.0
-    by_terms = np.column_stack([dfz, dfz**2, dpi]).T @ shown.weights * constants.CARCASS_TERM_SPREAD
-    fitted = tuple(name for name in posterior.names if name in BY_NAME)
-    at = traced({name: float(values[name]) for name in fitted})
-    of_K = direction.slip_stiffness(*upright({**values, **at}, load, pressure))
-    slope = (
-        gradient(of_K, list(at.values())) / np.reshape(plain(of_K), (-1, 1))
-        if fitted
-        else np.zeros((len(K), 0))
-    )
-    beside = BesideNumbers(
-        values={nominal: shown.stiffness},
-        covariance=np.array([[shown.u**2 + (shown.stiffness * float(np.linalg.norm(by_terms))) ** 2]]),
-        leans_on=fitted,
-        slope=shown.stiffness * (shown.weights @ slope)[None, :],
-    )
-    u = posterior.with_numbers(beside).stderr[nominal]
-    lacking = f"sweeps at several rates give one stiffness; {', '.join(terms)} need steps at several loads and pressures"
-    q = Quantity(shown.stiffness, u, BY_NAME[nominal].unit)
-    return replace(found, found={nominal: q}, beside=beside, missing=lacking, rates=shown)
-
-
 def relaxation_sentences(found: Sequence[Relaxation]) -> list[str]:
     """The relaxation lengths that steps show, and the coefficients: a sentence per direction with steps."""
     return [_sentence(one) for one in found if one.found]
 
 
 def _sentence(found: Relaxation) -> str:
-    if found.rates is not None:
-        ((name, q),) = found.found.items()
-        slow, fast = np.degrees(found.rates.rates)
-        return ascii_only(
-            f"Relaxation length of the {CHANNELS[found.direction.force].word}, from {found.rates.sweeps} sweeps of "
-            f"{found.direction.word} at {slow:.2g} to {fast:.2g} deg/s: {name} {to_uncertainty(q.value, q.u)}; the sweeps have "
-            f"{math.degrees(found.rates.hysteresis):.2g} deg of hysteresis beside it."
-        )
     lengths = ", ".join(
         f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N"
         for run in found.runs

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
+from mffit.config import Config
 from mffit.fit.bands import band_of_combined, band_of_other_side, bands_by_pressure
 from mffit.fit.coverage import why_held
 from mffit.fit.result import FitResult
@@ -23,7 +23,7 @@ from mffit.rig_errors import ZEROS
 
 
 def with_remarks(
-    found: FitResult, config: Any, points: Points, zeros: TurningZeros | None, *, from_base: bool
+    found: FitResult, config: Config, points: Points, zeros: TurningZeros | None, *, from_base: bool
 ) -> FitResult:
     """The result with what its bands and zeros without a measured eps_gamma have to say."""
     fitted, values = found.search, found.tyre.values
@@ -32,7 +32,7 @@ def with_remarks(
     sideways = (error.name for error in ZEROS if error.shows_in(SIDEWAYS))
     zeros_of_rig = {name: fitted.rig[name] for name in sideways if name in fitted.rig}
     bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points, zeros_of_rig)
-    why = why_held(bands.unseen, points, config.tyre.side or "left") or "these sweeps do not determine it"
+    why = why_held(bands.unseen, points, config.tyre.side) or "these sweeps do not determine it"
     note = bands_sentence(bands, fitted.held, values, why)
     moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
     warned = zeros is not None and zeros.contradicted and from_base

@@ -20,7 +20,6 @@ from mffit.fit.influences.nuisance_choice import NuisanceChoice
 from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
-from mffit.fit.stages import StageRecord
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
 from mffit.linearised import LinearisedFit
@@ -43,7 +42,6 @@ class FitResult(Brief):
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
     model: Readings  #: of ``simulation`` at the points, in the channels of the fit
     posterior: Posterior  #: joint uncertainty of tyre and rig
-    stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
     warnings: tuple[str, ...]

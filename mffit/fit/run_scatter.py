@@ -71,7 +71,7 @@ class Part:
 
     def solved(self, shared: np.ndarray, spread: np.ndarray) -> np.ndarray:
         """Change of the own numbers (..., j) for a change of the shared ones (k,)."""
-        return -(self.inverse(spread) @ self.moved(shared).own_pull[..., None])[..., 0]
+        return np.asarray(-(self.inverse(spread) @ self.moved(shared).own_pull[..., None])[..., 0])
 
 
 class OfRuns(NamedTuple):
@@ -144,7 +144,7 @@ class Runs:
     def determined(self, parts: Part, spread: np.ndarray) -> np.ndarray:
         """How many (j,) of the own numbers the readings determine, rather than their spread."""
         _, variances = self.own_numbers(parts, spread)
-        return np.sum(np.maximum(1.0 - variances / spread**2, 0.0), axis=0)
+        return np.asarray(np.sum(np.maximum(1.0 - variances / spread**2, 0.0), axis=0))
 
     def support(self, parts: Part, kept: np.ndarray, more: np.ndarray, step: np.ndarray) -> Support:
         """What the shared numbers ``more`` explain beside the others of ``kept``, by their index (i,) and (m,).

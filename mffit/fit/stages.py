@@ -1,8 +1,7 @@
-"""The stages of the fit, in order, and groups of coefficients that the parameter table marks."""
+"""The stages of the parameter table: groups of coefficients with the channels that show them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tir.parameters import TABLE
@@ -10,20 +9,11 @@ from tir.parameters import TABLE
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """One step of the staged fit.
-
-    It frees the coefficients that the parameter table assigns to it and those of the stages in ``reopened``, so that small
-    errors of earlier stages, which had less data, can still be corrected.
-    """
+    """A row of the coverage matrix: the coefficients that the parameter table assigns to it."""
 
     name: str  #: the word in the table's ``stage`` column
     title: str
-    channels: tuple[str, ...]  #: measured channels that it is fitted to
-    reopened: tuple[str, ...] = ()  #: earlier stages whose coefficients are free again
-    zero_camber: bool = False  #: uses only points without camber
-    main_pressure: bool = False  #: uses only points at the most frequent pressure
-    slips: tuple[str, ...] = ("alpha",)
-    """Slips that its points may have: sideslip ``alpha`` and longitudinal slip ``kappa``; points with another are left out."""
+    channels: tuple[str, ...]  #: measured channels that show them
     where_measured: bool = False  #: listed only where its channels were measured
     where_run: bool = False  #: listed only where longitudinal slip was run
     if_predicted: bool = False  #: free only if left-out sweeps are predicted better with its coefficients
@@ -34,84 +24,25 @@ class Stage:
         return tuple(row.name for row in TABLE if row.stage == self.name)
 
 
-@dataclass(frozen=True, slots=True)
-class StageRecord:
-    """The coefficients of one stage and the misfit after it."""
-
-    name: str
-    title: str
-    parameters: tuple[str, ...]
-    rmse: Mapping[str, float]  #: by channel of the fit
-    note: str = ""
-
-
-LONGITUDINAL = (
-    Stage(
-        "Fx",
-        "Longitudinal force at zero camber",
-        ("Fx",),
-        zero_camber=True,
-        main_pressure=True,
-        slips=("kappa",),
-        where_measured=True,
-    ),
-    Stage(
-        "Fx-camber",
-        "Longitudinal force with camber",
-        ("Fx",),
-        reopened=("Fx",),
-        main_pressure=True,
-        slips=("kappa",),
-        where_measured=True,
-    ),
-    Stage(
-        "Fx-pressure",
-        "Longitudinal force over pressure",
-        ("Fx",),
-        reopened=("Fx",),
-        slips=("kappa",),
-        where_measured=True,
-    ),
-)
-"""Stages of longitudinal slip alone."""
 STAGES = (
-    *LONGITUDINAL,
-    Stage("Fy", "Side force at zero camber", ("Fy",), zero_camber=True, main_pressure=True),
-    Stage("camber", "Camber", ("Fy",), reopened=("Fy",), main_pressure=True),
-    Stage("pressure", "Pressure", ("Fy",), reopened=("Fy",)),
-    Stage(
-        "combined-Fx",
-        "Longitudinal force with sideslip",
-        ("Fx",),
-        slips=("alpha", "kappa"),
-        where_measured=True,
-    ),
-    Stage(
-        "combined-Fy",
-        "Side force with longitudinal slip",
-        ("Fy",),
-        reopened=("Fy",),
-        slips=("alpha", "kappa"),
-        where_run=True,
-    ),
-    Stage("trail", "Pneumatic trail", ("Mz",), zero_camber=True),
-    Stage("residual", "Residual torque", ("Mz",), reopened=("trail",)),
-    Stage(
-        "combined-Mz",
-        "Self-aligning moment with longitudinal slip",
-        ("Mz",),
-        slips=("alpha", "kappa"),
-        where_run=True,
-    ),
+    Stage("Fx", "Longitudinal force at zero camber", ("Fx",), where_measured=True),
+    Stage("Fx-camber", "Longitudinal force with camber", ("Fx",), where_measured=True),
+    Stage("Fx-pressure", "Longitudinal force over pressure", ("Fx",), where_measured=True),
+    Stage("Fy", "Side force at zero camber", ("Fy",)),
+    Stage("camber", "Camber", ("Fy",)),
+    Stage("pressure", "Pressure", ("Fy",)),
+    Stage("combined-Fx", "Longitudinal force with sideslip", ("Fx",), where_measured=True),
+    Stage("combined-Fy", "Side force with longitudinal slip", ("Fy",), where_run=True),
+    Stage("trail", "Pneumatic trail", ("Mz",)),
+    Stage("residual", "Residual torque", ("Mz",)),
+    Stage("combined-Mz", "Self-aligning moment with longitudinal slip", ("Mz",), where_run=True),
     Stage("spin", "Turn slip", ("Fy", "Mz")),
-    Stage("shift", "Ply-steer and conicity", ("Fy", "Mz"), reopened=("spin",)),
-    Stage("Mx", "Overturning moment", ("Mx",), slips=("alpha", "kappa"), where_measured=True),
+    Stage("shift", "Ply-steer and conicity", ("Fy", "Mz")),
+    Stage("Mx", "Overturning moment", ("Mx",), where_measured=True),
     Stage(
         "Mx-arm",
         "Overturning moment: arm of the side force",
         ("Mx",),
-        reopened=("Mx",),
-        slips=("alpha", "kappa"),
         where_measured=True,
         if_predicted=True,
     ),
@@ -119,8 +50,6 @@ STAGES = (
         "Mx-load",
         "Overturning moment: camber and load",
         ("Mx",),
-        reopened=("Mx",),
-        slips=("alpha", "kappa"),
         where_measured=True,
         if_predicted=True,
     ),
@@ -133,5 +62,7 @@ ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
 """Prior standard deviation, from road tyres, of coefficients that a disc shows only together with a larger effect: conicity with
 the turn-slip force, ply-steer with the zero of the sideslip axis."""
-WITH_CAMBER = frozenset(row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled"))
-"""Coefficients that act only on a cambered wheel."""
+OF_CAMBER_OR_SPIN = frozenset(
+    row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled", "curvature")
+)
+"""Coefficients that act only on a cambered wheel or on a curved path."""

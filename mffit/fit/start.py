@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit import constants
-from mffit.fit.driven_start import driven_starts
+from mffit.constants import UPRIGHT
 from mffit.measured import Measured
 from mffit.points import Points, main_pressure
+from tir.parameters import BY_NAME
 
 NONZERO_STARTS = {
     "QBZ1": 8.0,
@@ -36,10 +36,8 @@ ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
     "a long trail": {"QBZ1": 5.0, "QCZ1": 1.1, "QEZ1": -3.0, "QEZ2": 0.0},
 }
 """Alternative starting values, tried if the first fit ends far above the noise."""
-STARTS_OF_A_STAGE: Mapping[str, Sequence[Mapping[str, float]]] = {
-    "Fx": ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4}),
-}
-"""Further starting values of single stages; the best end is taken, because a shape factor can have several minima."""
+SHAPES_OF_FX: Sequence[Mapping[str, float]] = ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4})
+"""Further starts of the longitudinal force, whose shape factor can have several minima."""
 SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in values)
 """Coefficients of the shape of a curve, which can compensate for each other."""
 
@@ -52,11 +50,9 @@ def starting_values(
     for name, value in NONZERO_STARTS.items():
         if abs(start[name]) < 1e-9 and name not in held:
             start[name] = value
-    upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
+    upright = np.abs(points.gamma) < UPRIGHT.rad
     if np.any(upright) and "PDY1" not in held:
-        friction = np.max(np.abs(points.Fy[upright]) / points.Fz[upright])
-        start["PDY1"] = max(float(friction), constants.LEAST_STARTING_FRICTION)
-    start |= driven_starts(start, points, held)
+        start["PDY1"] = BY_NAME["PDY1"].inside(float(np.max(np.abs(points.Fy[upright]) / points.Fz[upright])))
     C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
         start |= _cornering_stiffness_terms(start, C_alpha, held)
@@ -111,8 +107,7 @@ def _cornering_stiffness_terms(
             return {}
         shape = np.sin(values["PKY4"] * np.arctan(load / values["PKY2"]))
         return {"PKY1": float(shape @ stiffness / (shape @ shape))}
-    lowest, highest = constants.PKY2_STARTS
-    PKY2 = np.linspace(lowest, highest, constants.PKY2_START_COUNT)
+    PKY2 = np.linspace(*BY_NAME["PKY2"].usual, 78)  # in steps of 0.1
     shapes = np.sin(values["PKY4"] * np.arctan(load / PKY2[:, None]))
     PKY1 = (shapes @ stiffness) / np.sum(shapes**2, axis=1)
     if "PKY1" in held:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtri
 
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit import constants
 from mffit.scatter import robust
 
@@ -31,7 +32,7 @@ def robust_scale(residual: np.ndarray) -> float:
 def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     """Factor (n,) >= 1 that enlarges the uncertainty of points beyond the Huber threshold."""
     size = np.abs(residual) / (constants.HUBER_THRESHOLD * scale)
-    return np.sqrt(np.maximum(size, 1.0))
+    return np.asarray(np.sqrt(np.maximum(size, 1.0)))
 
 
 def enlarged(
@@ -64,7 +65,7 @@ def outlying(
     known = np.isfinite(apart)
     # At least the stated uncertainty: among points without noise every tiny difference would count as an outlier.
     local = np.maximum(robust_scale(apart[known]), least)
-    far = float(-ndtri(constants.OUTLIER_FALSE_ALARM / (2.0 * len(used))))
+    far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out
 

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
+from mffit.config import Config
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit import constants
 from mffit.fit.bands import BandOfCombined, BandOfOtherSide, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
-from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
-from mffit.fit.priors import Prior
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
+from mffit.measured import Measured
 from mffit.rig_errors import UNITS, WORDS
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
-from tir import Quantity
 from tir.parameters import BY_NAME
 
 RARE = "the range of usual tyres"
@@ -30,7 +32,7 @@ RARE = "the range of usual tyres"
 
 
 def explanations(
-    config: Any, files: Files, values: Mapping[str, Any], measured: Any, hand: Hand = NO_HAND
+    config: Config, files: Files, values: Mapping[str, Any], measured: Measured, hand: Hand = NO_HAND
 ) -> list[str]:
     """Everything that the report explains about the files, the most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
@@ -70,7 +72,7 @@ def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
         _use_sentence(files, names),
         f"{names['turn-slip']} is the fitted model itself.",
         _misfit_sentence(files.by_use["normal"], names["normal"], files.camber_limit),
-        *_otherwise_sentences(files, names["normal"]),
+        *_limit_sentences(files),
         _lacking_sentence(files, names["normal"]),
         ranges_sentence(files),
     ]
@@ -108,33 +110,17 @@ def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str
     )
 
 
-def _otherwise_sentences(files: Files, name: str) -> list[str]:
-    """What the other choice under [normal] would give."""
-    if files.otherwise is None:
-        return []
-    here, there = files.by_use["normal"], files.otherwise
-    slope = files.by_use["turn-slip"].camber_stiffness
-    loss = [1.0 - file.camber_stiffness / slope for file in (here, there)]
+def _limit_sentences(files: Files) -> list[str]:
+    """What became of the camber to which [normal] holds a file."""
     if files.camber_limit is not None:
-        limit = f"{np.degrees(files.camber_limit):.0f} deg"
         return [
-            f"{name} is held to {limit} of camber, as [normal] camber_max_deg asks, and CAMMAX is written accordingly. Without "
-            f"this limit it would reproduce all tested camber to {there.straight['Fy'].rms:.0f} N rms, and lack {loss[1]:.0%} "
-            f"instead of {loss[0]:.0%} of the camber stiffness at zero."
+            f"CAMMAX of this file is {np.degrees(files.camber_limit):.0f} deg, as [normal] camber_max_deg asks."
         ]
-    beyond = []
-    if files.wide_limit is not None:
-        beyond = [
-            f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
-            f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
-        ]
-    other = "road" if files.weight == "everything" else "everything"
-    Fy, would = here.straight["Fy"], there.straight["Fy"]
+    if files.wide_limit is None:
+        return []
     return [
-        *beyond,
-        f'With [normal] weight = "{other}" {name} would be off by {would.ridden:.1f} instead of {Fy.ridden:.1f} N rms where '
-        f"vehicles are ridden, by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
-        f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero.",
+        f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
+        f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
     ]
 
 
@@ -189,7 +175,7 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
     degrees = [round(float(np.degrees(alpha)), 1) + 0.0 for alpha in sideslips]
     if not any(degrees):
         return "without sideslip"
-    if len(degrees) > constants.MOST_SIDESLIPS_NAMED:
+    if len(degrees) > constants.NAMED_COEFFICIENTS:
         return f"at sideslips of {degrees[0]:g} to {degrees[-1]:g} deg"
     *others, last = (f"{alpha:g}" for alpha in degrees)
     return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
@@ -354,14 +340,30 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
             "its prior counts as its value and uncertainty" if name in hand.priors else "nothing was searched"
         )
         out.append(f"{name} is set in [coefficients], but the points do not free it{why}: {given}")
-    return out + [_contradiction(*row) for row in contradicted_priors(fitted)]
+    return [*out, *contradicted_priors(fitted)]
 
 
-def _contradiction(name: str, points: Quantity, prior: Prior, apart: float) -> str:
-    return (
-        f"the points alone give {name} = {points.value:.4g} +- {points.u:.2g}, {apart:.1f} standard deviations from the "
-        f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
-    )
+def contradicted_priors(fitted: Fitted) -> Iterator[str]:
+    """The priors set by hand that differ from the points by more than chance explains.
+
+    The posterior of one number is the mean of prior and points, weighted by their information, so that the part of the points
+    follows from posterior and prior.
+    """
+    stderr = fitted.posterior.stderr
+    far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * max(len(fitted.hand.priors), 1))))
+    for name, prior in fitted.hand.priors.items():
+        if name not in fitted.values or name in fitted.at_bound:
+            continue
+        both, own = stderr[name] ** -2.0, prior.spread**-2.0
+        if not both > own:  # the points say nothing
+            continue
+        value, u = (both * fitted.values[name] - own * prior.expected) / (both - own), (both - own) ** -0.5
+        apart = abs(value - prior.expected) / math.hypot(u, prior.spread)
+        if apart > far:
+            yield (
+                f"the points alone give {name} = {value:.4g} +- {u:.2g}, {apart:.1f} standard deviations from the "
+                f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
+            )
 
 
 def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:

@@ -157,9 +157,7 @@ def _fitted(
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(
-            config, points, parts, measured, base, progress, reading.steps, campaigns, reading.lags
-        )
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, campaigns)
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)
@@ -187,9 +185,5 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
         random = np.random.default_rng((i, count))
         for beside in fitted.beside:
             values = values | beside.drawn({**best.values, **values}, best.values, random)
-        if fitted.lent is not None:
-            values = values | fitted.lent.drawn({**best.values, **values}, random)
-        for other in fitted.joined:
-            values = values | other.drawn({**best.values, **values}, random)
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

@@ -25,11 +25,6 @@ class Lag(NamedTuple):
     u: float  #: its standard uncertainty [m], from the scatter of the points
     u_shape: float  #: the same from the choice of the curve through zero, common to all sweeps [m]
     hysteresis: float  #: half the difference of the two ways at one angle, rms over the sweep [N]
-    rate: float = np.nan  #: of the angle over the rolled distance [rad/m], the same on both ways
-    way: float = np.nan  #: distance rolled from the end of the sweep to its middle [m]
-    load: float = np.nan  #: [N], a mean like those below
-    pressure: float = np.nan  #: [Pa]
-    speed: float = np.nan  #: [m/s]
 
 
 UNKNOWN = Lag(np.nan, np.nan, np.nan, np.nan)
@@ -75,8 +70,6 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
         float(0.5 * np.hypot(up.u, down.u) / usual),
         float(abs(lag - one_line)),
         hysteresis,
-        rate=usual,
-        way=float(0.5 * np.ptp(alpha) / usual),
     )
 
 

@@ -20,7 +20,7 @@ from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import Lag, common, rolled_distance
+from mffit.points.lag import common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -48,9 +48,6 @@ class Reading(NamedTuple):
     steps: Mapping[str, Points] = MappingProxyType({})
     """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
     notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
-    lags: tuple[
-        Lag, ...
-    ] = ()  #: of moving sweeps of the sideslip angle whose lag is known, on a straight path at a known speed
     taken_off: tuple[
         str, ...
     ] = ()  #: sentences about errors of the rig that nobody declared and that were taken off
@@ -130,7 +127,6 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
-    lags = [one for part in reduced for one in part.lags if straight and is_known and np.isfinite(one.lag)]
     excluded = _excluded(found.excluded, phi_t)
     return Reading(
         kept,
@@ -140,7 +136,6 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         excluded,
         stepped,
         of_slip.notes,
-        tuple(lags),
         tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
         _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
     )

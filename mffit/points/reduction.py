@@ -112,11 +112,9 @@ def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     rolled = rolled_distance(time, sweep.V[rows])
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
-    lag = measure(
+    return measure(
         sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
     )
-    load, pressure, speed = (float(np.mean(x[rows])) for x in (sweep.Fz, sweep.p, sweep.V))
-    return lag._replace(load=load, pressure=pressure, speed=speed)
 
 
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.laboratory import LabTable
 from mffit.diagnosis.remains import Remains
-from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
+from mffit.fit import Agreement, Coefficient, Posterior
 from mffit.fit.borrowed.campaign import Joined
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
@@ -135,7 +135,6 @@ class BuildView:
     agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points
     odd_agreement: Mapping[str, Agreement]  #: by channel, of the file for turn slip off on the odd part
     rows: tuple[CoefficientRow, ...]
-    stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     warnings: tuple[str, ...]
     explanations: tuple[str, ...]
@@ -231,7 +230,6 @@ def view_of(result: BuildResult) -> BuildView:
         agreement=fit.channels,
         odd_agreement=fit.odd,
         rows=_with_campaigns(rows, fit.joined),
-        stages=fit.stages,
         coverage=fit.coverage,
         warnings=tuple(result.warnings),
         explanations=tuple(fit.explanations),

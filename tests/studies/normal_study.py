@@ -105,7 +105,7 @@ def outcome(tyre: tir.Tyre, *, with_limit: bool = True) -> Outcome:
     values, data = dict(tyre.values), tested(tyre)
     began = time.perf_counter()
     written = plausible_ranges(values, data, turn_slip=True)
-    normal = {**values, **derive(values, data, written, {n: values[n] for n in ("PKY6", "PKY7")})}
+    normal = {**values, **derive(values, data, written)}
     seconds = time.perf_counter() - began
     road = box(values["FNOMIN"], values["NOMPRES"])
     true, made = forces(values, road, turn_slip=True), forces(normal, road, turn_slip=False)

@@ -2,8 +2,7 @@
 
 Draws tyres around a car's and a motorcycle's file with other carcasses, and recordings of steps with other noise, correlation of
 the noise, sampling rate, speed, loads and pressures. ``--whole 40`` builds whole campaigns with sweeps and steps from a cold
-start instead, and ``--rates 200`` draws sweeps of the sideslip angle at two rates, with hysteresis and a delay between angle and
-force. Prints the tables of docs/recovery.md.
+start instead. Prints the tables of docs/recovery.md.
 """
 
 from __future__ import annotations
@@ -12,12 +11,10 @@ import argparse
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
@@ -124,53 +121,6 @@ def one(seed: int, whole: bool) -> StepsDraw:
     return draw
 
 
-def of_rates(seed: int) -> StepsDraw:
-    """Draw sweeps at two rates, and fit the carcass with the rest of the tyre known."""
-    rng = np.random.default_rng(27000 + seed)
-    word = list(VEHICLES)[seed % 2]
-    kind = Kind(VEHICLES[word])
-    true = drawn_tyre(kind.vehicle, rng, 0.12)
-    terms = [name for direction in DIRECTIONS for name in direction.names[1:]]
-    V, delay = float(rng.uniform(4.0, 15.0)), 0.003 * rng.standard_normal()
-    slow, rate = float(rng.uniform(2.0, 6.0)), float(rng.choice([50, 100, 200]))
-    fast = slow * rng.uniform(1.0, 6.0) if seed % 5 else slow
-    faults = {"hysteresis_deg": float(rng.uniform(0.0, 0.1))}
-    runs = []
-    for load in [kind.vehicle.at(s) for s in ((1.0,), (0.5, 1.5))[rng.integers(2)]]:
-        for k, speed in enumerate((slow, fast, fast)):
-            recording = {
-                "rate_Hz": rate, "hold_s": 0.0, "steering_deg_per_s": speed,
-                "correlation_s": float(rng.choice([0.0, 0.1])),
-                "noise_Fy_N": kind.vehicle.noise["Fy_N"] * 2.0 ** rng.uniform(-1.0, 1.0),
-            }  # fmt: skip
-            angles = [-9, 9] * (1 + round(speed / slow)) + [-9]
-            file = f"sweep_{load:.0f}N_{k}.csv"
-            runs.append(
-                {
-                    "file": file,
-                    "load_N": load,
-                    "V_mps": V,
-                    "alpha_deg": angles,
-                    "recording": recording,
-                    "faults": faults,
-                }
-            )
-    draw = StepsDraw(kind=f"{word}, {'one rate' if fast == slow else 'two rates'}", seed=seed)
-    with on_disk(true, content_of(kind, runs, dict.fromkeys(kind.vehicle.noise, 0.1)), seed) as (path, _):
-        for run in runs:
-            table = pd.read_csv(path.parent / run["file"])
-            table["alpha_deg"] = np.interp(table["time_s"] + delay, table["time_s"], table["alpha_deg"])
-            table.to_csv(path.parent / run["file"], index=False)
-        start = true.replace(LATERAL_STIFFNESS=2.0 * true["LATERAL_STIFFNESS"], **dict.fromkeys(terms, 0.0))
-        reading = read(configuration.load(path))
-        tyre = Simulation.of(start, turn_slip=False)
-        found = relaxation(reading.steps, tyre, NONE_KNOWN, (), reading.lags)[0]
-    for name, q in found.found.items():
-        draw.note(name, q.value, q.u, true[name])
-    draw.unclear = not found.found
-    return draw
-
-
 def _note_lengths(
     draw: StepsDraw, found: Sequence[Relaxation], true: tir.Tyre, runs: list[dict[str, Any]]
 ) -> None:
@@ -213,11 +163,9 @@ def main() -> None:
     ask = argparse.ArgumentParser()
     ask.add_argument("draws", type=int, nargs="?", default=200)
     ask.add_argument("--whole", action="store_true", help="build whole campaigns")
-    ask.add_argument("--rates", action="store_true", help="sweeps at two rates instead of steps")
     ask.add_argument("--first", type=int, default=0, help="first seed")
     given = ask.parse_args()
-    draw = of_rates if given.rates else partial(one, whole=given.whole)
-    draws = [draw(seed) for seed in range(given.first, given.first + given.draws)]
+    draws = [one(seed, whole=given.whole) for seed in range(given.first, given.first + given.draws)]
     print(f"{len(draws)} draws\n")
     print("\n".join(tables(draws)))
 

@@ -16,8 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.constants import UPRIGHT
 from mffit.fit import constants
 from mffit.fit.bands import BandOfCombined
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.borrowed.sister import BY_FRICTION, LENT, OVER_SLIP
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.known import DETERMINED, Known
@@ -78,33 +80,16 @@ class Joined:
     campaign: FittedCampaign
     grip: Quantity  #: friction of this campaign's surface over that of the other
     groups: tuple[str, ...]  #: in words
-    found: Mapping[str, Quantity]  #: every coefficient with its standard uncertainty
+    beside: BesideNumbers  #: the coefficients, those of friction following this campaign's
+    found: Mapping[str, Quantity]  #: each of them with its standard uncertainty
     u_scatter: float  #: of the logarithm of the ratio, beyond the two fits
-    posterior: Posterior  #: of the fitted coefficients and of these
 
     @property
     def values(self) -> dict[str, float]:
         """The coefficients, and the range of longitudinal slip that the other campaign covers."""
         driven = any(name in self.found for name in ("PCX1", "PDX1", "PKX1"))
         ends = {name: float(self.campaign.tyre[name]) for name in ("KPUMIN", "KPUMAX") if driven}
-        return {name: q.value for name, q in self.found.items()} | ends
-
-    def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
-        """The joined coefficients of a tyre whose other ``values`` were drawn before."""
-        other = self.campaign
-        names = [name for name in other.posterior.names if name in BY_NAME]
-        rows = [other.posterior.names.index(name) for name in names]
-        covariance = other.posterior.covariance[np.ix_(rows, rows)]
-        mean = np.array([float(other.tyre[name]) for name in names])
-        theirs = dict(zip(names, random.multivariate_normal(mean, covariance, method="eigh"), strict=True))
-        theirs = {**{n: q.value for n, q in other.coefficients.items()}, **theirs}
-        log = _log_of_grip(values, theirs, other.shared).value + self.u_scatter * random.standard_normal()
-        known = frozenset(names)
-        out = {}
-        for name, q in self.found.items():
-            own = theirs[name] if name in known else theirs[name] + q.u * random.standard_normal()
-            out[name] = own * math.exp(_power(name) * log)
-        return out
+        return {**self.beside.values, **ends}
 
 
 def shared_conditions(one: Points, other: Points) -> tuple[np.ndarray, float] | None:
@@ -114,7 +99,7 @@ def shared_conditions(one: Points, other: Points) -> tuple[np.ndarray, float] | 
         (0.5 * (a + c), 0.5 * (b + d), k)
         for a, b, k in mine
         for c, d, _ in theirs
-        if abs(a / c - 1.0) < constants.SAME_LOAD_OF_CAMPAIGNS and abs(b - d) < levels.PRESSURE.tolerance
+        if abs(a / c - 1.0) < levels.LOAD.tolerance and abs(b - d) < levels.PRESSURE.tolerance
     ]
     if not pairs:
         return None
@@ -126,14 +111,14 @@ def shared_conditions(one: Points, other: Points) -> tuple[np.ndarray, float] | 
 
 def _swept(points: Points) -> list[tuple[float, float, int]]:
     """Load, pressure and number of points of every condition with a sweep of the upright wheel to either side."""
-    upright = points.select(points.free_rolling & (np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad))
+    upright = points.select(points.free_rolling & (np.abs(points.gamma) < UPRIGHT.rad))
     if not len(upright):
         return []
     load, p = levels.level_values(upright.Fz, levels.LOAD), levels.level_values(upright.p, levels.PRESSURE)
     found = []
     for where in {(a, b) for a, b in zip(load.tolist(), p.tolist(), strict=True) if np.isfinite(a + b)}:
         alpha = upright.alpha[(load == where[0]) & (p == where[1])]
-        if min(alpha.max(), -alpha.min()) >= constants.SIDESLIP_THAT_SHOWS_GRIP.rad:
+        if min(alpha.max(), -alpha.min()) >= constants.LARGE_SIDESLIP.rad:
             found.append((*where, len(alpha)))
     return found
 
@@ -147,47 +132,38 @@ def join(campaign: FittedCampaign, known: Known, posterior: Posterior) -> Joined
         for name in dict.fromkeys(wanted)
         if known.origin[name] not in ("measured", "fitted", "regularised")
     ]
-    theirs = {name: c.value for name, c in campaign.coefficients.items()}
-    own_rows = [i for i, name in enumerate(posterior.names) if name not in wanted]
-    own = [posterior.names[i] for i in own_rows]
-    other = list(campaign.posterior.names)
-    alone = [n for n in wanted if n not in other and campaign.coefficients[n].stderr]
-    log = _log_of_grip(known.values, theirs, campaign.shared, own, other)
-    scatter = max(log.scatter, 0.0) if campaign.shared else float(constants.UNKNOWN_RATIO_OF_GRIPS)
-    spread = [campaign.coefficients[name].stderr or 0.0 for name in alone]
-    sizes = [len(own), len(other), 1, len(alone)]
-    every = np.zeros((sum(sizes), sum(sizes)))
-    blocks = (
-        posterior.covariance[np.ix_(own_rows, own_rows)],
-        campaign.posterior.covariance,
-        np.array([[scatter**2]]),
-        np.diag(np.square(spread)) if alone else np.zeros((0, 0)),
+    own, theirs = posterior.without(wanted), campaign.posterior
+    values = {name: c.value for name, c in campaign.coefficients.items()}
+    log = _log_of_grip(known.values, values, campaign.shared, own.names, theirs.names)
+    by_own, by_theirs = np.split(log.slope, [len(own.names)])
+    scatter = log.scatter if campaign.shared else float(constants.UNKNOWN_RATIO_OF_GRIPS)
+    factor = {name: math.exp(_power(name) * log.value) for name in wanted}
+    found = {name: factor[name] * values[name] for name in wanted}
+    by_log = np.array([_power(name) * x for name, x in found.items()])
+    slope, alone = np.outer(by_log, by_theirs), np.zeros(len(wanted))
+    for row, name in enumerate(wanted):
+        if name in theirs.names:
+            slope[row, theirs.names.index(name)] += factor[name]
+        else:
+            alone[row] = factor[name] * (campaign.coefficients[name].stderr or 0.0)
+    beside = BesideNumbers(
+        values=found,
+        covariance=slope @ theirs.covariance @ slope.T
+        + scatter**2 * np.outer(by_log, by_log)
+        + np.diag(alone**2),
+        leans_on=own.names,
+        slope=np.outer(by_log, by_own),
     )
-    at = np.cumsum([0, *sizes])
-    for begin, end, block in zip(at[:-1], at[1:], blocks, strict=True):
-        every[begin:end, begin:end] = block
-    by_log = np.concatenate([log.slope, [1.0], np.zeros(len(alone))])
-    values, rows = {}, []
-    for name in wanted:
-        factor = math.exp(_power(name) * log.value)
-        values[name] = theirs[name] * factor
-        row = values[name] * _power(name) * by_log
-        if name in other:
-            row[at[1] + other.index(name)] += factor
-        elif name in alone:
-            row[at[3] + alone.index(name)] += factor
-        rows.append(row)
-    through = np.vstack([np.eye(len(own), sum(sizes)), *rows])
-    whole = through @ every @ through.T
-    u = np.sqrt(np.diag(whole)).tolist()[len(own) :]
-    ratio = math.exp(log.value)
+    u = own.with_numbers(beside).stderr
+    parts = ((by_own, own.covariance), (by_theirs, theirs.covariance))
+    u_log = math.sqrt(scatter**2 + sum(float(by @ covariance @ by) for by, covariance in parts))
     return Joined(
         campaign=campaign,
-        grip=Quantity(ratio, ratio * math.sqrt(float(by_log @ every @ by_log)), "-"),
+        grip=Quantity(math.exp(log.value), math.exp(log.value) * u_log, "-"),
         groups=tuple(taken),
-        found={n: Quantity(values[n], s, BY_NAME[n].unit) for n, s in zip(wanted, u, strict=True)},
+        beside=beside,
+        found={name: Quantity(x, u[name], BY_NAME[name].unit) for name, x in found.items()},
         u_scatter=scatter,
-        posterior=Posterior((*own, *wanted), whole),
     )
 
 

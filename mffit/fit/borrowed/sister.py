@@ -14,20 +14,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.constraints import Envelope, violations
+from mffit.fit.beside import BesideNumbers
+from mffit.fit.constraints import Envelope
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
 from mffit.fit.priors import NOT_MEASURED, scatter
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.upright import sideways
-from mffit.points import Points, main_pressure
+from mffit.points import Points, levels, main_pressure
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
@@ -75,30 +76,11 @@ class Lent:
     sister: Sister
     friction: Quantity  #: longitudinal friction over the sister's, at nominal load
     stiffness: Quantity  #: slip stiffness over the sister's, at nominal load
-    theirs: Mapping[str, float]  #: the sister's coefficients
-    found: Mapping[str, Quantity]  #: every borrowed coefficient with its standard uncertainty
-    spread: Mapping[str, float]  #: of each of them, among tyres with these two ratios
-    posterior: Posterior  #: of the fitted and of the borrowed coefficients
-
-    def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
-        """Borrowed coefficients of a tyre drawn from the posterior, whose other ``values`` were drawn before.
-
-        What each coefficient has of its own is drawn again until the physical limits hold, and reduced after many draws.
-        """
-        sister = self.sister
-        errors = (sister.u_friction * random.standard_normal(), sister.u_stiffness * random.standard_normal())
-        mean = _scaled(values, self.theirs, sister, errors).values
-        allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
-        for share in (*(1.0,) * int(constants.SISTER_DRAWS), *constants.SISTER_SHARES_OF_A_DRAW):
-            own = {name: share * u * random.standard_normal() for name, u in self.spread.items()}
-            found = {name: BY_NAME[name].inside(mean[name] + x) for name, x in own.items()}
-            p = SimpleNamespace(**{**values, **self.theirs, **found})
-            if np.max(violations(p, sister.envelope)) <= allowed:
-                break
-        return found
+    beside: BesideNumbers  #: the borrowed coefficients, which follow the measured side force
+    found: Mapping[str, Quantity]  #: each of them with its standard uncertainty
 
 
-def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
+def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | None:
     """The sister tyre that ``[sister]`` declares; None without that table.
 
     Raises
@@ -106,7 +88,7 @@ def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
     InputError
         The base file states no longitudinal force that somebody measured, or longitudinal force was measured on this tyre too.
     """
-    if config.sister is None or base is None:
+    if config.sister is None or base is None or config.tyre.base is None:
         return None
 
     def refused(sentence: str) -> InputError:
@@ -130,15 +112,15 @@ def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
             )
     ranges = covered_ranges(points)
     low, high = ranges["FZMIN"], ranges["FZMAX"]
-    if high - low < constants.SAME_LOAD_OF_SWEEPS * config.tyre.nominal_load:
-        share = float(constants.SISTER_LOADS_AROUND_ONE)
+    if levels.count(points.Fz, levels.LOAD) < 2:
+        share = float(constants.AROUND_A_SINGLE_VALUE)
         low, high = (1.0 - share) * low, (1.0 + share) * high
     return Sister(
         file=config.tyre.base,
         tyre=base,
         u_friction=config.sister.u_friction,
         u_stiffness=config.sister.u_stiffness,
-        loads=np.linspace(low, high, constants.SISTER_LOADS),
+        loads=np.linspace(low, high, constants.STEPS_OF_A_GRID),
         pressure=float(points.p[main_pressure(points)].mean()),
         envelope=envelope(ranges)._replace(kappa=float(constants.SISTER_SLIP)),
     )
@@ -149,31 +131,28 @@ def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
     theirs = {name: float(sister.tyre[name]) for name in LENT}
     kept = {*known.hand.names, *(name for name in LENT if known.origin[name] in DETERMINED)}
     wanted = [name for name in LENT if name in sister.tyre.present and name not in kept]
-    rows = [i for i, name in enumerate(posterior.names) if name not in wanted]
-    names = [posterior.names[i] for i in rows]
-    covariance = posterior.covariance[np.ix_(rows, rows)]
-    scaled = _scaled(known.values, theirs, sister, by=names)
-    spread = {
-        name: 0.0 if name in ("PDX1", "PKX1") else scatter(name, x, from_base=True, curved=False)
-        for name, x in scaled.values.items()
-    }
-    u_errors = np.diag([sister.u_friction**2, sister.u_stiffness**2])
-    every = np.block([[covariance, np.zeros((len(rows), 2))], [np.zeros((2, len(rows))), u_errors]])
-    own = np.diag([spread[name] ** 2 for name in LENT])
+    fitted = posterior.without(LENT)
+    scaled = _scaled(known.values, theirs, sister, by=fitted.names)
     slope = np.array([scaled.slopes[name] for name in LENT])
-    u = dict(zip(LENT, np.sqrt(np.diag(slope @ every @ slope.T + own)).tolist(), strict=True))
-    slope = slope[[LENT.index(name) for name in wanted]]
-    through = np.vstack([np.eye(len(rows), len(rows) + 2), slope])
-    whole = through @ every @ through.T
-    whole[len(rows) :, len(rows) :] += np.diag([spread[name] ** 2 for name in wanted])
+    own = [
+        0.0 if name in ("PDX1", "PKX1") else scatter(name, x, from_base=True, curved=False)
+        for name, x in scaled.values.items()
+    ]
+    errors = slope[:, -2:] * [sister.u_friction, sister.u_stiffness]
+    every = BesideNumbers(
+        values=scaled.values,
+        covariance=errors @ errors.T + np.diag(np.square(own)),
+        leans_on=fitted.names,
+        slope=slope[:, :-2],
+        envelope=sister.envelope,
+    )
+    u = fitted.with_numbers(every).stderr
     return Lent(
         sister=sister,
         friction=_ratio("PDX1", scaled.values, theirs, u),
         stiffness=_ratio("PKX1", scaled.values, theirs, u),
-        theirs=theirs,
+        beside=every.only(wanted),
         found={name: Quantity(scaled.values[name], u[name], BY_NAME[name].unit) for name in wanted},
-        spread={name: spread[name] for name in wanted},
-        posterior=Posterior((*names, *wanted), whole),
     )
 
 
@@ -194,19 +173,18 @@ def _scaled(
     values: Mapping[str, Any],
     theirs: Mapping[str, float],
     sister: Sister,
-    errors: tuple[float, float] = (0.0, 0.0),
     by: Sequence[str] = (),
 ) -> _Scaled:
     """The sister's coefficients ``theirs``, scaled to the tyre with these ``values``.
 
-    ``errors`` are those of the two ratios, as logarithms; ``by`` names the numbers to differentiate by.
+    ``by`` names the numbers to differentiate by.
     """
     free = traced({name: float(values[name]) for name in by if name in values and name in BY_NAME})
     own = sideways({**values, **free}, sister.loads, sister.pressure)
     other = sideways(sister.tyre.values, sister.loads, sister.pressure)
     logs, slopes = [], []
     for k, (here, there) in enumerate(zip(own, other, strict=True)):
-        logs.append(np.log(plain(here) / there) + errors[k])
+        logs.append(np.log(plain(here) / there))
         slope = np.zeros((len(sister.loads), len(by) + 2))
         columns = [by.index(name) for name in free]
         slope[:, columns] = gradient(here, list(free.values())) / plain(here)[:, None] if free else 0.0
@@ -224,12 +202,11 @@ def _scaled(
             ):
                 found[name], derivative[name] = float(x), slope
     # sideslip over that of sliding follows from the measured side force alone, without the two errors
-    growth = {True: float(np.mean(logs[1] - logs[0]))}
+    growth = float(np.mean(logs[1] - logs[0]))
     by_growth = {True: np.mean(slopes[1] - slopes[0], axis=0)}
-    growth[False] = growth[True] - (errors[1] - errors[0])
     by_growth[False] = np.r_[by_growth[True][:-2], 0.0, 0.0]
     for name, (power, of_kappa) in OVER_SLIP.items():
-        found[name] = theirs[name] * math.exp(power * growth[of_kappa])
+        found[name] = theirs[name] * math.exp(power * growth)
         derivative[name] = found[name] * power * by_growth[of_kappa]
     return _Scaled(found, derivative)
 

@@ -52,7 +52,7 @@ def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
         needs = SETTINGS[setting][1]
         own = [name for name in growth if needs & {need.word for need in BY_NAME[name].needs}]
         worst = max(own, key=lambda name: growth[name], default=None)
-        if worst is not None and growth[worst] > constants.GROWN_UNCERTAINTY:
+        if worst is not None and growth[worst] > constants.WIDER_BANDS:
             out.append(Confounding(setting, r, worst, growth[worst]))
     return tuple(out)
 

@@ -388,7 +388,7 @@ def solved(model: NearSolution, most: int | None = None) -> NearSolution:
         model.problem.free([number.name for number in numbers]),
         numbers,
         max_steps=most or usual,
-        tolerance=constants.REFIT_TOLERANCE_UNDER_SLIP if slips else constants.REFIT_TOLERANCE,
+        tolerance=constants.POLISH_TOLERANCE if slips else constants.REFIT_TOLERANCE,
     )
     return model._replace(problem=model.problem.with_values(found.values))
 

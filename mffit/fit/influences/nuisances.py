@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.constants import UPRIGHT
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -76,7 +77,7 @@ def _temperatures(points: Points) -> str:
 
 def _cambers(points: Points) -> str:
     tilted = float(np.max(np.abs(points.gamma)))
-    return "" if tilted > constants.ZERO_CAMBER_LIMIT.rad else "there are no sweeps at camber"
+    return "" if tilted > UPRIGHT.rad else "there are no sweeps at camber"
 
 
 def _slips(points: Points) -> str:

@@ -73,7 +73,7 @@ def _needless(
         return predicted_left_out(there._replace(numbers=inner), (), group).by_sweep
 
     def settled(there: NearSolution) -> NearSolution:
-        return solved(there, most=constants.STEPS_BACK_FROM_A_BOUND)
+        return solved(there, most=constants.REFIT_STEPS)
 
     model = settled(model._replace(problem=model.problem.thinned(stride)))
     first = predicted(model)

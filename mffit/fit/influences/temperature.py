@@ -15,7 +15,7 @@ from mffit.fit.influences.between_runs import without_runs
 from mffit.fit.influences.nuisance_choice import Gaps
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.posterior import Posterior
-from mffit.fit.written.files import FileFigures
+from mffit.fit.written.misfit import FileFigures
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.temperature import SCALED_BY

@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import polish, with_equally_good
+from mffit.fit.polish import best_fit, polish, restart_worthwhile
 from mffit.fit.problem import FitProblem
-from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 
@@ -62,13 +60,13 @@ def fit_with_nuisances(
         held = {name: plan.expected[name] for name in plan.free if name not in known.free}
         if held:
             again = polish(fitted.problem.with_values(held), known)
-            fitted = replace(again, stages=fitted.stages, attempts=fitted.attempts)
+            fitted = replace(again, attempts=fitted.attempts)
             near = near.with_values(held)
 
         def refit(rows: np.ndarray) -> Fitted:
             part, key = problem.select(rows), (rows.tobytes(), *known.free)
             if key not in staged:
-                staged[key] = fit_staged(part, start, known, silent, restarts=False)
+                staged[key] = best_fit(part, start, known, silent, restarts=False)
             return _polished(config, part, known, choice, choice.modelled, staged[key])
 
         if choice.modelled:
@@ -91,15 +89,14 @@ def fit_with_nuisances(
         before_restarts(found)
         return False
 
-    fitted = fit_staged(problem, start, plan, progress, explained=explained)
+    fitted = best_fit(problem, start, plan, progress, explained=explained)
     return first[0] if first else extended(fitted)
 
 
-def with_equally_good_fits(found: NuisanceFit) -> NuisanceFit:
-    """The fits, each with errors that cover fits as good as it, and the plain one with its distance from the full one."""
-    full = with_equally_good(found.full)
-    plain = _doubted(with_equally_good(found.plain), full) if found.at_temperature else full
-    return replace(found, plain=plain, full=full)
+def with_doubt(found: NuisanceFit) -> NuisanceFit:
+    """The fits, the plain one with its distance from the full one."""
+    plain = _doubted(found.plain, found.full) if found.at_temperature else found.full
+    return replace(found, plain=plain)
 
 
 def _polished(
@@ -121,7 +118,7 @@ def _polished(
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
     found = polish(here.with_noise_of_misfit(), plan)
-    return replace(found, stages=fitted.stages, attempts=fitted.attempts)
+    return replace(found, attempts=fitted.attempts)
 
 
 def _doubted(plain: Fitted, full: Fitted) -> Fitted:
@@ -131,16 +128,8 @@ def _doubted(plain: Fitted, full: Fitted) -> Fitted:
     """
     names = plain.posterior.names
     shift = {name: plain.values[name] - full.values[name] for name in names if name in full.values}
-    reach = {name: COVERAGE_FACTOR_95 * size for name, size in shift.items()}
-    intervals = {
-        name: (value - math.hypot(value - low, reach[name]), value + math.hypot(high - value, reach[name]))
-        for name, (low, high) in plain.intervals.items()
-        if name in reach
-        for value in [plain.values[name]]
-    }
     return replace(
         plain,
         posterior=plain.posterior.shifted(np.array([shift.get(name, 0.0) for name in names])),
         stderr={name: math.hypot(u, shift.get(name, 0.0)) for name, u in plain.stderr.items()},
-        intervals={**plain.intervals, **intervals},
     )

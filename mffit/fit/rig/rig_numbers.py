@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
 
-from mffit.config import Declaration, declared_faults, declared_rig
+from mffit.config import Config, Declaration, declared_faults, declared_rig
 from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
+from mffit.measured import Measured
 from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
@@ -17,7 +17,7 @@ SIDESLIP_ZERO = "alpha_0_deg"
 CAMBER_ZERO = "gamma_0_deg"
 
 
-def known_faults(config: Any, measured: Any, setups: Sequence[str] = ()) -> Faults:
+def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ()) -> Faults:
     """The rig before the fit: declared play, and a misalignment that exceeds what the rig's alignment leaves.
 
     With several set-ups the misalignment is that of a set-up; see :func:`known_zeros`.
@@ -28,7 +28,7 @@ def known_faults(config: Any, measured: Any, setups: Sequence[str] = ()) -> Faul
     return faults.replace(alpha_0_deg=math.degrees(measured.alpha_M.value))
 
 
-def known_zeros(measured: Any, setups: Sequence[str]) -> dict[str, float]:
+def known_zeros(measured: Measured, setups: Sequence[str]) -> dict[str, float]:
     """Misalignments of single set-ups that exceed what the rig's alignment leaves, by number; empty for one set-up."""
     if len(setups) < 2:
         return {}
@@ -36,14 +36,14 @@ def known_zeros(measured: Any, setups: Sequence[str]) -> dict[str, float]:
     return {number_of(SIDESLIP_ZERO, name): angle for name, angle in found.items() if angle}
 
 
-def _misaligned(measured: Any, setup: str) -> float:
+def _misaligned(measured: Measured, setup: str) -> float:
     """Sideslip misalignment of a set-up [deg]; 0 if it is within what the alignment leaves."""
     return math.degrees(measured.misaligned_setups.get(setup, 0.0))
 
 
 def rig_numbers(
-    config: Any,
-    measured: Any,
+    config: Config,
+    measured: Measured,
     setups: Sequence[str] = (),
     channels: Collection[str] = SIDEWAYS,
     *,
@@ -65,7 +65,7 @@ def rig_numbers(
     return (*_sideways(config, measured, setups, turned), *others)
 
 
-def held_rig(config: Any, setups: Sequence[str] = (), *, turned: bool = False) -> dict[str, float]:
+def held_rig(config: Config, setups: Sequence[str] = (), *, turned: bool = False) -> dict[str, float]:
     """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients.
 
     The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: a skew of the camber
@@ -89,7 +89,9 @@ def _of_other_channels(name: str) -> bool:
     return not BY_NAME[name].shows_in(SIDEWAYS)
 
 
-def _sideways(config: Any, measured: Any, setups: Sequence[str], turned: bool) -> tuple[FreeNumber, ...]:
+def _sideways(
+    config: Config, measured: Measured, setups: Sequence[str], turned: bool
+) -> tuple[FreeNumber, ...]:
     """The numbers of the errors that show in Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
@@ -123,7 +125,7 @@ def _sideways(config: Any, measured: Any, setups: Sequence[str], turned: bool) -
 
 
 def _of_setups(
-    declared: Mapping[str, Declaration], measured: Any, setups: Sequence[str]
+    declared: Mapping[str, Declaration], measured: Measured, setups: Sequence[str]
 ) -> tuple[FreeNumber, ...]:
     """The numbers of a rig that was set up several times, or once with the name ""."""
     zeros = {error.name for error in ZEROS}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -13,10 +12,9 @@ from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.coverage import coverage
-from mffit.fit.run_scatter import OfRuns, Runs
 from mffit.fit.stages import STAGES
 from mffit.least_squares import FreeNumber, Solution, of_model, solve
-from mffit.left_out import Predicted, Support, improves, left_out_errors, predicted
+from mffit.left_out import left_out_errors, predicted
 from mffit.points import Points
 from mffit.scatter import robust
 from mffit.suspicion import parts_of_sweeps
@@ -44,7 +42,7 @@ NOT_MEASURED = Overturning({}, ())
 def overturning_terms(points: Points, values: Mapping[str, Any], side: str, hand: Hand) -> Overturning:
     """What Mx shows, with the measured Fy in the formula and one offset of the rig.
 
-    Further terms are taken only if sweeps that were left out are predicted better with them beyond chance.
+    Further terms are taken only if sweeps that were left out are predicted clearly better with them.
     """
     rows = np.flatnonzero(np.isfinite(points.Mx) & np.isfinite(points.Fy))
     if not len(rows):
@@ -57,19 +55,14 @@ def overturning_terms(points: Points, values: Mapping[str, Any], side: str, hand
     start = {name: x for name, x in first.values.items() if name != OFFSET}
     if len(np.unique(group)) < FEWEST_SWEEPS_TO_PREDICT:
         return Overturning(start, ())
-    here = _left_out(first, group)
-    best, taken = here, ""
+    least, taken = (1.0 - constants.LEAST_GAIN_OF_MORE_TERMS) * _left_out(first, group), ""
     for stage in MORE:
         if not cover.get(stage):
             continue
         found = fit.solved([*cover[FIRST], *cover[stage]])
-        there = _left_out(found, group)
-        support, enough = (
-            _support(first, found, group),
-            (1.0 - constants.LEAST_GAIN_OF_MORE_TERMS) * here.total,
-        )
-        if there.total < min(best.total, enough) and improves(here, there, support, candidates=len(MORE)):
-            best, taken = there, stage
+        missed = _left_out(found, group)
+        if missed < least:
+            least, taken = missed, stage
             start = {name: x for name, x in found.values.items() if name != OFFSET}
     return Overturning(start, (taken,) if taken else ())
 
@@ -110,37 +103,10 @@ class _Fit(NamedTuple):
         return overturning.moment(p, q, points.Fz, points.Fy)
 
 
-def _weak_prior(slope: np.ndarray) -> np.ndarray:
-    """Information that keeps what one sweep alone determines finite."""
-    return np.diag(np.maximum(np.mean(slope**2, axis=0), 1e-24))
-
-
-def _support(first: Solution, found: Solution, group: np.ndarray) -> Support:
-    """What the coefficients of ``found`` explain that ``first`` has not, where every sweep has an offset of its own."""
-    noise = robust(found.data) or 1.0
-
-    def runs_of(solution: Solution) -> Runs:
-        slope = solution.jacobian / noise
-        rows = OfRuns(
-            np.arange(len(group)), slope, np.full((len(group), 1), 1.0 / noise), solution.data / noise
-        )
-        return Runs(lambda: iter([rows]), group, _weak_prior(slope), np.zeros(len(solution.values)))
-
-    more = np.flatnonzero([name not in first.values for name in found.values])
-    before, after = runs_of(first), runs_of(found)
-    parts = after.parts()
-    spread, every = after.spread(parts), np.arange(len(found.values))
-    support = after.support(parts, every, more, np.zeros(len(every)))
-    left = [
-        solution.data @ solution.data / noise**2 - runs.explained(runs.parts(), spread)
-        for solution, runs in ((first, before), (found, after))
-    ]
-    return replace(support, chi2=float(left[0] - left[1]))
-
-
-def _left_out(found: Solution, group: np.ndarray) -> Predicted:
-    """The misfit of every sweep predicted from the others."""
+def _left_out(found: Solution, group: np.ndarray) -> float:
+    """Misfit of all sweeps, each predicted from the others."""
     slope = found.jacobian
-    information = slope.T @ slope + _weak_prior(slope)
+    # A weak prior keeps what one sweep alone determines finite.
+    information = slope.T @ slope + np.diag(np.maximum(np.mean(slope**2, axis=0), 1e-24))
     error = left_out_errors(slope, found.data, information, slope.T @ found.data, group)
-    return predicted(error, group, np.zeros(len(group), dtype=int), channels=1)
+    return predicted(error, group, np.zeros(len(group), dtype=int), channels=1).total

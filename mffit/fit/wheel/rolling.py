@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Declaration
+from mffit.constants import STRAIGHT
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import FreeNumber, inverse, of_model, solve
+from mffit.least_squares import EXACT, FreeNumber, inverse, of_model, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
@@ -32,20 +33,10 @@ def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float)
 
 ROLLING = tuple(row.name for row in TABLE if row.channel == "My")
 """Coefficients of rolling resistance."""
-SPREADS = {
-    "QSY1": constants.QSY1_SPREAD,
-    "QSY2": constants.QSY2_SPREAD,
-    "QSY3": constants.QSY3_SPREAD,
-    "QSY4": constants.QSY4_SPREAD,
-    "QSY5": constants.QSY5_SPREAD,
-    "QSY6": constants.QSY6_SPREAD,
-    "QSY7": constants.QSY7_SPREAD,
-    "QSY8": constants.QSY8_SPREAD,
-}
+SPREADS = dict(zip(ROLLING, constants.ROLLING_SPREADS, strict=True))
 """Standard deviation of each among tyres."""
 BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
 MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
-TINY_ZERO = 1e-9  # Nm, prior of a zero that is exactly known
 RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
 """Coefficients that measured effective radii determine; the second one needs several loads."""
 
@@ -97,9 +88,7 @@ def coasting(points: Points, values: Mapping[str, Any]) -> Points:
 
     Nothing drives such a wheel, so that the moments about its axis balance: My = Fx times the loaded radius.
     """
-    straight = (
-        points.free_rolling & (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
-    )
+    straight = points.free_rolling & (np.abs(points.alpha) < STRAIGHT.rad) & (points.phi_t == 0.0)
     driven = np.unique(points.sweep[~straight])
     used = np.isfinite(points.Fx) & ~np.isin(points.sweep, driven)
     rolling = points.select(used)
@@ -128,9 +117,7 @@ def rolling_resistance(
     numbers = [_with_prior(name, float(values[name])) for name in names]
     setups = chosen.used_setups
     own = {setup: number_of(MY_ZERO, setup if len(setups) > 1 else "") for setup in setups}
-    numbers += [
-        FreeNumber(n, zero.value, expected=zero.value, spread=zero.u or TINY_ZERO) for n in own.values()
-    ]
+    numbers += [FreeNumber(n, zero.value, expected=zero.value, spread=zero.u or EXACT) for n in own.values()]
     in_setup = np.array([[chosen.setups[k] == setup for setup in setups] for k in chosen.setup], float)
     sigma = stated_or_nominal(chosen.u_My, chosen.My)
     inputs = {

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
 from mffit.fit.beside import BesideNumbers
@@ -41,7 +41,7 @@ BOUNDS = {
     "Q_V1": (-0.01, 0.02),
     "Q_V2": (-0.3, 0.5),
 }
-OVER_SPEED = {"Q_V1": constants.RADIUS_GROWTH_OVER_SPEED, "Q_V2": constants.STIFFENING_OVER_SPEED}
+OVER_SPEED = dict(zip(("Q_V1", "Q_V2"), constants.SPREADS_OVER_SPEED, strict=True))
 """Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
 
 
@@ -192,7 +192,7 @@ def _best(values: Mapping[str, Any], rolling: RollingParts, held: Collection[str
 def _rolling(points: Points) -> RollingParts | None:
     """The parts of sweeps at which the wheel rolls freely straight on; None without radius or wheel speed."""
     used = points.free_rolling & (points.direction > 0) & (points.phi_t == 0.0)
-    used &= np.abs(points.alpha) < constants.COUPLED_ALPHA.rad
+    used &= np.abs(points.alpha) < STRAIGHT.rad
     used &= np.abs(points.gamma) < constants.LARGEST_CAMBER_OF_RADII.rad
     turning = np.isfinite(points.omega) & (points.omega > 0.0)
     used &= np.isfinite(points.RL) | turning

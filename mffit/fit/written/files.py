@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
+from mffit.config import Config
 from mffit.fit import constants
-from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
 from mffit.fit.ranges import NAMES as RANGES
 from mffit.fit.ranges import plausible_ranges, sideslips_with_slip, tested_ranges, with_room
-from mffit.fit.start import camber_stiffness_terms
 from mffit.fit.written.misfit import FileFigures, Reference
-from mffit.fit.written.normal import derive, side_force_for
+from mffit.fit.written.normal import derive
 from mffit.fit.written.road import held_to_camber, road_grid
-from mffit.points import Points, main_path, main_pressure
+from mffit.points import Points, main_path
 from tir import Tyre
 
 
@@ -35,8 +34,6 @@ class Files:
     wide_limit: float | None = (
         None  #: asked for, but beyond the range of camber in the files, so without effect [rad]
     )
-    otherwise: FileFigures | None = None
-    """The file for turn slip off with the other weight, or where it is held to some camber, without that limit."""
     sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
     untested: Mapping[str, str] = field(default_factory=dict)
     """Where the written range of a quantity comes from that the sweeps do not vary, in words."""
@@ -56,17 +53,16 @@ class Files:
 
 
 def make_files(
-    config: Any,
+    config: Config,
     known: Known,
     points: Points,
     base: Tyre | None,
-    C_gamma: Mapping[float, float],
     *,
     only: str | None = None,
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one.
 
-    ``C_gamma`` is the measured camber stiffness [N/rad] by load [N]; empty on a flat track. ``only``: the file for one use.
+    ``only``: the file for one use.
     """
     disc = config.rig.on_disc
     tested = tested_ranges(points)
@@ -77,85 +73,48 @@ def make_files(
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
     asked = config.normal.camber_max if disc else None
     camber = None if asked is None or asked >= written["CAMMAX"] else asked
-    fits = _Derivation(config, model, points, tested, written, C_gamma, known.hand)
-    changed = fits.changed(only)
-    template = base or Tyre.from_values({})
+    symmetric = config.tyre.side == "symmetric"
 
-    def figures(use: str, values: Mapping[str, float], limit: float | None) -> FileFigures:
-        held = held_to_camber(written, limit)
+    def changed(use: str) -> dict[str, float]:
+        """The coefficients in which the file for a use differs from the fitted model."""
+        if use == "turn-slip" or not disc:
+            return {}
+        both = use == "both"
+        to = None if both else camber
+        return derive(
+            model,
+            held_to_camber(tested, to),
+            held_to_camber(written, to),
+            both_on=main_path(points) if both else None,
+            symmetric=symmetric,
+            hand=known.hand,
+            weight="everything" if both else config.normal.weight,
+        )
+
+    def figures(use: str, values: Mapping[str, float]) -> FileFigures:
+        limit = camber if use == "normal" else None
+        held, inside = held_to_camber(written, limit), held_to_camber(tested, limit)
         ends = {name: held[name] for name in ("CAMMIN", "CAMMAX")} if limit is not None else {}
-        tyre = template.replace(**{**model, **values, **ends, "USE_MODE": use_mode(model, use)})
-        inside = held_to_camber(tested, limit)
+        tyre = (base or Tyre.from_values({})).replace(
+            **{**model, **values, **ends, "USE_MODE": use_mode(model, use)}
+        )
         road = road_grid(inside, held, float(model["FNOMIN"]))
         return Reference(model, road, inside, main_path(points)).figures(tyre, use)
 
-    by_use = {
-        use: figures(use, values, camber if use == "normal" else None) for use, values in changed.items()
-    }
-    otherwise = fits.otherwise(changed["normal"], camber) if disc and only is None else None
+    uses = dict.fromkeys(("turn-slip", "normal", config.spin.exact)) if disc else {"normal": None}
+    own = {use: changed(use) for use in uses if only in (None, use)}
     return Files(
-        by_use=by_use,
+        by_use={use: figures(use, values) for use, values in own.items()},
         weight=config.normal.weight,
         camber_limit=camber,
         wide_limit=asked if camber is None else None,
-        otherwise=None if otherwise is None else figures("normal", otherwise, None),
         tested=tested,
         written=written,
-        changed={use: tuple(values) for use, values in changed.items() if values},
+        changed={use: tuple(values) for use, values in own.items() if values},
         lacking=_turn_slip_forces(model) if disc else {},
         sideslips_with_slip=sideslips_with_slip(points),
         untested=untested,
     )
-
-
-class _Derivation(NamedTuple):
-    """What the derived files are made from."""
-
-    config: Any
-    model: Mapping[str, Any]
-    points: Points
-    tested: Mapping[str, float]
-    written: Mapping[str, float]
-    C_gamma: Mapping[float, float]
-    hand: Hand
-
-    def changed(self, only: str | None) -> dict[str, dict[str, float]]:
-        """By use of each file, the coefficients in which it differs from the fitted model."""
-        if not self.config.rig.on_disc:
-            return {"normal": {}}
-        if only == "turn-slip":
-            return {"turn-slip": {}}
-        changed = {"turn-slip": {}, "normal": self._normal(self.config.normal.camber_max)}
-        if self.config.spin.exact == "both":
-            changed["both"] = derive(
-                self.model, self.tested, self.written, self._terms,
-                both_on=main_path(self.points), symmetric=self._symmetric, hand=self.hand,
-            )  # fmt: skip
-        return changed if only is None else {only: changed[only]}
-
-    def otherwise(self, normal: Mapping[str, float], camber: float | None) -> dict[str, float]:
-        """The file for turn slip off without its limit of camber, or with the other weight if it has none."""
-        if camber is not None:
-            return self._normal(None)
-        other = "road" if self.config.normal.weight == "everything" else "everything"
-        ranges = (self.tested, self.written, self._terms)
-        return side_force_for(other, self.model, normal, *ranges, symmetric=self._symmetric, hand=self.hand)
-
-    def _normal(self, camber: float | None) -> dict[str, float]:
-        ranges = (held_to_camber(self.tested, camber), held_to_camber(self.written, camber))
-        weight = self.config.normal.weight
-        return derive(
-            self.model, *ranges, self._terms, symmetric=self._symmetric, hand=self.hand, weight=weight
-        )
-
-    @property
-    def _symmetric(self) -> bool:
-        return bool(self.config.tyre.side == "symmetric")
-
-    @property
-    def _terms(self) -> dict[str, float]:
-        main = float(self.points.p[main_pressure(self.points)].mean())
-        return camber_stiffness_terms(self.model, self.C_gamma, main, self.hand.held)
 
 
 def _turn_slip_forces(model: Mapping[str, Any]) -> dict[float, float]:
@@ -183,7 +142,7 @@ def name_at_temperature(name: str) -> str:
     return f"{name}-at-temperature.tir"
 
 
-def plain_use(config: Any) -> str:
+def plain_use(config: Config) -> str:
     """The use whose file has the plain name."""
     return config.spin.exact if config.rig.on_disc else "normal"
 

@@ -73,7 +73,7 @@ class Imitation(NamedTuple):
     envelope: Envelope  #: over which the physical limits hold
     lines: Lines | None = None
 
-    def solve(self, numbers: Sequence[FreeNumber], *, steps: int, tolerance: float) -> Minimum:
+    def solve(self, numbers: Sequence[FreeNumber]) -> Minimum:
         """The coefficients that come nearest to the goals."""
         names = [n.name for n in numbers]
 
@@ -85,7 +85,7 @@ class Imitation(NamedTuple):
             return self._residuals(dict(zip(names, x.tolist(), strict=True)), derive=True)
 
         problem = LeastSquaresProblem(residual, linear)
-        return minimum(problem, numbers, max_steps=steps, tolerance=tolerance)
+        return minimum(problem, numbers, tolerance=constants.REFIT_TOLERANCE)
 
     @property
     def _unit(self) -> float:

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.fit import constants
-from mffit.fit.rig.virtual_zero import BESIDE_ZERO
+from mffit.fit.rig.zeros import BESIDE_ZERO
 from mffit.fit.written.imitation import forces
 from mffit.fit.written.road import Road, inside, weights
 from mffit.scatter import rms
@@ -25,7 +24,6 @@ class Misfit:
     rms: float  #: all conditions with equal weight
     weighted: float  #: rms with the weights of :func:`mffit.fit.written.road.weights`
     largest: float
-    lean_30: float  #: rms up to 30 deg of camber
     beyond: float  #: rms of the conditions outside the tested but inside the written ranges
     ridden: float = 0.0
     """Rms with the weights of the road, where much lean and much sideslip together hardly count."""
@@ -71,12 +69,10 @@ class Reference(NamedTuple):
     def _misfit(self, difference: np.ndarray) -> Misfit:
         within = inside(self.road, self.tested)
         weight = weights(self.road, self.tested)
-        moderate = within & (np.abs(self.road.gamma) < constants.MODERATE_CAMBER.rad)
         return Misfit(
             rms=rms(difference[within]),
             weighted=float(np.sqrt(np.average(difference[within] ** 2, weights=weight[within]))),
             largest=float(np.max(np.abs(difference[within]))),
-            lean_30=rms(difference[moderate]),
             beyond=rms(difference[~within]) if np.any(~within) else 0.0,
             ridden=float(
                 np.sqrt(

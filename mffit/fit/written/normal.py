@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.ranges import envelope
 from mffit.fit.stages import ODD_TERMS, STAGES
@@ -22,18 +21,12 @@ CAMBER_MOMENT = (
     "QDZ3", "QDZ4", "QDZ8", "QDZ9", "QDZ10", "QDZ11", "QBZ4", "QBZ5", "QEZ5", "QHZ3", "QHZ4"
 )  # fmt: skip
 SPIN = next(stage.parameters for stage in STAGES if stage.name == "spin")
-STARTS: Mapping[str, tuple[Mapping[str, float], ...]] = {
-    "Fy": ({}, {"PEY5": -3.0, "PDY3": 0.3}, {"PVY3": -0.5, "PDY3": 1.0}),
-    "Mz": ({}, {"QDZ4": -1.0, "QEZ5": -2.0}, {"QBZ5": 0.8, "QEZ5": 2.0}),
-}
-"""By channel, changes of the model's values from which the search starts; the best end is kept."""
 
 
 def derive(
     values: Mapping[str, Any],
     tested: Mapping[str, float],
     written: Mapping[str, float],
-    measured: Mapping[str, float],
     *,
     both_on: float | None = None,
     symmetric: bool = False,
@@ -45,71 +38,26 @@ def derive(
     The goal of the file for turn slip off is the fitted model on a straight path over the written ranges. The file for both
     uses has three goals of equal weight: the same, the model on a straight path reproduced with turn slip, and the model
     on the disc. Only coefficients that act through camber or spin are free, so that the upright wheel on a straight path stays
-    exact. Fy comes first, because its shifts enter Mz. The search starts from several values on a coarse grid, and the best
-    end is refined on the fine grid.
+    exact. Fy comes first, because its shifts enter Mz.
 
     Parameters
     ----------
     values : the fitted model, meant for turn slip on
     tested, written : ranges of the data and of the file, by name of the file's limits
-    measured : PKY6 and PKY7 of the measured camber stiffness, from :func:`mffit.fit.start.camber_stiffness_terms`; may be empty
     both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
     hand : coefficients that are held in every file, and bounds that every file keeps
     weight : "everything" or "road", see :func:`mffit.fit.written.road.weights`
     """
-    roads = [road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)]
-    coarse, fine = (_goals(values, road, tested, both_on, weight) for road in roads)
+    goals = _goals(values, road_grid(tested, written, float(values["FNOMIN"])), tested, both_on, weight)
     free = _free(both=both_on is not None, symmetric=symmetric)
     free = {channel: hand.without_held(names) for channel, names in free.items()}
     found = dict(values)
     for channel, names in free.items():
         limits = (envelope(written), _lines(values, written) if channel == "Fy" else None)
-        begin = {name: measured.get(name, float(values[name])) for name in names}
-        ends = [
-            Imitation(channel, found, coarse, *limits).solve(
-                _numbers({**begin, **{n: x for n, x in start.items() if n in begin}}, measured, hand),
-                steps=constants.COARSE_GRID_STEPS,
-                tolerance=constants.COARSE_GRID_TOLERANCE,
-            )
-            for start in STARTS[channel]
-        ]
-        best = min(ends, key=lambda end: end.cost)
-        refined = Imitation(channel, found, fine, *limits).solve(
-            _numbers(best.values, measured, hand),
-            steps=constants.FINE_GRID_STEPS,
-            tolerance=constants.REFIT_TOLERANCE,
-        )
-        found = {**found, **refined.values}
+        numbers = _numbers({name: float(values[name]) for name in names}, hand)
+        found |= Imitation(channel, found, goals, *limits).solve(numbers).values
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
-
-
-def side_force_for(
-    weight: str,
-    values: Mapping[str, Any],
-    found: Mapping[str, float],
-    tested: Mapping[str, float],
-    written: Mapping[str, float],
-    measured: Mapping[str, float],
-    *,
-    symmetric: bool = False,
-    hand: Hand = NO_HAND,
-) -> dict[str, float]:
-    """Coefficients of the side force in the file for turn slip off with another weight, from those of :func:`derive`."""
-    road = road_grid(tested, written, float(values["FNOMIN"]))
-    names = hand.without_held(_free(both=False, symmetric=symmetric)["Fy"])
-    aim = Imitation(
-        "Fy",
-        values,
-        _goals(values, road, tested, None, weight),
-        envelope(written),
-        _lines(values, written),
-    )
-    start = {name: float(found.get(name, values[name])) for name in names}
-    end = aim.solve(
-        _numbers(start, measured, hand), steps=constants.FINE_GRID_STEPS, tolerance=constants.REFIT_TOLERANCE
-    )
-    return {**found, **end.values}
 
 
 def _goals(
@@ -146,15 +94,11 @@ def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
     return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
-def _numbers(start: Mapping[str, float], measured: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
-    """The numbers within their usual ranges, or as far as they start; camber stiffness has a weak prior at the measured one."""
-    size = max(abs(measured.get("PKY6", 1.0)), constants.LEAST_CAMBER_STIFFNESS)
-    spread = constants.CAMBER_STIFFNESS_TIE * size / constants.CAMBER_STIFFNESS_TIE_WEIGHT
+def _numbers(start: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
+    """The numbers within their usual ranges, or as far as they start."""
     out = []
     for name, value in start.items():
-        tied = name in CAMBER_STIFFNESS and name in measured
-        prior = {"expected": measured[name], "spread": spread} if tied else {}
         lower, upper = hand.bounded.get(name, BY_NAME[name].usual)
         begin = hand.inside(name, value)
-        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin), **prior))
+        out.append(FreeNumber(name, begin, min(lower, begin), max(upper, begin)))
     return out

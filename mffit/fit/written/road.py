@@ -19,29 +19,14 @@ class Road(NamedTuple):
     pressure: np.ndarray  #: [Pa]
 
 
-class _Density(NamedTuple):
-    """Numbers of values of a grid."""
-
-    gamma: int
-    alpha_tested: int
-    alpha_beyond: int  #: to either side
-    Fz_tested: int
-
-
-COARSE, FINE = _Density(7, 7, 1, 2), _Density(11, 13, 3, 4)
-
-
-def road_grid(
-    tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float, *, dense: bool = True
-) -> Road:
+def road_grid(tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float) -> Road:
     """Conditions over the written ranges: denser inside the tested ones, pressures off the middle at one load only."""
-    density = FINE if dense else COARSE
-    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], density.gamma)
-    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], density.alpha_tested)
-    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], density.alpha_beyond + 1)[1:]
+    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], 11)
+    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], 13)
+    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], 4)[1:]
     alpha = np.unique(np.concatenate([-beyond, inside, beyond]))
     main = 0.5 * (tested["PRESMIN"] + tested["PRESMAX"])
-    within = np.linspace(tested["FZMIN"], tested["FZMAX"], density.Fz_tested)
+    within = np.linspace(tested["FZMIN"], tested["FZMAX"], 4)
     loads = np.unique([written["FZMIN"], *within, written["FZMAX"]])
     middle = float(np.clip(nominal_load, tested["FZMIN"], tested["FZMAX"]))
     cases = [(load, main) for load in loads]
@@ -52,7 +37,7 @@ def road_grid(
 
 def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
     """Lines of camber without sideslip over the written range, one per load; and the number of conditions of each."""
-    loads, n = (int(k) for k in constants.CAMBER_LINE_GRID)
+    loads, n = int(constants.LOADS_OF_A_GRID), 2 * int(constants.STEPS_OF_A_GRID) - 1
     Fz, gamma = np.meshgrid(
         np.linspace(written["FZMIN"], written["FZMAX"], loads),
         np.linspace(-written["CAMMAX"], written["CAMMAX"], n),
@@ -64,7 +49,7 @@ def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
 
 CORNER = {
     "everything": float(constants.WEIGHT_IN_CORNER),
-    "road": float(constants.WEIGHT_IN_CORNER_OF_THE_ROAD),
+    "road": float(constants.LITTLE_WEIGHT),
 }
 """By ``[normal] weight``, the weight of conditions with much lean and much sideslip."""
 
@@ -77,10 +62,10 @@ def weights(road: Road, tested: Mapping[str, float], weight: str = "everything")
     the corner of 8 deg of sideslip and 50 deg of camber. With ``weight = "road"`` a fiftieth remains in the corner instead of
     1/2. Conditions outside the tested ranges have a fiftieth of it.
     """
-    both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
+    both = (road.alpha / constants.LARGE_SIDESLIP.rad * road.gamma / constants.LARGE_CAMBER.rad) ** 2
     corner = CORNER[weight]
-    share = np.where(inside(road, tested), 1.0, constants.WEIGHT_OUTSIDE_TESTED)
-    return share * (corner + (1.0 - corner) / (1.0 + both))
+    share = np.where(inside(road, tested), 1.0, constants.LITTLE_WEIGHT)
+    return np.asarray(share * (corner + (1.0 - corner) / (1.0 + both)))
 
 
 def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[str, float]:
@@ -91,9 +76,8 @@ def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[st
 
 def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
     """Mask (n,) of the conditions inside the tested ranges; rounding of their ends does not count."""
-    within = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
+    within: np.ndarray = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
     within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
-    return (
-        within & (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
-    )
+    within &= (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
+    return within

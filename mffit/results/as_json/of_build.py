@@ -20,13 +20,10 @@ from mffit.fit.influences.nuisance_choice import Verdict
 from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
-from mffit.fit.stages import StageRecord
-from mffit.fit.sweep_rates import OfRates
 from mffit.fit.written.files import Files
 from mffit.fit.written.misfit import FileFigures
 from mffit.fleet import information, to_json
 from mffit.points.left_out import LeftOut
-from mffit.quantities import column
 from mffit.results.records import BuildOutcome, BuildResult
 from mffit.results.values import Json, document, keys, plain, with_u
 from mffit.rig_errors import unit_of
@@ -73,7 +70,7 @@ def of_rig(numbers: Estimates) -> dict[str, object]:
 keys(
     FitResult,
     "channels radii odd coefficients rig temperature modelled runs relaxation campaigns=joined sister=lent confounded bands "
-    "posterior stages coverage left files explanations seconds",
+    "posterior coverage left files explanations seconds",
     radii=lambda found: found.radii.agreement(found.tyre.values),
     rig=lambda found: of_rig(found.rig if found.temperature is None else found.temperature.rig),
     modelled=lambda found: () if found.choice is None else found.choice.verdicts,
@@ -112,7 +109,7 @@ keys(
 )
 keys(
     Relaxation,
-    "runs coefficients missing? rates",
+    "runs coefficients missing?",
     runs=lambda found: [
         {
             "file": run.file,
@@ -125,7 +122,6 @@ keys(
     ],
     coefficients=lambda found: list(found.found),
 )
-keys(OfRates, "sweeps slowest_deg_per_s=rates.0 fastest_deg_per_s=rates.1 hysteresis_deg")
 
 
 keys(
@@ -146,11 +142,6 @@ keys(
 )
 keys(BandOfCombined, "sideslip_deg Fx_N=half_at halfway_Fx_N=half_between")
 keys(Posterior, "names covariance")
-keys(
-    StageRecord,
-    "name parameters **rmse",
-    rmse=lambda stage: {f"rmse_{column(channel)}": rmse for channel, rmse in stage.rmse.items()},
-)
 keys(StageCoverage, "stage supported held missing")
 keys(
     Files,
@@ -171,13 +162,11 @@ def _file(files: Files, use: str) -> dict[str, object]:
     if use in files.changed:
         out["coefficients"] = {name: file.tyre[name] for name in files.changed[use]}
     if use == "normal" and files.lacking:
-        other, limit = files.otherwise, files.camber_limit
+        limit = files.camber_limit
         out |= {
             "camber_stiffness_loss": files.stiffness_loss,
             "weight": files.weight,
             "camber_max_deg": None if limit is None else math.degrees(limit),
-            "otherwise": other
-            and {"straight": other.straight, "camber_stiffness_N_per_rad": other.camber_stiffness},
             "turn_slip_force_lacking_N": {f"{r:g} m": force for r, force in files.lacking.items()},
         }
     return out

@@ -13,7 +13,7 @@ import tir
 from mffit.fit import ranges
 from mffit.fit.agreement import agreement
 from mffit.fit.ranges import plausible_ranges
-from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model, zero_points
+from mffit.fit.rig.zeros import epsilon_gamma_of_model, zero_points
 from mffit.fit.start import camber_stiffness_terms, starting_values
 from mffit.fit.wheel.rolling import radius_coefficients
 from mffit.points import make_points

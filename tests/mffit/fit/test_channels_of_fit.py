@@ -11,9 +11,9 @@ from small_rigs import truth
 from mffit.errors import InputError
 from mffit.fit.coverage import coverage
 from mffit.fit.plan import channels_of, fitted_channels
+from mffit.fit.polish import _require_enough_points
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.rig.rig_numbers import rig_numbers
-from mffit.fit.staged import _require_enough_points
 from mffit.points import make_points
 from mffit.rig import Simulation
 

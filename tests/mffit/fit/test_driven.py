@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +11,6 @@ from mffit.diagnosis.one_step import best_effect
 from mffit.diagnosis.remainder import remainder
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
-from mffit.fit.driven_start import driven_starts, peak_curvature
 from mffit.fit.influences.nuisance_choice import NearSolution
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.fit.influences.runaways import without_runaways
@@ -141,29 +139,6 @@ def test_no_start_is_dead(points):
         "PPZ2",
     }  # factors of QDZ6 and QDZ8, which are not dead and move first
     assert {"RVY4", "RVY5", "RVY6", "RBX2", "PPMX1"} <= set(names)
-
-
-def test_starts_are_read_off_the_curves():
-    """Even of a coarse sweep they are near the truth, whatever the values before."""
-    points, true = belt.programme(seed=4), belt.truth()
-    poor = {name: value for name, value in true.values.items() if isinstance(value, float)}
-    poor |= {"PDX1": 0.6, "PKX1": 60.0, "RBX1": 3.0, "RBY1": 40.0}
-    start = driven_starts(poor, points, held=("PDX2",))
-    assert start["PDX1"] == pytest.approx(true["PDX1"], rel=0.05)
-    assert start["PKX1"] == pytest.approx(true["PKX1"], rel=0.25)
-    assert start["RBX1"] == pytest.approx(true["RBX1"], rel=0.3)
-    assert start["RBY1"] == pytest.approx(true["RBY1"], rel=0.4)
-    assert "PDX2" not in start
-    assert not driven_starts(poor, belt.programme(driven=False), ())
-
-
-@pytest.mark.parametrize(("C", "E"), [(1.65, 0.3), (1.4, -1.5), (1.9, 0.7)])
-def test_the_curvature_follows_from_the_place_of_the_peak(C, E):
-    B = 11.0
-    x = np.linspace(0.0, 0.6, 60001)
-    force = np.sin(C * np.arctan(B * x - E * (B * x - np.arctan(B * x))))
-    assert peak_curvature(C, B, float(x[force.argmax()])) == pytest.approx(E, abs=2e-3)
-    assert math.isfinite(E)
 
 
 def test_what_is_missing_for_longitudinal_slip_is_said():

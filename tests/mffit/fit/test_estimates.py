@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tir
-from mffit.fit.estimates import estimates
+from mffit.fit.known import estimates
 
 SIZES = {"motorcycle": (1400.0, 0.2992, 0.12), "car": (4000.0, 0.32, 0.205)}
 

@@ -13,7 +13,14 @@ from scipy.signal import lfilter
 import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import DIRECTIONS, _correlation, relaxation, relaxation_sentences
+from mffit.fit.relaxation import (
+    DIRECTIONS,
+    StepLength,
+    _correlation,
+    _fitted,
+    relaxation,
+    relaxation_sentences,
+)
 from mffit.points import Points
 from mffit.points.loading import read
 from mffit.points.points import make_points
@@ -21,6 +28,7 @@ from mffit.points.steps import steps
 from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.sweeps import load
+from tir import Quantity
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
 NONE_KNOWN = Posterior((), np.zeros((0, 0)))
@@ -212,3 +220,13 @@ def test_steps_that_end_between_two_samples_give_the_length_within_its_uncertain
         pulls.append((run.length.value - float(truth.state(run.load).sigma_y)) / run.length.u)
     assert np.max(np.abs(pulls)) < 3.5
     assert np.mean(np.abs(pulls) < 1.96) > 0.8
+
+
+def test_runs_that_scatter_beyond_their_errors_widen_the_uncertainty(truth):
+    """Three stiffnesses known to 1 %, 10 % apart: their mean is known by that scatter over the root of three."""
+    C = 2e5 * np.array([0.9, 1.0, 1.1])
+    at = (float(truth["FNOMIN"]), float(truth["NOMPRES"]), Quantity(0.1, 0.001, "m"))
+    runs = [StepLength("steps.csv", *at, Quantity(x, 2e3, "N/m")) for x in C]
+    found = _fitted(DIRECTIONS[0], ["LATERAL_STIFFNESS"], (), truth.values, runs, NONE_KNOWN)
+    (u,) = np.sqrt(np.diag(found.covariance))
+    assert u == pytest.approx(np.std(C, ddof=1) / np.sqrt(3), rel=0.01)

@@ -95,6 +95,14 @@ def test_an_axis_that_was_set_up_again_is_misaligned_in_that_set_up_only():
     assert "0.4" in warning
 
 
+def test_a_set_up_that_was_run_forwards_only_takes_the_sideslip_zero_of_the_next():
+    turned = Plain(side=1, alpha_0=math.radians(0.4))
+    left = Plain().campaign()
+    forwards = in_setup(left.select(left.direction > 0), "left")
+    result = found(forwards, in_setup(zeros(turned.campaign()), "right"))
+    assert math.degrees(abs(result.alpha_M.value)) == pytest.approx(0.4, abs=0.05)
+
+
 def test_repeated_set_ups_scatter_as_declared_and_the_declaration_counts():
     result = found(*repeated(5.0, -5.0, 0.0))
     scatter = result.setup_scatter

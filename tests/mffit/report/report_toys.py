@@ -18,7 +18,6 @@ from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
-from mffit.fit.stages import StageRecord
 from mffit.made import made
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
@@ -136,7 +135,6 @@ def made_result(**changes: Any) -> BuildResult:
         simulation=simulation,
         rig={"F0_N": (1.5, 3.0)},
         model=readings,
-        stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), {"Fy": 41.5, "Mz": 3.2}),),
         coverage=coverage(points, "left"),
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),

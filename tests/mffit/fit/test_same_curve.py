@@ -1,0 +1,29 @@
+"""Signs that change no force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.fit.same_curve import SAME_CURVE, with_expected_signs
+from tests.mffit.fit import combined_programme as belt
+
+
+def test_signs_that_change_no_force_are_those_that_are_expected():
+    true = belt.truth()
+    rng = np.random.default_rng(4)
+    alpha, kappa, gamma = rng.uniform(-0.1, 0.1, 50), rng.uniform(-0.2, 0.2, 50), rng.uniform(-0.1, 0.1, 50)
+
+    def forces(tyre):
+        return [
+            np.array(tyre(load, alpha, gamma, kappa, phi_t, p=250e3, turn_slip=on)) for on in (False, True)
+        ]
+
+    load, phi_t = rng.uniform(500.0, 2500.0, 50), rng.uniform(-0.3, 0.3, 50)
+    drawn = {name: rng.uniform(0.1, 0.3) for group in SAME_CURVE for name in group if not true[name]}
+    true = true.replace(**drawn)  # so that every sign counts
+    for group in SAME_CURVE:
+        other = true.replace(**{name: -true[name] for name in group})
+        for found, expected in zip(forces(other), forces(true), strict=True):
+            np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-8, err_msg=str(group))
+        assert with_expected_signs(other.values, dict(true.values)) == {name: true[name] for name in group}
+    assert with_expected_signs(true.values, dict(true.values)) == {}
