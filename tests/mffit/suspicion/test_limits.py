@@ -150,8 +150,8 @@ def test_one_sweep_of_four_that_leans_the_other_way_is_named():
     assert found("lone-lean", sweeps(left, left, right)) == 0
     assert found("lone-lean", sweeps(left, left, left, right, right)) == 0
     assert found("lone-lean", sweeps(left, left, left, tyre(alpha=0.0, gamma=ALPHA), right)) == 0
-    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.6 * DEG))) == 1
-    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.4 * DEG))) == 0
+    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.9 * DEG))) == 1
+    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.7 * DEG))) == 0
 
 
 @pytest.mark.parametrize(("load", "cases"), [(1400.0, 1), (1450.0, 0), (2000.0, 0)])
