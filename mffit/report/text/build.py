@@ -76,16 +76,13 @@ def _misfits(result: BuildResult) -> str:
 
 def _next(result: BuildResult) -> str:
     """What to look at, or to do with a sound file."""
-    said = []
-    if result.left_out:
-        by_hand = sum(row.count for row in result.left_out if row.by == "hand")
-        if by_hand:
-            said.append(f"{counted(by_hand, 'reading')} left out by hand")
-    if result.fit.outliers or result.fit.doubts:
-        doubtful = counted(len(result.fit.doubts), "doubtful sweep")
-        said.append(f"{counted(len(result.fit.outliers), 'reading')} without weight and {doubtful}")
-    if result.trust.remarks:
-        said.append(counted(len(result.trust.remarks), "limit") + " of what the file can say")
+    counts = {
+        "reading left out by hand": sum(row.count for row in result.left_out if row.by == "hand"),
+        "reading without weight": len(result.fit.outliers),
+        "sweep in doubt": len(result.fit.doubts),
+        "limit of what the file can say": len(result.trust.remarks),
+    }
+    said = [counted(number, what) for what, number in counts.items() if number]
     look = f"{'; '.join(said)}. " if said else ""
     step = "mffit diagnose names what the model misses; " if result.reasons or result.trust.doubts else ""
     return wrapped(
