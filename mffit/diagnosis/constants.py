@@ -56,76 +56,37 @@ NOISE_BEYOND_STATED = Real(
     "-",
     "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
 )
-SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
-VARIANCE_OF_LOG_ROBUST = Real(
-    1.36,
+SURPRISING_LOG_ODDS = Real(
+    2.5,
     "-",
-    "Variance of the logarithm of the median absolute value of n normal readings, times n.",
+    "Log odds that offsets of runs need against a memory of the errors, and noise that grows with the reading or has heavy "
+    "tails against plain noise: one programme in thirteen has such.",
+    "diagnosis_study.py --correlated, docs/diagnosis.md",
 )
-CAMPAIGNS_APART = Real(
-    4.0,
+USUAL_GROWTH = Real(0.004, "-", "Usual part of the noise that grows with the reading.")
+USUAL_LOG_ODDS_OF_MEMORY = Real(
+    2.0, "-", "Log odds of the correlation of neighbouring errors at which its search starts: 0.88."
+)
+LARGEST_MEMORY = Real(
+    0.99,
     "-",
-    "Standard errors by which the scatter of two campaigns over their stated one must differ to have a scale of its own: "
-    "chance 6e-5, beside what smooth misfit leaves.",
-)
-LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
-LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
-MEMORY_BOUNDS = Series(
-    (-0.2, 0.97),
-    "-",
-    "Bounds of the correlation between neighbouring errors. Beyond, misfit of a model would pass as noise; in the comparison "
-    "with offsets of runs it is free.",
-)
-INDEPENDENT_BOUNDS = Series(
-    (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
+    "Largest correlation between neighbouring errors: beyond, misfit of a model would pass as noise.",
 )
 LONGEST_PAUSE = Real(
     3.0, "-", "Time between two points over the usual one, above which errors with a memory begin anew."
 )
-LIKELY_SPAN = Real(
-    6.0,
-    "-",
-    "Chains whose log likelihood is this much below the best are left out: they are 400 times less probable.",
-)
 NEGLIGIBLE_CHANGE = Real(
-    1e-4, "-", "Variance of a direction of changes, over that of a reading, below which it is left out."
-)
-SCATTER_START_INDEPENDENT = Real(0.3, "-", "Independent share at which its search starts.")
-LONG_MEMORY = Real(0.97, "-", "Memory at which a second search starts, for errors that drift within a run.")
-SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
-SCATTER_START_SMOOTH = Real(
-    0.03, "-", "Amplitude of smooth structure at which the search for the scatter starts."
-)
-SCATTER_START_GROWTH = Real(0.004, "-", "Growth at which the search for the scatter starts if none is known.")
-SCATTER_SECOND_START = Series(
-    (0.0, 0.005, 0.3, 0.1),
-    "-",
-    "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
-)
-SCATTER_STEPS = Series(
-    (1.0, 0.02, 1.0, 0.05, 1.0, 1.0),
-    "-",
-    "Typical changes of log scale, growth, artanh of the memory, smooth amplitude, offsets of runs, independent share.",
-)
-RUN_OFFSET_LOG_ODDS = Real(
-    2.5,
-    "-",
-    "Log odds against a memory of the errors that offsets of runs need: one programme in thirteen is taken to have them.",
-    "diagnosis_study.py --correlated, docs/diagnosis.md",
+    0.01, "-", "Expected chi-square of a direction of changes below which it is left out."
 )
 MEMORY_MODEL_PROBABILITIES = Series(
     (0.4, 0.4, 0.2),
     "-",
     "Prior of errors without memory, with one, and with both: the two simple descriptions are alike, both together rarer.",
 )
-SMALLEST_RUN_OFFSETS = Real(
-    0.1, "-", "Offsets of runs over the usual ones at which their search starts at least."
-)
 EVIDENCE_STEP = Real(
     0.2, "-", "Step of a logarithm for the second differences that give the width of its distribution."
 )
 LEAST_CURVATURE = Real(0.05, "-", "Smallest curvature that counts: a prior alone has more than 0.2.")
-RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
 )
@@ -278,9 +239,6 @@ UNCHANGED_SHARE_OF_U = Real(
 )
 
 # Validation
-MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out in turn.")
-VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
-MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
 PARTS_OF_A_RUN = Count(
     4, "-", "Parts of every run that are left out in turn, where numbers of single runs are checked."
 )

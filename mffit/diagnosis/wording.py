@@ -9,8 +9,7 @@ from typing import assert_never
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.chains import MemorySpan
-from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.noise import MemorySpan, Noise
 from mffit.diagnosis.notes import (
     AnotherTyre,
     CampaignsTogether,
@@ -352,7 +351,7 @@ def method(validation: Validation) -> str:
     """The way in which sweeps were left out."""
     if validation.within_runs:
         return f"{validation.folds} parts of every run left out in turn"
-    return f"{validation.folds} groups of whole sweeps left out in turn"
+    return f"each of {validation.folds} sweeps left out in turn"
 
 
 def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
