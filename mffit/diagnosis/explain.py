@@ -110,7 +110,7 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
     def is_left(effect: Effect) -> bool:
         return any(
             abs(refined.numbers[name] - problem.start.number(name, problem.points))
-            > constants.SIGNIFICANT_EFFECT * refined.stderr.get(name, 0.0)
+            > constants.TWO_SIGMA * refined.stderr.get(name, 0.0)
             for name in effect.parameters
         )
 

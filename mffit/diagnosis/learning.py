@@ -97,6 +97,5 @@ def settled(before: Noise, after: Noise) -> bool:
     return not (
         not all(spans)
         or np.median(change) > constants.SCATTER_SETTLED
-        or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL
         or max(memory) > constants.SCATTER_SETTLED
     )

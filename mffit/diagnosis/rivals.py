@@ -60,7 +60,7 @@ def certain(found: Explanation, *, counted: bool) -> Explanation:
 
     If ``counted``, misfit that stays unexplained lowers the certainty of an effect.
     """
-    needed = constants.LEAST_CERTAINTY if counted else constants.LEAST_CERTAINTY_OF_SEEN
+    needed = constants.LEAST_CERTAINTY if counted else constants.LIKELY_ANSWER
     while found.chosen.effects:
         certainty = {effect: found.certainty(effect, counted=counted) for effect in found.chosen.effects}
         least = min(certainty, key=lambda effect: certainty[effect])

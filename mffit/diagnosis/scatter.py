@@ -185,9 +185,9 @@ class ScatterOfChannel:
             method="L-BFGS-B",
             options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-5},
         )
-        step = float(constants.EVIDENCE_STEP) * np.eye(len(found.x))
-        curvature = np.array([falling(found.x + d)[1] - falling(found.x - d)[1] for d in step])
-        curvature = 0.25 * (curvature + curvature.T) / constants.EVIDENCE_STEP
+        slope, step = falling(found.x)[1], float(constants.EVIDENCE_STEP) * np.eye(len(found.x))
+        curvature = np.array([falling(found.x + d)[1] - slope for d in step]) / constants.EVIDENCE_STEP
+        curvature = 0.5 * (curvature + curvature.T)
         axes = np.maximum(np.linalg.eigvalsh(curvature), constants.LEAST_CURVATURE)
         volume = 0.5 * float(np.sum(np.log(2.0 * math.pi / axes)))
         return Described(by, found.x, volume - float(found.fun) + math.log(by.probability))
@@ -333,7 +333,8 @@ def _of_channel(
     offsets: dict[str, RunOffsets] = {}
     if found[0].by.span is None:
         return found[0], channel, tails, offsets
-    alone, most, best = _log_sum(found), needed, None
+    every = found if math.isinf(tails) else _descriptions(channel, offsets=False)
+    alone, most, best = _log_sum(every), needed, None
     for effect, columns in runs.items():
         if columns.shape[1]:
             beside = _descriptions(channel.with_runs(columns), offsets=True)
@@ -351,42 +352,39 @@ def _weighted(
     channel: ScatterOfChannel, *, offsets: bool = False
 ) -> tuple[list[Described], ScatterOfChannel, float]:
     """The descriptions, likeliest first, the readings with their weights, and the degrees of freedom, found in turn."""
-    tails, found = math.inf, list[Described]()
+    found, tails = _descriptions(channel, offsets=offsets), math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
-        found = _descriptions(channel, offsets=offsets, before=found)
         z = channel.standardised(found[0])
-        before, (tails, width) = tails, heavy_tails(z)
+        tails, width = heavy_tails(z)
         weight = weights(z, tails, width)
         change = np.max(np.abs(np.sqrt(weight) - np.sqrt(channel.weight)))
         channel = replace(channel, weight=weight)
-        if change < constants.READING_WEIGHT_SETTLED or (math.isinf(tails) and math.isinf(before)):
+        if change < constants.SCATTER_SETTLED:
             break
+        found = [channel.sample.likeliest(found[0].by, found[0].x)]
     return found, channel, tails
 
 
-def _descriptions(
-    channel: ScatterOfChannel, *, offsets: bool, before: Sequence[Described] = ()
-) -> list[Described]:
-    """All descriptions of the errors, the likeliest first; ``before`` are those with other weights of the readings.
+def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
+    """All descriptions of the errors, the likeliest first.
 
-    Those with a memory along several chains are equally probable beforehand.
+    Those with a memory along several chains are equally probable beforehand; errors without one beside it are tried along the
+    likeliest.
     """
-    some, known = channel.sample, {one.by: one.x for one in before}
+    some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
-
-    def likeliest(by: Description, near: np.ndarray | None) -> Described:
-        return some.likeliest(by, known.get(by, near))
-
-    first = likeliest(Description(offsets=offsets, probability=never), None)
-    growing = likeliest(replace(first.by, growth=True), first.x[:-1] if offsets else first.x)
+    first = some.likeliest(Description(offsets=offsets, probability=never))
+    growing = some.likeliest(replace(first.by, growth=True), first.x[:-1] if offsets else first.x)
     if growing.log_probability - first.log_probability > constants.SURPRISING_LOG_ODDS:
         first = growing
-    found = [first]
-    for span in some.chains:
-        share = 1.0 / len(some.chains)
-        one = likeliest(replace(first.by, span=span, probability=with_memory * share), first.x)
-        two = likeliest(replace(one.by, independent=True, probability=with_both * share), one.x)
-        found += [one, two]
+    share = 1.0 / len(some.chains)
+    found = [
+        some.likeliest(replace(first.by, span=span, probability=with_memory * share), first.x)
+        for span in some.chains
+    ]
+    best = max(found, key=lambda one: one.log_probability)
+    both = replace(best.by, independent=True, probability=with_both * share)
+    found += [first, some.likeliest(both, best.x)]
     return sorted(found, key=lambda one: -one.log_probability)
 
 

@@ -168,5 +168,5 @@ def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -
     """
     change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
     channel = noise.used // (len(before) // len(noise.channels))
-    chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
+    chance = numbers + constants.TWO_SIGMA * np.sqrt(2.0 * numbers)
     return tuple(name for k, name in enumerate(noise.channels) if change[channel == k].sum() > chance)

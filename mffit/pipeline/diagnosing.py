@@ -77,7 +77,7 @@ def diagnose(
     tyre, choice = chosen_model(config, model, progress)
     other = another_tyre(tyre, config)
     if other is not None:
-        progress(wording.note(other))
+        progress(other.sentence)
         choice = (other, *choice)
     with threadpool_limits(1):
         same = fitted_to(tyre, config)

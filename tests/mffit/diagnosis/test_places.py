@@ -165,9 +165,9 @@ TWO_SWEEPS = {"sweep": [0, 0, 1, 1], "sweep_names": ("up", "again")}
 CONDITIONS = {
     "curved": ({"phi_t": [0.0, -0.7]}, {"phi_t": 0.0}),
     "spin": ({"gamma": [0.0, 0.25]}, {"gamma": [0.0, 0.15]}),
-    "camber": ({"gamma": [0.0, 0.04]}, {"gamma": [0.0, 0.02]}),
+    "camber": ({"gamma": [0.0, 0.04]}, {"gamma": [0.0, 0.01]}),
     "coupled": ({"gamma": [0.0, 0.3], "alpha": [0.0, 0.05]}, {"gamma": [0.0, 0.3], "alpha": [0.05, 0.0]}),
-    "slip": ({"alpha": [-0.03, 0.03]}, {"alpha": [-0.02, 0.02]}),
+    "slip": ({"alpha": [-0.03, 0.03]}, {"alpha": [-0.003, 0.003]}),
     "loads": ({"Fz": [1000.0, 1200.0]}, {"Fz": [1000.0, 1050.0]}),
     "pressures": ({"p": [250e3, 265e3]}, {"p": [250e3, 255e3]}),
     "moment": ({"Mz": [np.nan, 1.0]}, {"Mz": np.nan}),
