@@ -87,7 +87,7 @@ TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )
 MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Most rounds that estimate scatter and weights in turn.")
-READINGS_FOR_SCATTER = Count(700, "-", "Readings of a channel that suffice to estimate its scatter.")
+READINGS_FOR_SCATTER = Count(400, "-", "Readings of a channel that suffice to estimate its scatter.")
 FEWEST_SWEEPS_FOR_SCATTER = Count(
     8, "-", "Fewest sweeps used for the scatter, however many readings each has."
 )
@@ -181,7 +181,7 @@ TIE_RUN_OTHER_LOADS = Series((0.5, 1.4), "-", "Added loads over the smallest and
 TIE_RUN_LOW_PRESSURE = Real(0.8, "-", "Added pressure over the main one.")
 TIE_RUN_FAST = Real(2.0, "-", "Added speed over the main one.")
 TIE_RUN_WARMER = Real(20.0, "K", "Rise of temperature of an added run.")
-TIE_RUN_LATER = Real(600.0, "s", "Added late runs begin this long after the lengthened test.")
+TIE_RUN_LATER = Real(900.0, "s", "Added late runs begin this long after the test.")
 TIE_RUN_STEERED = Real(4.0, "deg", "Sideslip of an added sweep of longitudinal slip.")
 TIE_RUN_WIDE = Real(2.0, "-", "Path radius of an added run over the usual one.")
 

@@ -12,7 +12,7 @@ from mffit.diagnosis.bumps import Bump, BumpScan, bump_scan
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import ForwardStep, select
+from mffit.diagnosis.selection import ForwardStep, forward_step, select
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_scan
 from mffit.effects import Effect
 
@@ -40,7 +40,8 @@ def competed(
     rival, alone, beside = found.bumps.best(null), scan.best(null), scan.best(chosen)
     if rival.found and rival.gain > max(gained, alone.gain):
         return _explanation(problem, null, found.steps[:1], found.bumps, basis, bump=rival)
-    smooth = beside if beside.found else alone if alone.found and alone.gain > gained else NO_SMOOTH
+    replaces = alone.found and alone.gain > gained + constants.TIED_EVIDENCE
+    smooth = beside if beside.found else alone if replaces else NO_SMOOTH
     if not smooth.found or (found.bump.found and found.bump.gain > smooth.gain):
         return found
     # Effects are judged again with the smooth structure in the covariance: they must explain what it cannot.
@@ -53,6 +54,20 @@ def competed(
     chosen, steps = select(problem, candidates)
     bumps = bump_scan(problem.points, problem.noise)
     return _explanation(problem, chosen, steps, bumps, basis, smooth=smooth, unaided=unaided)
+
+
+def structured(
+    problem: DiagnosisProblem, columns: np.ndarray, candidates: Sequence[Effect], basis: np.ndarray
+) -> Explanation | None:
+    """Smooth structure and no effect, if that structure is left beside the best effect too; else None."""
+    step = forward_step(problem, problem.null, candidates)
+    scan = smooth_scan(basis, problem.noise)
+    if not scan.best(step.best).found:
+        return None
+    smooth = scan.best(problem.null)
+    problem = problem.seen_through(problem.noise.sharing(columns, amplified(basis, smooth, problem.channels)))
+    bumps = bump_scan(problem.points, problem.noise)
+    return _explanation(problem, problem.null, [step], bumps, basis, smooth=smooth)
 
 
 def certain(found: Explanation, *, counted: bool) -> Explanation:

@@ -366,7 +366,7 @@ def _weighted(
 
 
 def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
-    """All descriptions of the errors, the likeliest first.
+    """All descriptions of the errors, the likeliest first; of nearly as likely chains of a memory, the shortest.
 
     Those with a memory along several chains are equally probable beforehand; errors without one beside it are tried along the
     likeliest.
@@ -385,7 +385,20 @@ def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described
     best = max(found, key=lambda one: one.log_probability)
     both = replace(best.by, independent=True, probability=with_both * share)
     found += [first, some.likeliest(both, best.x)]
-    return sorted(found, key=lambda one: -one.log_probability)
+    found.sort(key=lambda one: -one.log_probability)
+    spans = list(some.chains)
+    near = [
+        one
+        for one in found
+        if one.by.span is not None
+        and one.by.independent == found[0].by.independent
+        and one.log_probability > found[0].log_probability - constants.SURPRISING_LOG_ODDS
+    ]
+    if found[0].by.span is not None:
+        found.insert(
+            0, found.pop(found.index(min(near, key=lambda one: spans.index(one.by.span or spans[0]))))
+        )
+    return found
 
 
 def _log_sum(found: Sequence[Described]) -> float:
