@@ -16,7 +16,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import HELD_AT, possible, without
-from mffit.diagnosis.notes import NoRepair, Note, OneSweep, TakenOff
+from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import checked, repair
@@ -179,7 +179,7 @@ def _without_misread(
 
 def _candidates(
     effects: Sequence[Effect], points: Points, start: Simulation, known: Sequence[str]
-) -> tuple[list[Effect], list[Note]]:
+) -> tuple[list[Effect], list[DiagnosisNote]]:
     """Effects that could be missing, and notes on the others; what is refitted in any case (``known``) is not missing.
 
     A model whose coefficients are refitted holds at the mean temperature of the points.

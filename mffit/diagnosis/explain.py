@@ -103,6 +103,11 @@ def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexa
     prediction = LeftOutPrediction(found.plain, inexact, found.independent)
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
+    tied = [rival for one in support.values() for rival in one.tied]
+    best = min((chosen, *tied), key=lambda one: prediction.of(one).total)
+    if best is not chosen:  # to first order another one seemed better
+        chosen = best
+        support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     found = replace(found.choosing(chosen), predicted=support)
     return significant(found.with_coefficients(inexact), inexact)
 

@@ -17,7 +17,7 @@ from tir.errors import listed
 from tir.parameters import BY_NAME
 
 
-class Note(Protocol):
+class DiagnosisNote(Protocol):
     """A remark."""
 
     @property
