@@ -366,7 +366,7 @@ def _weighted(
 
 
 def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
-    """All descriptions of the errors, the likeliest first; of nearly as likely chains of a memory, the shortest.
+    """All descriptions of the errors, the likeliest first: a memory only if it is proven, along the shortest likely chains.
 
     Those with a memory along several chains are equally probable beforehand; errors without one beside it are tried along the
     likeliest.
@@ -386,18 +386,16 @@ def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described
     both = replace(best.by, independent=True, probability=with_both * share)
     found += [first, some.likeliest(both, best.x)]
     found.sort(key=lambda one: -one.log_probability)
-    spans = list(some.chains)
-    near = [
-        one
-        for one in found
-        if one.by.span is not None
-        and one.by.independent == found[0].by.independent
-        and one.log_probability > found[0].log_probability - constants.SURPRISING_LOG_ODDS
+    proven = found[0].log_probability - constants.SURPRISING_LOG_ODDS
+    if found[0].by.span is None:
+        return found
+    alike = [
+        one for one in found if one.by.independent == found[0].by.independent and one.by.span is not None
     ]
-    if found[0].by.span is not None:
-        found.insert(
-            0, found.pop(found.index(min(near, key=lambda one: spans.index(one.by.span or spans[0]))))
-        )
+    spans = [one.by.span for one in alike if one.log_probability > proven]
+    shortest = next(span for span in some.chains if span in spans)
+    chosen = first if first.log_probability > proven else next(x for x in alike if x.by.span is shortest)
+    found.insert(0, found.pop(found.index(chosen)))
     return found
 
 
