@@ -16,7 +16,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import HardlyThisTyre, NoiseBeyondStated, Note
+from mffit.diagnosis.notes import DiagnosisNote, HardlyThisTyre, NoiseBeyondStated
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import Repair
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
@@ -45,7 +45,7 @@ def answer(
     given: DiagnosisProblem,
     tyre: Tyre,
     rigs: Mapping[str, Config],
-    notes: Sequence[Note],
+    notes: Sequence[DiagnosisNote],
     candidates: Sequence[Effect],
     alternatives: Mapping[str, float],
     gap_before: Gap,

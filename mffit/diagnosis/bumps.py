@@ -54,7 +54,7 @@ class BumpScan:
 
         A bump is zero in all other rows.
         """
-        out, block, n = [], constants.BUMPS_WHITENED_TOGETHER, len(self.bumps)
+        out, block, n = [], 256, len(self.bumps)
         for k, channel in enumerate(self.noise.channels):
             rows, own = np.flatnonzero(self.noise.used // n == k), self.noise.only(channel)
             for first in range(0, len(self.regions) if channel in self.spread else 0, block):
@@ -105,7 +105,7 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
     Those over slip also within one side of sideslip.
     """
     parts = _parts(points)
-    beside = {"kappa": list(_sides("alpha_deg", points, constants.BUMP_STRAIGHT))}
+    beside = {"kappa": list(_sides("alpha_deg", points, constants.BUMP_UPRIGHT))}
     shapes, regions = [], []
     for column, centre, width, bell in _bells(points):
         for region, mask in (*parts, *beside.get(column, ())):
@@ -131,7 +131,7 @@ def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
         for centre in _centres(values, step):
             for width in widths:
                 bell = np.exp(-0.5 * ((values - centre) / width) ** 2)
-                yield column, centre, width, np.where(bell < constants.BUMP_CUT, 0.0, bell)
+                yield column, centre, width, bell
 
 
 def _narrowed(region: Ranges, column: str, low: float, high: float) -> Ranges:

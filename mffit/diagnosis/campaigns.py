@@ -7,9 +7,10 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from mffit.config import Config, declared_faults
-from mffit.diagnosis import constants
+from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.notes import CampaignsTogether
 from mffit.diagnosis.priors import declared_priors
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.fit.constants import UNKNOWN_RATIO_OF_GRIPS
 from mffit.points import Points
@@ -59,19 +60,11 @@ def on_surfaces(
     if seen:
         declared = declared_priors(rigs, points, start, channels)
         priors |= {n: x for n, x in declared.items() if campaign_of(n, points) != points.campaigns[0]}
-    names, spread = list(priors), np.array([u for _, u in priors.values()])
-    expected = np.array([value for value, _ in priors.values()])
-    noise = stated_noise(*with_uncertainties(points, start, channels), channels)
-    measured = np.concatenate([points.channel(name) for name in noise.channels])
-    for _ in range(int(constants.MOST_SURFACE_STEPS)):
-        readings, slopes = start.sensitivities(points, names, noise.channels)
-        columns = noise.whiten(np.nan_to_num(slopes.stacked)) * spread
-        left = noise.whiten(np.nan_to_num(measured - readings.stacked))
-        now = np.array([start.number(name, points) for name in names])
-        power = columns.T @ columns + np.eye(len(names))
-        step = np.linalg.solve(power, columns.T @ left - (now - expected) / spread) * spread
-        start = start.with_numbers(dict(zip(names, (now + step).tolist(), strict=True)))
-    return start
+    values, spreads = np.array(list(priors.values())).T
+    problem = DiagnosisProblem(
+        points, start, stated_noise(*with_uncertainties(points, start, channels), channels)
+    )
+    return problem.refine(problem.null, Inexactness(tuple(priors), values, np.diag(spreads)))[0].state
 
 
 def campaign_of(number: str, points: Points) -> str:

@@ -25,14 +25,7 @@ FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was sw
 
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
-VISIBLE_CAMBER = Real(0.03, "rad", "Smallest range of camber that shows effects of camber.")
-VISIBLE_COUPLED_CAMBER = Real(0.02, "rad", "Smallest camber of a point with camber and sideslip together.")
-VISIBLE_COUPLED_SIDESLIP = Real(0.01, "rad", "Smallest sideslip of a point with both angles.")
-VISIBLE_SIDESLIP = Real(0.05, "rad", "Smallest range of sideslip that makes a sideslip sweep.")
-VISIBLE_LOAD_RANGE = Real(0.1, "-", "Smallest range of the logarithm of the load that makes two loads.")
-VISIBLE_PRESSURE = Real(10e3, "Pa", "Smallest range of pressure that makes two pressures.")
 VISIBLE_TEMPERATURE = Real(3.0, "K", "Smallest range of temperature whose effect exceeds the noise.")
-VISIBLE_SPEED = Real(0.5, "m/s", "Smallest range of speed that makes two speeds.")
 VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
 DISTANCE_LIKE_TIME = Real(0.98, "-", "Correlation of distance and time above which wear looks like drift.")
 VISIBLE_RUNS = Count(3, "-", "Fewest runs that show a scatter of their zeros.")
@@ -56,76 +49,37 @@ NOISE_BEYOND_STATED = Real(
     "-",
     "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
 )
-SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
-VARIANCE_OF_LOG_ROBUST = Real(
-    1.36,
+SURPRISING_LOG_ODDS = Real(
+    2.5,
     "-",
-    "Variance of the logarithm of the median absolute value of n normal readings, times n.",
+    "Log odds that offsets of runs need against a memory of the errors, and noise that grows with the reading or has heavy "
+    "tails against plain noise: one programme in thirteen has such.",
+    "diagnosis_study.py --correlated, docs/diagnosis.md",
 )
-CAMPAIGNS_APART = Real(
-    4.0,
+USUAL_GROWTH = Real(0.004, "-", "Usual part of the noise that grows with the reading.")
+USUAL_LOG_ODDS_OF_MEMORY = Real(
+    2.0, "-", "Log odds of the correlation of neighbouring errors at which its search starts: 0.88."
+)
+LARGEST_MEMORY = Real(
+    0.99,
     "-",
-    "Standard errors by which the scatter of two campaigns over their stated one must differ to have a scale of its own: "
-    "chance 6e-5, beside what smooth misfit leaves.",
-)
-LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
-LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
-MEMORY_BOUNDS = Series(
-    (-0.2, 0.97),
-    "-",
-    "Bounds of the correlation between neighbouring errors. Beyond, misfit of a model would pass as noise; in the comparison "
-    "with offsets of runs it is free.",
-)
-INDEPENDENT_BOUNDS = Series(
-    (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
+    "Largest correlation between neighbouring errors: beyond, misfit of a model would pass as noise.",
 )
 LONGEST_PAUSE = Real(
     3.0, "-", "Time between two points over the usual one, above which errors with a memory begin anew."
 )
-LIKELY_SPAN = Real(
-    6.0,
-    "-",
-    "Chains whose log likelihood is this much below the best are left out: they are 400 times less probable.",
-)
 NEGLIGIBLE_CHANGE = Real(
-    1e-4, "-", "Variance of a direction of changes, over that of a reading, below which it is left out."
-)
-SCATTER_START_INDEPENDENT = Real(0.3, "-", "Independent share at which its search starts.")
-LONG_MEMORY = Real(0.97, "-", "Memory at which a second search starts, for errors that drift within a run.")
-SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
-SCATTER_START_SMOOTH = Real(
-    0.03, "-", "Amplitude of smooth structure at which the search for the scatter starts."
-)
-SCATTER_START_GROWTH = Real(0.004, "-", "Growth at which the search for the scatter starts if none is known.")
-SCATTER_SECOND_START = Series(
-    (0.0, 0.005, 0.3, 0.1),
-    "-",
-    "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
-)
-SCATTER_STEPS = Series(
-    (1.0, 0.02, 1.0, 0.05, 1.0, 1.0),
-    "-",
-    "Typical changes of log scale, growth, artanh of the memory, smooth amplitude, offsets of runs, independent share.",
-)
-RUN_OFFSET_LOG_ODDS = Real(
-    2.5,
-    "-",
-    "Log odds against a memory of the errors that offsets of runs need: one programme in thirteen is taken to have them.",
-    "diagnosis_study.py --correlated, docs/diagnosis.md",
+    0.01, "-", "Expected chi-square of a direction of changes below which it is left out."
 )
 MEMORY_MODEL_PROBABILITIES = Series(
     (0.4, 0.4, 0.2),
     "-",
     "Prior of errors without memory, with one, and with both: the two simple descriptions are alike, both together rarer.",
 )
-SMALLEST_RUN_OFFSETS = Real(
-    0.1, "-", "Offsets of runs over the usual ones at which their search starts at least."
-)
 EVIDENCE_STEP = Real(
-    0.2, "-", "Step of a logarithm for the second differences that give the width of its distribution."
+    0.1, "-", "Step of a logarithm for the differences of slopes that give the width of its distribution."
 )
 LEAST_CURVATURE = Real(0.05, "-", "Smallest curvature that counts: a prior alone has more than 0.2.")
-RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
 )
@@ -133,15 +87,15 @@ TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )
 MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Most rounds that estimate scatter and weights in turn.")
-READING_WEIGHT_SETTLED = Real(0.05, "-", "Largest change of the root of a weight that ends these rounds.")
-READINGS_FOR_SCATTER = Count(700, "-", "Readings of a channel that suffice to estimate its scatter.")
+READINGS_FOR_SCATTER = Count(400, "-", "Readings of a channel that suffice to estimate its scatter.")
 FEWEST_SWEEPS_FOR_SCATTER = Count(
     8, "-", "Fewest sweeps used for the scatter, however many readings each has."
 )
 DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise above which a reading is listed as an outlier.")
 MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coefficients in turn.")
-SCATTER_SETTLED = Real(0.1, "-", "Median relative change of the noise that ends these rounds.")
-SCATTER_SETTLED_TAIL = Real(0.5, "-", "95 % quantile of the same change that ends these rounds.")
+SCATTER_SETTLED = Real(
+    0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
+)
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure until the scatter is known.")
 BUMP_RESIDUAL_CLIP = Real(
@@ -150,7 +104,6 @@ BUMP_RESIDUAL_CLIP = Real(
 MOST_BUMPS_SET_ASIDE = Count(2, "-", "Most bumps that may explain misfit while the scatter is estimated.")
 
 # Where the misfit is
-REGION_FALSE_DISCOVERY = Real(0.01, "-", "Expected share of false regions among the listed ones.")
 FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
 MOST_REGIONS = Count(12, "-", "Most regions that are listed.")
 MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
@@ -187,15 +140,11 @@ UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
 MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
-FEWEST_CANDIDATES_FITTED = Count(4, "-", "Fewest candidates of a step that are fitted in full.")
+FEWEST_CANDIDATES_FITTED = Count(
+    4, "-", "Best candidates of a step: always fitted in full, and tried in place of accepted ones."
+)
 PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
 PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
-MOST_EXCHANGE_CANDIDATES = Count(
-    4, "-", "Most candidates of a step that may replace an accepted effect, best first."
-)
-EXCHANGE_GAIN = Real(1.0, "-", "Log evidence by which a set of effects must exceed the set that it replaces.")
-
-# Rivals without a name
 STRUCTURE_EVIDENCE = Real(
     8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
 )
@@ -206,18 +155,13 @@ BUMP_WIDTHS_SLIP = Series(
 )
 BUMP_STEP_OF_ANGLE = Real(0.5, "deg", "Step of the centres of bumps over an angle.")
 BUMP_STEP_OF_SLIP = Real(0.01, "-", "Step of the centres of bumps over longitudinal slip.")
-BUMP_STRAIGHT = Real(1.0, "deg", "Sideslip within which points count as straight in this search.")
 BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
-BUMP_CUT = Real(0.02, "-", "Height below which a bump is cut to zero.")
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
 BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
 MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
-BUMPS_WHITENED_TOGETHER = Count(256, "-", "Bumps that are whitened in one block, to limit memory.")
-SATURATION_SIDESLIP = Real(4.0, "deg", "Side force saturates here: smooth structure is finer below it.")
-MOST_ANGLE_ORDER = Count(5, "-", "Largest order of smooth structure over sideslip and camber together.")
-MOST_CROSS_ORDER = Count(3, "-", "Largest order of a product of angles with another condition.")
-MOST_TIME_ORDER = Count(6, "-", "Largest order of smooth structure over time.")
-MOST_CONDITION_ORDER = Count(2, "-", "Largest order over load, pressure, temperature or speed.")
+DIVISIONS_OF_AN_ANGLE = Count(
+    3, "-", "Shortest length of smooth structure over an angle, as a part of its range."
+)
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )
@@ -225,32 +169,28 @@ SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, even
 LEAST_CERTAINTY = Real(
     0.9, "-", "Certainty, less the unexplained share, that effects need beside smooth structure."
 )
-LEAST_CERTAINTY_OF_SEEN = Real(
-    0.5, "-", "Certainty that effects need if the model was fitted to these points."
-)
-SIGNIFICANT_EFFECT = Real(2.0, "-", "Standard errors by which a number of a named effect must change.")
-
-# Ties and what would separate them
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(
     0.5, "-", "Share of the gain of a step that is added to this limit beside other effects."
 )
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
-TIE_RUN_CAMBERS = Series((-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40), "deg", "Cambers of an added sweep.")
-TIE_RUN_SIDESLIP_POINTS = Count(13, "-", "Points of an added sideslip sweep.")
+TIE_RUN_CAMBER = Real(40.0, "deg", "Largest camber of an added camber sweep.")
+TIE_RUN_POINTS = Count(13, "-", "Points of an added sweep.")
 TIE_RUN_LEANED = Real(20.0, "deg", "Camber of an added leaned sideslip sweep.")
 TIE_RUN_OTHER_LOADS = Series((0.5, 1.4), "-", "Added loads over the smallest and the largest load measured.")
 TIE_RUN_LOW_PRESSURE = Real(0.8, "-", "Added pressure over the main one.")
 TIE_RUN_FAST = Real(2.0, "-", "Added speed over the main one.")
 TIE_RUN_WARMER = Real(20.0, "K", "Rise of temperature of an added run.")
-TIE_RUN_UNKNOWN_TEMPERATURE = Real(25.0, "degC", "Temperature of the test if none was measured.")
-TIE_RUN_LATER = Real(600.0, "s", "Added late runs begin this long after the lengthened test.")
-TIE_RUN_LATER_SHARE = Real(1.2, "-", "Factor that lengthens the test for added late runs.")
-TIE_RUN_SLIP_POINTS = Count(13, "-", "Points of an added sweep of longitudinal slip.")
+TIE_RUN_LATER = Real(900.0, "s", "Added late runs begin this long after the test.")
 TIE_RUN_STEERED = Real(4.0, "deg", "Sideslip of an added sweep of longitudinal slip.")
 TIE_RUN_WIDE = Real(2.0, "-", "Path radius of an added run over the usual one.")
 
 # Confidence and answer
+TWO_SIGMA = Real(
+    2.0,
+    "-",
+    "Standard deviations within which a size lies, beyond which a number of an effect has changed, and a channel is worse.",
+)
 LOG_ODDS_DIVISOR = Real(
     1.35,
     "-",
@@ -272,19 +212,14 @@ KNOWN_BESIDE_UNKNOWN = Real(
     "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/diagnosis.md",
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
-LIMIT_COVERAGE = Real(2.0, "-", "Standard deviations within which the true size of an unnamed effect lies.")
 UNCHANGED_SHARE_OF_U = Real(
     0.5, "-", "Change of eps_gamma over its uncertainty below which it counts as equal."
 )
 
 # Validation
-MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out in turn.")
-VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
-MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
 PARTS_OF_A_RUN = Count(
     4, "-", "Parts of every run that are left out in turn, where numbers of single runs are checked."
 )
-RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a channel counts as worse.")
 
 # What a fit leaves
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
@@ -295,21 +230,8 @@ MOST_POINTS_EXAMINED = Count(
     "Points whose residuals are examined, of more evenly spaced ones: a fiftieth of the noise still shows.",
     "tests/benchmarks/scale.py",
 )
-ONE_STEP_FALSE_ALARM = Real(
-    0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
-)
-MOST_SURFACE_STEPS = Count(
-    4, "-", "Steps to the grips of the surfaces of several campaigns; forces are nearly proportional to them."
-)
-STRUCTURE_FALSE_ALARM = Real(
-    0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."
-)
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
-)
-DISTINCT_DIRECTION = Real(1e-6, "-", "Smallest relative eigenvalue of a direction that residuals determine.")
-AS_GOOD_AS_BEST = Real(
-    3.0, "-", "Difference of log probabilities below which another effect explains residuals as well."
 )
 AS_GOOD_SHARE = Real(
     0.9,
@@ -324,11 +246,8 @@ SAME_RESIDUALS = Real(
 )
 MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
 BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
-FEWEST_IN_A_BIN = Count(4, "-", "Fewest readings of a bin.")
 NEIGHBOURS_OF_RESIDUALS = Count(2, "-", "Lags along a sweep at which residuals are compared.")
-STRUCTURE_UPRIGHT = Real(0.5, "deg", "Angle up to which a reading lies at neither side of zero.")
-MOST_NUMBERS_IN_SENTENCE = Count(3, "-", "Most numbers of an effect that a sentence lists.")
-MOST_CONDITIONS_IN_SENTENCE = Count(
-    3, "-", "Most conditions over which a sentence calls residuals not random."
+MOST_NUMBERS_IN_SENTENCE = Count(
+    3, "-", "Most numbers of an effect, or conditions of residuals, in a sentence."
 )
 SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")

@@ -13,13 +13,13 @@ from mffit.diagnosis.campaigns import grips_of_surfaces, looked_at_together, on_
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.inexact import EXACT, Inexactness, with_zeros
+from mffit.diagnosis.inexact import Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import HELD_AT, possible, without
-from mffit.diagnosis.notes import NoRepair, Note, OneSweep, TakenOff
+from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.repair import repair
+from mffit.diagnosis.repair import checked, repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import (
@@ -29,7 +29,7 @@ from mffit.diagnosis.strangers import (
     refuse_strangers,
     without_noise,
 )
-from mffit.diagnosis.validation import Validation, raw_gap, validate
+from mffit.diagnosis.validation import Validation, raw_gap
 from mffit.effects import CATALOG, Effect
 from mffit.fit.plan import channels_of
 from mffit.points import Points
@@ -179,7 +179,7 @@ def _without_misread(
 
 def _candidates(
     effects: Sequence[Effect], points: Points, start: Simulation, known: Sequence[str]
-) -> tuple[list[Effect], list[Note]]:
+) -> tuple[list[Effect], list[DiagnosisNote]]:
     """Effects that could be missing, and notes on the others; what is refitted in any case (``known``) is not missing.
 
     A model whose coefficients are refitted holds at the mean temperature of the points.
@@ -195,23 +195,8 @@ def _candidates(
 def _confirmed(
     found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
 ) -> tuple[Explanation, Validation, NoRepair | None]:
-    """The whole explanation if left-out sweeps confirm it, else its first effect, else nothing; and what was refused.
-
-    ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
-    """
-    # Refitting coefficients to points that they were fitted to repairs nothing.
-    if seen and not found.chosen.effects:
-        found = found.withdrawn()
-    weights = found.plain.noise
-    validation = validate(
-        given, found.refined, inexact if found.coefficients else EXACT, weights=weights, seen=seen
-    )
-    if not (found.chosen.effects or found.coefficients) or validation.helps:
-        return found, validation, None
-    refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
-    if len(found.chosen.effects) > 1:
-        fewer = only_first(found, inexact)
-        validation = validate(given, fewer.refined, inexact, weights=weights, seen=seen)
-        if validation.helps:
-            return fewer, validation, refused
-    return found.withdrawn(), validation.without_repair(), refused
+    """The whole explanation if left-out sweeps confirm it, else its first effect, else nothing; and what was refused."""
+    done, validation, refused = checked(found, given, inexact, seen=seen)
+    if refused is not None and len(found.chosen.effects) > 1:
+        done, validation, _ = checked(only_first(found, inexact), given, inexact, seen=seen)
+    return done, validation, refused

@@ -15,7 +15,7 @@ from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.rivals import certain, competed, selected
+from mffit.diagnosis.rivals import certain, competed, selected, structured
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.effects import Effect
 from mffit.points import Points
@@ -69,11 +69,15 @@ def explain(
         columns = inexact.columns(points, start if found is None else found.refined.state, channels)
         problem = DiagnosisProblem(points, at, noise.sharing(columns), declared, offset)
         last = found
+        visible = beyond_memory(noise, candidates)
+        left = structured(problem, columns, visible, basis) if seen and visible else None
         # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
-        if found is None and inexact:
-            found = selected(problem, beyond_memory(noise, candidates), basis)
+        if left is not None:  # which effects predict left-out sweeps is asked below
+            found = left
+        elif found is None and inexact:
+            found = selected(problem, visible, basis)
         else:
-            found = competed(problem, columns, beyond_memory(noise, candidates), basis)
+            found = competed(problem, columns, visible, basis)
         if found.smooth.found:
             found = certain(found, counted=not seen)
         if seen and rms(misfit / noise.u) > constants.MISFIT_AT_NOISE:
@@ -99,6 +103,11 @@ def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexa
     prediction = LeftOutPrediction(found.plain, inexact, found.independent)
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
+    tied = [rival for one in support.values() for rival in one.tied]
+    best = min((chosen, *tied), key=lambda one: prediction.of(one).total)
+    if best is not chosen:  # to first order another one seemed better
+        chosen = best
+        support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     found = replace(found.choosing(chosen), predicted=support)
     return significant(found.with_coefficients(inexact), inexact)
 
@@ -110,7 +119,7 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
     def is_left(effect: Effect) -> bool:
         return any(
             abs(refined.numbers[name] - problem.start.number(name, problem.points))
-            > constants.SIGNIFICANT_EFFECT * refined.stderr.get(name, 0.0)
+            > constants.TWO_SIGMA * refined.stderr.get(name, 0.0)
             for name in effect.parameters
         )
 

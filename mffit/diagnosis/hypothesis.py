@@ -25,9 +25,6 @@ class Hypothesis:
     state: Simulation
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
-    freedom: float = (
-        0.0  #: log evidence paid for the freed numbers; it depends on how large effects usually are
-    )
 
     @property
     def ids(self) -> frozenset[str]:

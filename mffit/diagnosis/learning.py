@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -50,39 +49,7 @@ def learned_noise(
     named = _with_bumps(problem, residual, named, basis)
     explained = ExplainingColumns(named=named, runs=runs, smooth=basis, withdrawn=without_offsets)
     start = replace(stated, scatter=before.scatter)
-    found = learned(start, residual, explained, predicted)
-    if len(points.campaigns) > 1:
-        allowed = found.sharing(named, constants.ASSUMED_SMOOTH_AMPLITUDE * basis, *runs.values())
-        factors = factors_of_campaigns(allowed, np.nan_to_num(residual), points.campaign)
-        if np.any(factors != 1.0):
-            own = replace(start, u=factors * start.u, stated=factors * start.stated)
-            found = learned(own, residual, explained, predicted)
-    return found.alone()
-
-
-def factors_of_campaigns(noise: Noise, residual: np.ndarray, campaign: np.ndarray) -> np.ndarray:
-    """Factors (c n,) by which the uncertainties of each campaign (n,) differ from those of its channel; 1 where chance may do it.
-
-    Rigs differ in their noise, and one scale for all would trust the readings of one campaign too much. The logarithms of the
-    factors have a mean of 0 over the readings of a channel: the scale of the whole channel is that of its scatter.
-    """
-    logs = np.zeros(len(noise.u))
-    z = np.full(len(noise.u), np.nan)
-    z[noise.used] = noise.whiten(residual)
-    for rows in noise.by_channel(np.arange(len(z))).values():
-        known = rows[np.isfinite(z[rows])]
-        of = campaign[known - rows[0]]
-        apart = False
-        for k in np.unique(of):
-            own, others = known[of == k], known[of != k]
-            if not len(others):
-                continue
-            logs[own] = math.log(max(robust(z[own]), 1e-9))
-            chance = math.sqrt(constants.VARIANCE_OF_LOG_ROBUST * (1.0 / len(own) + 1.0 / len(others)))
-            ratio = math.log(max(robust(z[own]), 1e-9) / max(robust(z[others]), 1e-9))
-            apart = apart or abs(ratio) > constants.CAMPAIGNS_APART * chance
-        logs[rows] = logs[rows] - np.mean(logs[known]) if apart else 0.0
-    return np.exp(logs)
+    return learned(start, residual, explained, predicted, points.campaign).alone()
 
 
 def _with_bumps(
@@ -130,6 +97,5 @@ def settled(before: Noise, after: Noise) -> bool:
     return not (
         not all(spans)
         or np.median(change) > constants.SCATTER_SETTLED
-        or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL
         or max(memory) > constants.SCATTER_SETTLED
     )

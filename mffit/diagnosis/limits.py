@@ -39,7 +39,7 @@ def limits(
             white = outside(axes, problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)]))
             covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
             found = np.abs(covariance @ (white.T @ chosen.residual))
-            sizes.append(rms(found + constants.LIMIT_COVERAGE * np.sqrt(np.diag(covariance))))
+            sizes.append(rms(found + constants.TWO_SIGMA * np.sqrt(np.diag(covariance))))
         # Of an effect that is even in its number, the start at which it is most visible counts.
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

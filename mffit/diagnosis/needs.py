@@ -10,7 +10,7 @@ import numpy as np
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
-from mffit.points import Points
+from mffit.points import Points, levels
 from mffit.rig import Simulation, distance_km, sense
 
 HELD_AT = "T_ref_degC"
@@ -22,15 +22,19 @@ def _spread(x: np.ndarray) -> float:
     return float(np.ptp(x)) if len(x) else 0.0
 
 
-def _coupled(points: Points) -> bool:
-    leaned = np.abs(points.gamma) > constants.VISIBLE_COUPLED_CAMBER
-    return bool(np.any(leaned & (np.abs(points.alpha) > constants.VISIBLE_COUPLED_SIDESLIP)))
+def _varies(x: np.ndarray, kind: levels.LevelKind) -> bool:
+    """Whether values (n,) belong to more than one level."""
+    return _spread(np.log(x) if kind.relative else x) > kind.tolerance
 
 
-def _driven(points: Points, least_camber: float = 0.0) -> np.ndarray:
-    """Mask (n,) of points with longitudinal slip and sideslip together, and as much camber."""
-    steered = np.abs(points.alpha) > constants.VISIBLE_COUPLED_SIDESLIP
-    return ~points.free_rolling & steered & (np.abs(points.gamma) >= least_camber)
+def _coupled(points: Points) -> np.ndarray:
+    """Mask (n,) of points with camber and sideslip together."""
+    leaned, steered = (np.abs(x) > kind.tolerance for x, kind in _angles(points))
+    return leaned & steered
+
+
+def _angles(points: Points) -> tuple[tuple[np.ndarray, levels.LevelKind], ...]:
+    return (points.gamma, levels.CAMBER), (points.alpha, levels.SIDESLIP)
 
 
 def _both_senses(points: Points) -> bool:
@@ -40,7 +44,7 @@ def _both_senses(points: Points) -> bool:
 
 def _distance_is_not_time(points: Points) -> bool:
     known = np.isfinite(points.t)
-    if _spread(points.t) <= constants.VISIBLE_TIME or _spread(points.V) <= constants.VISIBLE_SPEED:
+    if _spread(points.t) <= constants.VISIBLE_TIME or not _varies(points.V, levels.SPEED):
         return False
     likeness = float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1])
     return likeness < constants.DISTANCE_LIKE_TIME
@@ -49,22 +53,22 @@ def _distance_is_not_time(points: Points) -> bool:
 MET: dict[str, Callable[[Points], bool]] = {
     "curved": lambda p: bool(np.any(p.phi_t)),
     "spin": lambda p: bool(np.any(p.phi_t)) or _spread(p.gamma) > constants.VISIBLE_SPIN_CAMBER,
-    "camber": lambda p: _spread(p.gamma) > constants.VISIBLE_CAMBER,
-    "coupled": _coupled,
-    "slip": lambda p: _spread(p.alpha) > constants.VISIBLE_SIDESLIP,
-    "loads": lambda p: _spread(np.log(p.Fz)) > constants.VISIBLE_LOAD_RANGE,
-    "pressures": lambda p: _spread(p.p) > constants.VISIBLE_PRESSURE,
+    "camber": lambda p: _varies(p.gamma, levels.CAMBER),
+    "coupled": lambda p: bool(np.any(_coupled(p))),
+    "slip": lambda p: _varies(p.alpha, levels.SIDESLIP),
+    "loads": lambda p: _varies(p.Fz, levels.LOAD),
+    "pressures": lambda p: _varies(p.p, levels.PRESSURE),
     "moment": lambda p: bool(np.any(np.isfinite(p.Mz))),
     "temperatures": lambda p: _spread(p.T) > constants.VISIBLE_TEMPERATURE,
-    "speeds": lambda p: _spread(p.V) > constants.VISIBLE_SPEED,
+    "speeds": lambda p: _varies(p.V, levels.SPEED),
     "times": lambda p: _spread(p.t) > constants.VISIBLE_TIME,
     "distances": _distance_is_not_time,
     "runs": lambda p: len(np.unique(p.file)) >= constants.VISIBLE_RUNS,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
     "drive": lambda p: "Fx" in p.measured and not np.all(p.free_rolling),
-    "combined": lambda p: bool(np.any(_driven(p))),
-    "combined_camber": lambda p: bool(np.any(_driven(p, constants.VISIBLE_COUPLED_CAMBER))),
+    "combined": lambda p: bool(np.any(~p.free_rolling & (np.abs(p.alpha) > levels.SIDESLIP.tolerance))),
+    "combined_camber": lambda p: bool(np.any(~p.free_rolling & _coupled(p))),
     "overturning": lambda p: "Mx" in p.measured,
 }
 """Whether points meet a need, by its key in ``mffit.effects.NEEDS``."""

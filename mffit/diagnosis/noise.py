@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.diagnosis.chains import Chains, Correlation, MemorySpan
+from mffit.linearised.chained import ChainedErrors, Memory, chains_of
 from mffit.quantities import SIDEWAYS
 from mffit.scatter import finite_median, rms
 
@@ -20,6 +20,14 @@ class Origin(Enum):
 
     STATED = "stated uncertainties"
     SCATTER = "scatter between neighbouring points"
+
+
+class MemorySpan(Enum):
+    """What errors with a memory run through before they begin anew."""
+
+    SWEEP = "sweep"
+    FILE = "file"
+    PROGRAMME = "programme"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,19 +119,18 @@ class Noise:
         return np.flatnonzero(np.isfinite(self.u))
 
     @cached_property
-    def _correlation(self) -> Correlation:
-        """The correlation of the used readings along their chains."""
-        channel = self.used // (len(self.u) // len(self.channels))
-        chain, turn, parts = self.chain[self.used], np.zeros(len(self.used), dtype=int), []
-        for k, scatter in enumerate(self.scatter.values()):
-            own = channel == k
-            parts.append((own, scatter.memory, scatter.independent))
-            if scatter.span in self.longer and self.turn is not None:
-                chain[own], turn[own] = self.longer[scatter.span][self.used][own], self.turn[self.used][own]
-            else:
-                turn[np.flatnonzero(own)[np.argsort(chain[own], kind="stable")]] = np.arange(np.sum(own))
-        _, chain = np.unique(np.column_stack([channel, chain]), axis=0, return_inverse=True)
-        return Correlation.along(Chains.of(chain.ravel(), turn), parts)
+    def _errors(self) -> list[tuple[np.ndarray, ChainedErrors]]:
+        """Positions among the used readings of every channel whose errors have a memory, and these errors."""
+        channel, out = self.used // (len(self.u) // len(self.channels)), []
+        for k, found in enumerate(self.scatter.values()):
+            own = np.flatnonzero(channel == k)
+            chain, turn = self.chain, None
+            if found.span in self.longer:
+                chain, turn = self.longer[found.span], self.turn
+            rows = self.used[own]
+            chains = chains_of(chain[rows], None if turn is None else turn[rows])
+            out.append((own, ChainedErrors(chains, Memory(found.memory, found.independent))))
+        return out
 
     @cached_property
     def _axes(self) -> tuple[np.ndarray, np.ndarray]:
@@ -137,7 +144,11 @@ class Noise:
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
         """Differences of used readings (m,) or (m, k), whitened without shared changes."""
-        return self._correlation.whiten((x.T / self.u[self.used]).T)
+        out: np.ndarray = (x.T / self.u[self.used]).T
+        for own, errors in self._errors:
+            if not errors.trivial:
+                out[own] = errors.whiten(out[own])
+        return out
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
@@ -177,9 +188,10 @@ class Noise:
         """Standard error of the sum of some used readings, by their position among the used ones."""
         chosen = np.zeros(len(self.used))
         chosen[rows] = 1.0
-        y = self._correlation.sum_of(self.u[self.used] * chosen)
-        axes, variance = self._axes
-        return float(np.sqrt(y @ y + variance @ (axes.T @ y) ** 2))
+        chosen *= self.u[self.used]
+        alone = sum(errors.variance_of_sum(chosen[own]) for own, errors in self._errors)
+        shared = 0.0 if self.shared is None else float(np.sum(self.shared[self.used[rows]].sum(axis=0) ** 2))
+        return float(np.sqrt(alone + shared))
 
     def assumed(self, channels: Mapping[str, float]) -> Noise:
         """The noise with independent errors of the given size [N], [Nm] in some channels."""
@@ -206,20 +218,6 @@ class Noise:
             scatter[name] = replace(here, scale=factor * here.scale, growth=factor * here.growth)
         return replace(self, u=self.u * np.concatenate(factors), scatter=scatter)
 
-    def subset(self, keep: np.ndarray) -> Noise:
-        """The noise of some points (mask (n,)), with the covariance among them."""
-        rows = np.tile(keep, len(self.channels))
-        return replace(
-            self,
-            u=self.u[rows],
-            stated=self.stated[rows],
-            chain=self.chain[rows],
-            longer={span: chain[rows] for span, chain in self.longer.items()},
-            turn=None if self.turn is None else self.turn[rows],
-            weight=None if self.weight is None else self.weight[rows],
-            shared=None if self.shared is None else self.shared[rows],
-        )
-
     def alone(self) -> Noise:
         """The scatter of the readings without shared changes."""
         return replace(self, shared=None)
@@ -228,17 +226,3 @@ class Noise:
         """The same scatter with these shared changes (c n, k), and no others."""
         given = [c for c in columns if c.size]
         return replace(self, shared=np.column_stack(given) if given else None)
-
-    def scattering(self, scatter: Mapping[str, Scatter], size: np.ndarray, weight: np.ndarray) -> Noise:
-        """The noise with another scatter.
-
-        ``weight`` (c n,) is that of each reading; the noise may grow in proportion to ``size`` (c n,).
-        """
-        readings = self.by_channel(np.nan_to_num(size))
-        u = np.concatenate(
-            [
-                np.hypot(scatter[c].scale * stated, scatter[c].growth * readings[c])
-                for c, stated in self.by_channel(self.stated).items()
-            ]
-        )
-        return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)

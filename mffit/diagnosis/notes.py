@@ -1,18 +1,56 @@
-"""Remarks of a diagnosis beside its findings: facts, put into sentences by :mod:`mffit.diagnosis.wording`."""
+"""Remarks of a diagnosis beside its findings: their facts, and the sentence that each of them is."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Protocol
 
-from mffit.diagnosis.validation import Validation
-from mffit.effects import Effect
-from mffit.suspicion import Misread
+from mffit.constants import ASSUMED_NOISE_SHARE
+from mffit.diagnosis import constants
+from mffit.diagnosis.validation import Gap, Validation
+from mffit.effects import NEEDS, Effect
+from mffit.quantities import CHANNELS
+from mffit.rounding import to_uncertainty
 from tir import Quantity
+from tir.errors import listed
+from tir.parameters import BY_NAME
+
+
+class DiagnosisNote(Protocol):
+    """A remark."""
+
+    @property
+    def sentence(self) -> str:
+        """It in words."""
+
+
+def short(value: float) -> str:
+    """Three digits, but never a power of ten."""
+    return f"{value:.3g}" if abs(value) < 999.5 else f"{value:.0f}"
+
+
+def _with_u(value: float, u: float) -> str:
+    return f"{to_uncertainty(value, u)} +- {to_uncertainty(u, u)}"
+
+
+def held_out(before: Gap, after: Gap) -> str:
+    """By how much every channel misses on left-out sweeps, in words."""
+    return listed(
+        [
+            f"the {CHANNELS[name].word} misses by {short(rmse)} {CHANNELS[name].unit} instead of {short(before.rms(name))} "
+            f"{CHANNELS[name].unit}"
+            for name, rmse in after.rmse.items()
+            if math.isfinite(rmse)
+        ]
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class OneSweep:
     """There is only one sweep, which cannot separate causes."""
+
+    sentence: str = "One sweep cannot separate causes: add sweeps at another load, camber or direction."
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +61,15 @@ class CampaignsTogether:
     grips: tuple[tuple[str, float, float], ...]
     """Name of the campaign, grip of its surface over that of the first, standard error."""
 
+    @property
+    def sentence(self) -> str:
+        looked = " and ".join(f"{number} points of {name}" for name, number in self.counts)
+        ratios = "".join(
+            f" The grip of the surface of {name} is {_with_u(value, u)} times that of {self.counts[0][0]}."
+            for name, value, u in self.grips
+        )
+        return f"Looked at together: {looked}; effects of rig and environment say which campaign they are of.{ratios}"
+
 
 @dataclass(frozen=True, slots=True)
 class AnotherTyre:
@@ -32,12 +79,35 @@ class AnotherTyre:
         tuple[str, float, float], ...
     ]  #: key of the property file, its value in the model, its value in tyre.toml
 
+    @property
+    def sentence(self) -> str:
+        said = []
+        for name, model, stated in self.differences:
+            row = BY_NAME[name]
+            scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
+            said.append(
+                f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})"
+            )
+        if all(BY_NAME[name].section != "DIMENSION" for name, *_ in self.differences):
+            return (
+                f"The model is for other nominal conditions than tyre.toml: {'; '.join(said)}. A file of this tyre may be; if it "
+                "is of another tyre, give the model of this one."
+            )
+        return (
+            f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct "
+            "[tyre]."
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class TakenOff:
     """An error of the rig that was taken off the readings before effects were looked for."""
 
-    sentence: str
+    said: str
+
+    @property
+    def sentence(self) -> str:
+        return f"{self.said[:1].upper()}{self.said[1:]}. The gap before has it; all else is without it."
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +115,15 @@ class WithoutNoise:
     """The readings of some channels hardly scatter, as those of a simulation."""
 
     assumed: tuple[tuple[str, float], ...]  #: channel, and the noise that is assumed [N], [Nm]
+
+    @property
+    def sentence(self) -> str:
+        sizes = " and ".join(f"{short(u)} {CHANNELS[name].unit} in {name}" for name, u in self.assumed)
+        share = f"{100.0 * ASSUMED_NOISE_SHARE:g} %"
+        return (
+            f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as their "
+            f"noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for numerical noise."
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +135,15 @@ class NoiseBeyondStated:
     stated: float  #: the same as stated
     sweep: str = ""  #: the sweep that is off much further than all others, if any
 
+    @property
+    def sentence(self) -> str:
+        unit = CHANNELS[self.channel].unit
+        most = f" Most of it is in {self.sweep}: check that sweep first." if self.sweep else ""
+        return (
+            f"Nothing explains why {self.channel} scatters by {short(self.noise)} {unit} where {short(self.stated)} {unit} are "
+            f"stated: what single sweeps do on their own looks like noise.{most}"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class OffsetsOrMemory:
@@ -66,6 +154,14 @@ class OffsetsOrMemory:
     noise: float  #: typical, [N] or [Nm]
     effects: tuple[Effect, ...]  #: offsets of runs that are as likely
 
+    @property
+    def sentence(self) -> str:
+        return (
+            f"The errors of {self.channel} ({short(self.noise)} {CHANNELS[self.channel].unit}) are correlated "
+            f"({self.memory:.2f} between neighbours) and may as well be a {' or a '.join(e.name for e in self.effects)}: measure "
+            "one condition again in several runs to separate them."
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class NotVisible:
@@ -73,6 +169,11 @@ class NotVisible:
 
     needs: tuple[str, ...]  #: what the data lack, keys of ``mffit.effects.NEEDS``
     effects: tuple[Effect, ...]
+
+    @property
+    def sentence(self) -> str:
+        lack = " and ".join(NEEDS[need] for need in self.needs)
+        return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in self.effects)}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +183,13 @@ class HardlyThisTyre:
     misfit: float  #: in units of the noise
     channel: str  #: "Fy" | "Mz", whichever fits better
 
+    @property
+    def sentence(self) -> str:
+        return (
+            f"No effect is named: even with the best effects the model misses the {CHANNELS[self.channel].word} by "
+            f"{self.misfit:.0f} times its noise. It hardly is a model of this tyre; fit it first (mffit build)."
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class NoRepair:
@@ -89,6 +197,14 @@ class NoRepair:
 
     effects: tuple[str, ...]  #: their names
     validation: Validation
+
+    @property
+    def sentence(self) -> str:
+        tried = listed(self.effects) if self.effects else "other coefficients"
+        return (
+            f"No repair is written: {tried} would fit these points better, but on left-out sweeps "
+            f"{held_out(self.validation.gap_before, self.validation.gap_after)}."
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +214,15 @@ class FileKept:
     terms: tuple[str, ...]  #: names of the effects that no file contains
     validation: Validation
 
+    @property
+    def sentence(self) -> str:
+        return (
+            f"The property file is the given one: without {' and '.join(self.terms)}, which no property file contains, the "
+            "corrected one is worse on left-out sweeps "
+            f"({held_out(self.validation.gap_before, self.validation.gap_file)}). The corrected one, which is right only with "
+            "these terms, is written beside it."
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class ModelOfLastBuild:
@@ -105,12 +230,23 @@ class ModelOfLastBuild:
 
     file: str
 
+    @property
+    def sentence(self) -> str:
+        return f"The model is {self.file} of the last build."
+
 
 @dataclass(frozen=True, slots=True)
 class ModelFittedFirst:
     """Without a given model or an earlier build, a model was fitted to the same points."""
 
     turn_slip: bool  #: whether the simulation computes turn slip
+
+    @property
+    def sentence(self) -> str:
+        return (
+            "The model was first fitted to these points, because there was no earlier build for simulations with turn slip "
+            f"{'on' if self.turn_slip else 'off'}."
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,21 +257,12 @@ class DirectMethodRedone:
     before: Quantity | None
     after: Quantity | None
 
-
-Note = (
-    OneSweep
-    | CampaignsTogether
-    | Misread
-    | AnotherTyre
-    | TakenOff
-    | WithoutNoise
-    | OffsetsOrMemory
-    | NoiseBeyondStated
-    | NotVisible
-    | HardlyThisTyre
-    | NoRepair
-    | FileKept
-    | ModelOfLastBuild
-    | ModelFittedFirst
-    | DirectMethodRedone
-)
+    @property
+    def sentence(self) -> str:
+        names, before, after = listed(self.causes), self.before, self.after
+        if before is None or after is None:
+            return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
+        now = _with_u(after.value, after.u)
+        if abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u:
+            return f"eps_gamma stays {now} (k = 1) with {names} corrected: the direct method allows for it."
+        return f"eps_gamma was {_with_u(before.value, before.u)} with {names}; corrected it is {now} (k = 1)."

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.special import chdtrc, fdtrc, ndtri
 
+from mffit.constants import PREDICTION_FALSE_ALARM as FALSE_ALARM
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.noise import Noise, Scatter
@@ -61,7 +62,7 @@ class BestEffect:
     @property
     def significant(self) -> bool:
         """Whether chance does not explain it."""
-        return self.chance < constants.ONE_STEP_FALSE_ALARM
+        return self.chance < FALSE_ALARM
 
 
 def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
@@ -79,7 +80,7 @@ def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEff
         best_of.setdefault(step.effect.id, step)
     tried = len(best_of)  # the starts of one effect are nearly the same direction
     if not left.at_noise:
-        beyond_chance = math.log(constants.ONE_STEP_FALSE_ALARM / tried)
+        beyond_chance = math.log(FALSE_ALARM / tried)
         best_of = {
             s.effect.id: s
             for s in sorted(best_of.values(), key=lambda s: (s.log_chance > beyond_chance, -s.share))
@@ -95,7 +96,7 @@ def _as_good(other: OneStep, best: OneStep, left: Remainder) -> bool:
     if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
         return False
     if left.at_noise:
-        return other.log_chance < best.log_chance + constants.AS_GOOD_AS_BEST
+        return other.log_chance < best.log_chance + constants.TIED_EVIDENCE_OF_ALIKE
     return other.share > constants.AS_GOOD_SHARE * best.share
 
 
@@ -136,7 +137,7 @@ def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.nda
     information = change.T @ own
     size = np.sqrt(np.diag(information))
     power, axes = np.linalg.eigh(information / np.outer(size, size))
-    clear = power > constants.DISTINCT_DIRECTION
+    clear = power > constants.IMITATED_SHARE
     inverse = (axes[:, clear] / power[clear]) @ axes[:, clear].T / np.outer(size, size)
     score = change.T @ left.residual
     amount, explained = inverse @ score, float(score @ inverse @ score)

@@ -32,17 +32,26 @@ class LeftOutPrediction:
         numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
         self.sweeps = len(numbers)
         columns = inexact.columns(problem.points, problem.start, problem.channels)
+        self._asked: tuple[Hypothesis, np.ndarray, np.ndarray] | None = None
         self.joint = problem.seen_through(problem.noise.sharing(columns))
 
     def of(self, hypothesis: Hypothesis, *more: np.ndarray) -> Predicted:
         """The prediction with the numbers of a hypothesis free, and more changes of the readings (c n, k)."""
-        problem, state = self.problem, hypothesis.state
-        columns = [self.inexact.columns(problem.points, state, problem.channels), *more]
-        columns += [groups[0] for groups in problem.columns(state, hypothesis.effects).values()]
-        C = problem.noise.whiten(np.column_stack(columns))
-        r = problem.whitened(state)
+        C, r = self._whitened(hypothesis)
+        if more:
+            C = np.column_stack([C, self.problem.noise.whiten(np.column_stack(more))])
+        C = np.asfortranarray(C)  # readings of a sweep are taken out of every column
         error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
-        return predicted(error, self.sweep, self.channel, channels=len(problem.channels))
+        return predicted(error, self.sweep, self.channel, channels=len(self.problem.channels))
+
+    def _whitened(self, hypothesis: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
+        """Changes (m, k) by the numbers of a hypothesis and its residual (m,), kept for the next question about it."""
+        if self._asked is None or self._asked[0] is not hypothesis:
+            problem, state = self.problem, hypothesis.state
+            columns = [self.inexact.columns(problem.points, state, problem.channels)]
+            columns += [groups[0] for groups in problem.columns(state, hypothesis.effects).values()]
+            self._asked = hypothesis, problem.noise.whiten(np.column_stack(columns)), problem.whitened(state)
+        return self._asked[1:]
 
     def beyond_noise(self, predicted: Predicted) -> np.ndarray:
         """Misfit (c,) that the noise does not explain, by channel."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
@@ -13,10 +14,27 @@ from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched
 from mffit.effects import Effect, Free
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearisedNumbers:
+    """Readings as linear functions of all numbers that an explanation frees."""
+
+    names: tuple[str, ...]  #: (k,)
+    slopes: np.ndarray  #: (c n, k) of the readings
+    white: np.ndarray  #: (m, k) the same in units of the joint uncertainty
+    residual: np.ndarray  #: (m,) simulated less measured in these units
+    information: np.ndarray  #: (k, k) of readings and priors
+    gradient: np.ndarray  #: (k,) zero at the solution
+
+    def moved_without(self, rows: np.ndarray) -> np.ndarray:
+        """Change (k,) of the numbers when some readings, by their positions among the used ones, are left out."""
+        out = self.white[rows]
+        return -np.linalg.solve(self.information - out.T @ out, self.gradient - out.T @ self.residual[rows])
 
 
 class DiagnosisProblem:
@@ -49,13 +67,6 @@ class DiagnosisProblem:
     def predict(self, state: Simulation) -> np.ndarray:
         """Readings (c n,) of a simulation at the points."""
         return state.predict(self.points, self.channels)
-
-    def part(self, keep: np.ndarray) -> DiagnosisProblem:
-        """The same with some of the points (mask (n,))."""
-        offset = None if self.offset is None else self.offset[np.tile(keep, len(self.channels))]
-        return DiagnosisProblem(
-            self.points.select(keep), self.start, self.noise.subset(keep), self.declared, offset
-        )
 
     def seen_through(self, noise: Noise) -> DiagnosisProblem:
         """The same with another noise."""
@@ -94,13 +105,8 @@ class DiagnosisProblem:
         The prior of a coefficient that changes by more than usual is as wide as the change that was found, so that it does not
         pull the answer back.
         """
-        frees = moving(chosen.effects)
-        prior = inexact.without(frozenset(free.name for free in frees))
-        usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
-        numbers = [
-            replace(n, spread=max(n.spread, abs(n.start - n.expected))) if n.name in COEFFICIENTS else n
-            for n in usual
-        ]
+        usual = [number(free, chosen.numbers, self.start, self.points) for free in moving(chosen.effects)]
+        numbers, prior = self._refined_numbers(chosen, inexact)
         if not prior and numbers == usual:
             return chosen, {}
         fixed = switched(chosen.effects)
@@ -108,13 +114,13 @@ class DiagnosisProblem:
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
         problem = plain.within([n.name for n in numbers], fixed)
         found = solve(
-            prior.added_to(problem, first=len(frees)) if prior else problem,
+            prior.added_to(problem, first=len(usual)) if prior else problem,
             numbers,
             max_steps=constants.MOST_HYPOTHESIS_STEPS,
             tolerance=constants.HYPOTHESIS_CONVERGED,
         )
         values, errors = {**fixed, **found.values}, _standard_errors(found)
-        own = {name: values[name] for name in (*fixed, *(free.name for free in frees))}
+        own = {name: values[name] for name in (*fixed, *(n.name for n in usual))}
         refined = replace(
             chosen,
             numbers=own,
@@ -122,6 +128,40 @@ class DiagnosisProblem:
             state=self.start.with_numbers(values),
         )
         return refined, {name: (values[name], errors[name]) for name in prior.names}
+
+    def _refined_numbers(
+        self, chosen: Hypothesis, inexact: Inexactness
+    ) -> tuple[list[FreeNumber], Inexactness]:
+        """The numbers of the effects with their priors, and the prior of all other coefficients."""
+        frees = moving(chosen.effects)
+        usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
+        numbers = [
+            replace(n, spread=max(n.spread, abs(n.start - n.expected))) if n.name in COEFFICIENTS else n
+            for n in usual
+        ]
+        return numbers, inexact.without(frozenset(free.name for free in frees))
+
+    def linearised(self, refined: Hypothesis, inexact: Inexactness = EXACT) -> LinearisedNumbers:
+        """All numbers of a refined hypothesis as one linear model at its solution; those at a bound stay there."""
+        numbers, prior = self._refined_numbers(refined, inexact)
+        moved = [n for n in numbers if not touches(n.start, n.lower, n.upper)]
+        precision = np.linalg.pinv(prior.root)
+        now = np.array([refined.state.number(name, self.points) for name in prior.names])
+        information = block_diag(np.diag([n.spread**-2.0 for n in moved]), precision.T @ precision)
+        away = np.concatenate([[n.start - n.expected for n in moved], now - prior.expected])
+        names = [*(n.name for n in moved), *prior.names]
+        slopes = np.zeros((len(self.measured), 0))
+        if names:
+            slopes = np.nan_to_num(refined.state.sensitivities(self.points, names, self.channels)[1].stacked)
+        white, residual = self.noise.whiten(slopes), -self.whitened(refined.state)
+        return LinearisedNumbers(
+            names=tuple(names),
+            slopes=slopes,
+            white=white,
+            residual=residual,
+            information=information + white.T @ white,
+            gradient=information @ away + white.T @ residual,
+        )
 
     def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
         """Candidates with their gain in log evidence to first order, best first."""

@@ -26,6 +26,24 @@ class Repair:
     """Whether the given property file is kept, because the corrected one without its rig and environment terms is worse."""
 
 
+def checked(
+    found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
+) -> tuple[Explanation, Validation, NoRepair | None]:
+    """An explanation if left-out sweeps confirm it, else nothing; their prediction, and what was refused.
+
+    ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
+    """
+    # Refitting coefficients to points that they were fitted to repairs nothing.
+    if seen and not found.chosen.effects:
+        found = found.withdrawn()
+    coefficients = inexact if found.coefficients else EXACT
+    validation = validate(given, found.refined, coefficients, weights=found.plain.noise, seen=seen)
+    if not (found.chosen.effects or found.coefficients) or validation.helps:
+        return found, validation, None
+    refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
+    return found.withdrawn(), validation.without_repair(), refused
+
+
 def repair(
     found: Explanation,
     named: Sequence[AcceptedEffect],
@@ -47,14 +65,9 @@ def repair(
     )
     refused = None
     if len(likely) < len(named):
-        found = found.only(likely).with_coefficients(inexact)
-        if seen and not likely:
-            found = found.withdrawn()
-        coefficients = inexact if found.coefficients else EXACT
-        validation = validate(given, found.refined, coefficients, weights=found.plain.noise, seen=seen)
-        if (likely or found.coefficients) and not validation.helps:
-            refused = NoRepair(tuple(effect.name for effect in likely), validation)
-            found, validation = found.withdrawn(), validation.without_repair()
+        found, validation, refused = checked(
+            found.only(likely).with_coefficients(inexact), given, inexact, seen=seen
+        )
     terms = tuple(effect.name for effect in found.chosen.effects if effect.kind != "tyre")
     changed = any(n in BY_NAME for n in found.coefficients) or any(
         e.kind == "tyre" for e in found.chosen.effects

@@ -12,7 +12,7 @@ from mffit.config.laboratory import LabTable
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import Note
+from mffit.diagnosis.notes import DiagnosisNote
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
@@ -90,7 +90,7 @@ class Diagnosis(Brief):
         str, Mapping[str, float]
     ]  #: the same of the rigs of several campaigns, by campaign
     tyre: Tyre  #: the corrected property file, or the given one if that is better alone
-    notes: tuple[Note, ...]
+    notes: tuple[DiagnosisNote, ...]
     model_after: str  #: file name of the corrected model in the output folder
     with_terms: Tyre | None = None
     """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""

@@ -12,7 +12,7 @@ from mffit.diagnosis.bumps import Bump, BumpScan, bump_scan
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import ForwardStep, select
+from mffit.diagnosis.selection import ForwardStep, forward_step, select
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_scan
 from mffit.effects import Effect
 
@@ -40,7 +40,8 @@ def competed(
     rival, alone, beside = found.bumps.best(null), scan.best(null), scan.best(chosen)
     if rival.found and rival.gain > max(gained, alone.gain):
         return _explanation(problem, null, found.steps[:1], found.bumps, basis, bump=rival)
-    smooth = beside if beside.found else alone if alone.found and alone.gain > gained else NO_SMOOTH
+    replaces = alone.found and alone.gain > gained + constants.TIED_EVIDENCE
+    smooth = beside if beside.found else alone if replaces else NO_SMOOTH
     if not smooth.found or (found.bump.found and found.bump.gain > smooth.gain):
         return found
     # Effects are judged again with the smooth structure in the covariance: they must explain what it cannot.
@@ -55,12 +56,26 @@ def competed(
     return _explanation(problem, chosen, steps, bumps, basis, smooth=smooth, unaided=unaided)
 
 
+def structured(
+    problem: DiagnosisProblem, columns: np.ndarray, candidates: Sequence[Effect], basis: np.ndarray
+) -> Explanation | None:
+    """Smooth structure and no effect, if that structure is left beside the best effect too; else None."""
+    step = forward_step(problem, problem.null, candidates)
+    scan = smooth_scan(basis, problem.noise)
+    if not scan.best(step.best).found:
+        return None
+    smooth = scan.best(problem.null)
+    problem = problem.seen_through(problem.noise.sharing(columns, amplified(basis, smooth, problem.channels)))
+    bumps = bump_scan(problem.points, problem.noise)
+    return _explanation(problem, problem.null, [step], bumps, basis, smooth=smooth)
+
+
 def certain(found: Explanation, *, counted: bool) -> Explanation:
     """The explanation without effects that smooth structure may as well explain, the least certain dropped first.
 
     If ``counted``, misfit that stays unexplained lowers the certainty of an effect.
     """
-    needed = constants.LEAST_CERTAINTY if counted else constants.LEAST_CERTAINTY_OF_SEEN
+    needed = constants.LEAST_CERTAINTY if counted else constants.LIKELY_ANSWER
     while found.chosen.effects:
         certainty = {effect: found.certainty(effect, counted=counted) for effect in found.chosen.effects}
         least = min(certainty, key=lambda effect: certainty[effect])

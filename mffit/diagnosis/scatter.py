@@ -1,40 +1,32 @@
 """How the readings really scatter: scale, growth with the reading, memory along sweeps, heavy tails.
 
-Every part is accepted only if the data ask for it. Effects, inexact coefficients and smooth structure are integrated out with
-their priors, so that the scatter is what none of them explains.
+Effects, inexact coefficients and smooth structure are integrated out with their priors, so that the scatter is what none of
+them explains. Descriptions of the errors are compared by their evidence, in which all their numbers are integrated out too.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
 
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import MemorySpan
-from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
-from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
-from mffit.diagnosis.run_means import log_evidence
+from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
+from mffit.linearised.chained import Chained, Memory, chains_of
 from mffit.scatter import rms
 
-BOUNDS = np.array(
-    [
-        constants.LOG_SCALE_BOUNDS,
-        (0.0, constants.LARGEST_NOISE_GROWTH),
-        constants.MEMORY_BOUNDS,
-        constants.SCATTER_SMOOTH_BOUNDS,
-        constants.RUN_OFFSET_BOUNDS,
-        constants.INDEPENDENT_BOUNDS,
-    ]
-)
-ALL = (0, 1, 2, 3)
-GROWTH, MEMORY, OFFSETS, INDEPENDENT = 1, 2, 4, 5
-"""Positions in :class:`MarginalParts`."""
+LARGEST = math.log(1e4)
+"""Bound of the coordinates: log odds, or the logarithm of a size."""
+
+
+LARGEST_MEMORY = math.log(constants.LARGEST_MEMORY / (1.0 - constants.LARGEST_MEMORY))
+"""The same of a memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,39 +41,272 @@ class ExplainingColumns:
     )
 
 
-def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
+@dataclass(frozen=True, slots=True)
+class Description:
+    """Which numbers describe the errors of a channel: a scale for each campaign, smooth structure beside them, and these."""
+
+    span: MemorySpan | None = None  #: of their memory; None without one
+    independent: bool = False  #: whether a part without memory is beside it
+    growth: bool = False
+    offsets: bool = False  #: of runs
+    probability: float = 1.0  #: before the readings
+
+    @property
+    def shapes(self) -> tuple[Callable[[float], tuple[float, float]], ...]:
+        """Log prior and its slope of every number behind the scales, as functions of its coordinate."""
+        memory = [_arcsine] * (self.span is not None) + [_uniform] * self.independent
+        return (*[_half_cauchy] * (1 + self.growth + self.offsets), *memory)
+
+
+class Numbers(NamedTuple):
+    """The numbers of a description."""
+
+    log_scale: np.ndarray  #: of every campaign
+    smooth: float  #: amplitude of smooth structure over the usual one
+    growth: float = 0.0  #: over the usual one
+    offsets: float = 0.0  #: of runs over the usual ones
+    memory: Memory = Memory()
+
+
+def _half_cauchy(x: float) -> tuple[float, float]:
+    """Of a size about its usual one, by its logarithm."""
+    square = math.exp(2.0 * x)
+    return math.log(2.0 / math.pi) + x - math.log1p(square), (1.0 - square) / (1.0 + square)
+
+
+def _arcsine(x: float) -> tuple[float, float]:
+    """Of a correlation between 0 and 1, by its log odds: Jeffreys' prior, for which long memories are no surprise."""
+    share = _share(x)
+    log = math.log(2.0 / math.pi) + math.log(share) + 0.5 * (math.log1p(-share) - math.log1p(share))
+    return log, 1.0 - share - 0.5 * share - 0.5 * share * (1.0 - share) / (1.0 + share)
+
+
+def _uniform(x: float) -> tuple[float, float]:
+    """Of a share, by its log odds."""
+    share = _share(x)
+    return math.log(share) + math.log1p(-share), 1.0 - 2.0 * share
+
+
+def _share(log_odds: float) -> float:
+    return 1.0 / (1.0 + math.exp(-log_odds))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Described:
+    """The most probable numbers of a description."""
+
+    by: Description
+    x: np.ndarray  #: coordinates
+    log_probability: float  #: of description and readings, its numbers integrated out
+
+
+@dataclass(frozen=True, eq=False)
+class ScatterOfChannel:
+    """The used readings (m,) of one channel, and what could explain them."""
+
+    stated: np.ndarray  #: standard uncertainty
+    residual: np.ndarray  #: measured minus simulated
+    size: np.ndarray  #: readings in proportion to which the noise may grow
+    campaign: np.ndarray  #: numbers of the campaigns, from 0
+    chains: Mapping[MemorySpan, Sequence[np.ndarray]]  #: along which errors may have a memory
+    sweep: np.ndarray
+    named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
+    smooth: np.ndarray  #: (m, k) the same of smooth structure at its usual amplitude
+    least: float  #: standard uncertainty that is always added, for readings without noise
+    weight: np.ndarray
+    runs: np.ndarray  #: (m, k) offsets of runs at their usual size, if a description has them
+
+    def numbers(self, x: np.ndarray, by: Description) -> Numbers:
+        """The numbers at coordinates: logarithms of sizes, log odds of shares."""
+        c = 1 + int(self.campaign.max())
+        left = iter(x[c:].tolist())
+        smooth = math.exp(next(left))
+        growth = math.exp(next(left)) if by.growth else 0.0
+        offsets = math.exp(next(left)) if by.offsets else 0.0
+        memory = _share(next(left)) if by.span else 0.0
+        return Numbers(
+            x[:c], smooth, growth, offsets, Memory(memory, _share(next(left)) if by.independent else 0.0)
+        )
+
+    def uncertainty(self, at: Numbers) -> np.ndarray:
+        """Standard uncertainty (m,) of every reading."""
+        return np.sqrt(self._squares(at).sum(axis=0) / self.weight)
+
+    def _squares(self, at: Numbers) -> np.ndarray:
+        """Variances (3, m) at weight 1: as stated and scaled, growing, always there."""
+        stated = np.exp(at.log_scale)[self.campaign] * self.stated
+        growing = at.growth * constants.USUAL_GROWTH * self.size
+        return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
+
+    def _sizes(self, at: Numbers) -> np.ndarray:
+        counts = [self.named.shape[1], self.smooth.shape[1], self.runs.shape[1]]
+        return np.repeat([1.0, at.smooth, at.offsets], counts)
+
+    def _model(self, by: Description) -> Chained:
+        """The linear model; without a memory in no chains."""
+        columns = np.column_stack([self.named, self.smooth, self.runs])
+        return Chained(self.residual, columns, self.chains[by.span or MemorySpan.SWEEP])
+
+    def likeliest(self, by: Description, near: np.ndarray | None = None) -> Described:
+        """The numbers of a description and its probability (Laplace approximation); the search begins ``near`` if given."""
+        model, c, shapes = self._model(by), 1 + int(self.campaign.max()), by.shapes
+        wide = math.log(constants.STATED_NOISE_FACTOR)
+        first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
+
+        def falling(x: np.ndarray) -> tuple[float, np.ndarray]:
+            at = self.numbers(x, by)
+            squares = self._squares(at)
+            total = squares.sum(axis=0)
+            found = model.evidence(np.sqrt(total / self.weight), self._sizes(at), at.memory)
+            by_scale = np.bincount(self.campaign, found.u * squares[0] / total, minlength=c)
+            slopes = [*(by_scale - x[:c] / wide**2), np.sum(found.sizes[first:last])]
+            slopes += [found.u @ (squares[1] / total)] if by.growth else []
+            slopes += [np.sum(found.sizes[last:])] if by.offsets else []
+            shares = [at.memory.correlation, at.memory.independent][: (by.span is not None) + by.independent]
+            slopes += [found.memory[k] * s * (1.0 - s) for k, s in enumerate(shares)]
+            priors = np.array([shape(value) for shape, value in zip(shapes, x[c:].tolist(), strict=True)])
+            slope = np.array(slopes)
+            slope[c:] += priors[:, 1]
+            value = found.value - 0.5 * float(x[:c] @ x[:c]) / wide**2 + float(np.sum(priors[:, 0]))
+            return -value, -slope
+
+        start, bounds = np.zeros(c + len(shapes)), [(-LARGEST, LARGEST)] * (c + len(shapes))
+        if by.span is not None:
+            start[c + 1 + by.growth + by.offsets] = constants.USUAL_LOG_ODDS_OF_MEMORY
+        if near is not None:
+            start[: len(near)] = near
+        if by.span is not None:
+            bounds[c + 1 + by.growth + by.offsets] = (-LARGEST, LARGEST_MEMORY)
+        found = minimize(
+            falling,
+            start,
+            jac=True,
+            bounds=bounds,
+            method="L-BFGS-B",
+            options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-5},
+        )
+        slope, step = falling(found.x)[1], float(constants.EVIDENCE_STEP) * np.eye(len(found.x))
+        curvature = np.array([falling(found.x + d)[1] - slope for d in step]) / constants.EVIDENCE_STEP
+        curvature = 0.5 * (curvature + curvature.T)
+        axes = np.maximum(np.linalg.eigvalsh(curvature), constants.LEAST_CURVATURE)
+        volume = 0.5 * float(np.sum(np.log(2.0 * math.pi / axes)))
+        return Described(by, found.x, volume - float(found.fun) + math.log(by.probability))
+
+    def standardised(self, found: Described) -> np.ndarray:
+        """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
+        at = self.numbers(found.x, found.by)
+        seen = self._model(found.by).foretold(self.uncertainty(at), self._sizes(at), at.memory)
+        return seen.error / np.sqrt(seen.variance + (self.weight - 1.0) * seen.own)
+
+    def select(self, rows: np.ndarray) -> ScatterOfChannel:
+        """Some of the readings, whole chains of each of them."""
+        place = np.full(len(self.stated), -1)
+        place[rows] = np.arange(len(rows))
+        chains = {
+            span: [p[p >= 0] for p in (place[c] for c in found) if np.any(p >= 0)]
+            for span, found in self.chains.items()
+        }
+        parts = {
+            name: getattr(self, name)[rows]
+            for name in (
+                "stated",
+                "residual",
+                "size",
+                "campaign",
+                "sweep",
+                "named",
+                "smooth",
+                "weight",
+                "runs",
+            )
+        }
+        return replace(self, chains=chains, **parts)
+
+    def with_runs(self, runs: np.ndarray) -> ScatterOfChannel:
+        """The same with offsets of runs (m, k) at their usual size."""
+        return replace(self, runs=runs)
+
+    @property
+    def sample(self) -> ScatterOfChannel:
+        """Every k-th sweep if there are more readings than scale, growth and memory need."""
+        names = np.unique(self.sweep)
+        most = max(len(names) // int(constants.FEWEST_SWEEPS_FOR_SCATTER), 1)
+        stride = min(math.ceil(len(self.sweep) / constants.READINGS_FOR_SCATTER), most)
+        rows = np.flatnonzero(np.isin(self.sweep, names[::stride]))
+        return self if stride == 1 else self.select(rows)
+
+
+def learned(
+    noise: Noise,
+    residual: np.ndarray,
+    explained: ExplainingColumns,
+    size: np.ndarray,
+    campaign: np.ndarray | None = None,
+) -> Noise:
     """The noise with the scatter that the residual shows.
 
-    The search starts from ``noise``, which may grow in proportion to ``size`` (c n,).
+    It may grow in proportion to ``size`` (c n,), and each campaign (n,) has a scale of its own.
     """
-    weight, scatter = np.ones(len(residual)), dict(noise.scatter)
+    u, weight, scatter = noise.u.copy(), np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}
+    of = np.zeros(len(residual), dtype=int) if campaign is None else np.tile(campaign, len(noise.channels))
     for name, rows in noise.by_channel(np.arange(len(residual))).items():
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
-        channel = MarginalChannel(
-            stated=noise.stated[rows],
+        _, number = np.unique(of[rows], return_inverse=True)
+        stated, turn = noise.stated[rows], None if noise.turn is None else noise.turn[rows]
+        chains = {MemorySpan.SWEEP: chains_of(noise.chain[rows])}
+        for span, chain in noise.longer.items():
+            longer = chains_of(chain[rows], turn)
+            if not any(_same(longer, known) for known in chains.values()):
+                chains[span] = longer
+        channel = ScatterOfChannel(
+            stated=stated,
             residual=np.nan_to_num(residual[rows]),
             size=np.abs(np.nan_to_num(size[rows])),
-            chain=noise.chain[rows],
-            turn=None if noise.turn is None else noise.turn[rows],
-            named=_occurring(explained.named[rows]),
-            smooth=_occurring(explained.smooth[rows]),
-            weight=np.ones(len(rows)),
+            campaign=number,
+            chains=chains,
+            sweep=noise.chain[rows],
+            named=_condensed(explained.named[rows], stated),
+            smooth=_condensed(constants.ASSUMED_SMOOTH_AMPLITUDE * explained.smooth[rows], stated),
             least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
+            weight=np.ones(len(rows)),
+            runs=np.zeros((len(rows), 0)),
         )
-        runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
-        courses = _courses(channel, {span: chain[rows] for span, chain in noise.longer.items()})
-        needed = constants.RUN_OFFSET_LOG_ODDS + math.log(max(len(runs), 1))
-        needed = math.inf if explained.withdrawn else needed
-        scatter[name], weight[rows], here = _of_channel(courses, runs, noise.scatter[name], needed)
+        runs = {effect: _condensed(columns[rows], stated) for effect, columns in explained.runs.items()}
+        needed = constants.SURPRISING_LOG_ODDS + math.log(max(len(runs), 1))
+        found, channel, tails, here = _of_channel(
+            channel, runs, math.inf if explained.withdrawn else float(needed)
+        )
+        at = channel.numbers(found.x, found.by)
+        u[rows], weight[rows] = channel.uncertainty(at), channel.weight
+        scatter[name] = Scatter(
+            scale=math.exp(float(np.mean(at.log_scale[channel.campaign]))),
+            growth=float(constants.USUAL_GROWTH) * at.growth,
+            memory=at.memory.correlation,
+            independent=at.memory.independent,
+            tails=tails,
+            span=found.by.span or MemorySpan.SWEEP,
+        )
         for effect, (odds, needed, larger, _) in here.items():
             other = offsets.get(effect, here[effect])
             both = odds + other.log_odds if effect in offsets else odds
             offsets[effect] = RunOffsets(both, needed, max(other.size, larger), other.channels | {name})
-    found = replace(noise.scattering(scatter, size, weight), offsets=offsets)
-    return _at_least_of_a_rig(found, size)
+    found_noise = replace(noise, u=u, scatter=scatter, weight=weight, offsets=offsets)
+    return _at_least_of_a_rig(found_noise, size)
+
+
+def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
+    """Whether two sets of chains are the same."""
+    return {rows.tobytes() for rows in one} == {rows.tobytes() for rows in other}
+
+
+def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Fewer columns that change as much: directions of hardly any change are left out."""
+    white = columns / u[:, None]
+    power, turn = np.linalg.eigh(white.T @ white)
+    return columns @ turn[:, power > constants.NEGLIGIBLE_CHANGE]
 
 
 def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
@@ -97,173 +322,82 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
     return noise.assumed(assumed) if assumed else noise
 
 
-def _occurring(columns: np.ndarray) -> np.ndarray:
-    """The columns that are not zero throughout."""
-    return columns[:, np.any(columns != 0.0, axis=0)]
-
-
-def _courses(channel: MarginalChannel, longer: Mapping[MemorySpan, np.ndarray]) -> list[MarginalChannel]:
-    """The channel with a memory along each sweep, and along those longer chains (m,) that differ from shorter ones."""
-    found = [channel]
-    for span, course in longer.items():
-        other = channel.along(span, course)
-        if not any(other.chains.same_as(one.chains) for one in found):
-            found.append(other)
-    return found
-
-
 def _of_channel(
-    courses: Sequence[MarginalChannel], runs: Mapping[str, np.ndarray], start: Scatter, needed: float
-) -> tuple[Scatter, np.ndarray, dict[str, RunOffsets]]:
-    """The scatter, the weight of every reading (m,), and the offsets of runs by effect.
+    channel: ScatterOfChannel, runs: Mapping[str, np.ndarray], needed: float
+) -> tuple[Described, ScatterOfChannel, float, dict[str, RunOffsets]]:
+    """The description of a channel, its readings with their weights, their tails, and the offsets of runs by effect.
 
-    ``courses`` are the channel with a memory along each of several chains; ``needed`` are log odds that offsets need. There are
-    none if the readings show no memory: nothing else looks like them.
+    ``needed`` are log odds that offsets need. There are none if the readings show no memory: nothing else looks like them.
     """
-    first = MarginalParts(
-        math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH
-    )._replace(independent=start.independent if start.memory else 0.0)
-    several = any(columns.shape[1] for columns in runs.values())
-    # A memory shows most along the longest chains.
-    known = [one for one in courses if start.memory and one.span is start.span]
-    channel, parts, tails = _weighted((known or courses)[-1], first, drift=several)
+    found, channel, tails = _weighted(channel)
     offsets: dict[str, RunOffsets] = {}
-    if parts.memory:
-        courses = _likeliest([one.weighing(channel.weight) for one in courses], parts)
-        if courses[0].span is not channel.span:
-            channel, parts, tails = _weighted(courses[0], parts, drift=several, near=True)
-            courses = [one.weighing(channel.weight) for one in courses]
-        # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        most, best = needed, None
-        alone = log_evidence([one.condensed(parts.smooth) for one in courses], parts)
-        for effect, columns in runs.items():
-            if not columns.shape[1]:
-                continue
-            found = _with_offsets(channel.beside(columns), columns, parts)
-            beside = [one.beside(columns) for one in courses]
-            odds = log_evidence([one.condensed(found.smooth) for one in beside], found) - alone
-            if odds > needed:  # the memory may have as much smooth structure beside it
-                other = log_evidence([one.condensed(found.smooth) for one in courses], parts)
-                odds -= max(other - alone, 0.0)
-            offsets[effect] = RunOffsets(odds, needed, found.offsets, frozenset())
+    if found[0].by.span is None:
+        return found[0], channel, tails, offsets
+    every = found if math.isinf(tails) else _descriptions(channel, offsets=False)
+    alone, most, best = _log_sum(every), needed, None
+    for effect, columns in runs.items():
+        if columns.shape[1]:
+            beside = _descriptions(channel.with_runs(columns), offsets=True)
+            odds = _log_sum(beside) - alone
+            size = channel.with_runs(columns).numbers(beside[0].x, beside[0].by).offsets
+            offsets[effect] = RunOffsets(odds, needed, size, frozenset())
             if odds > most:
-                most, best = odds, (beside, found)
-        if best is not None:
-            beside, parts = best
-            channel, parts, tails = _weighted(_likeliest(beside, parts)[0], parts, drift=True)
-    scatter = Scatter(
-        math.exp(parts.log_scale),
-        parts.growth,
-        parts.memory,
-        independent=parts.independent,
-        span=channel.span,
-        tails=tails,
-    )
-    return scatter, channel.weight, offsets
-
-
-def _likeliest(courses: Sequence[MarginalChannel], parts: MarginalParts) -> list[MarginalChannel]:
-    """Those along chains that are likely, the likeliest first."""
-    if len(courses) == 1:
-        return list(courses)
-    free = [k for k in ALL if k != GROWTH or parts.growth]
-    free += [OFFSETS] * (courses[0].runs is not None) + [INDEPENDENT] * (parts.independent > 0.0)
-    climbed = [(one, _climb(one, parts, tuple(free))[1]) for one in courses]
-    climbed.sort(key=lambda row: -row[1])
-    return [one for one, value in climbed if value > climbed[0][1] - constants.LIKELY_SPAN]
-
-
-def _with_offsets(channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts) -> MarginalParts:
-    """The likeliest parts with offsets of runs, which replace the memory or shorten it."""
-    size = rms(channel.residual @ runs / np.maximum(np.sum(runs**2, axis=0), 1e-30))
-    shorter = parts._replace(memory=0.5 * parts.memory, offsets=0.5 * size)
-    replaced = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=size)
-    climbs = (_climb(channel, x, (*ALL, OFFSETS)) for x in (shorter, replaced))
-    return max(climbs, key=lambda climb: climb[1])[0]
+                most, best = odds, columns
+    if best is not None:
+        found, channel, tails = _weighted(channel.with_runs(best), offsets=True)
+    return found[0], channel, tails, offsets
 
 
 def _weighted(
-    channel: MarginalChannel, parts: MarginalParts, *, drift: bool, near: bool = False
-) -> tuple[MarginalChannel, MarginalParts, float]:
-    """The channel with its weights, and the parts and degrees of freedom that were found in turn with them.
-
-    ``drift``: whether errors without memory beside those with one are considered, which tells drifts from offsets of runs.
-    ``near``: no other maximum than that near the start is sought.
-    """
-    tails = math.inf
-    for again in range(constants.MOST_READING_WEIGHT_ROUNDS):
-        parts = _accepted(channel, parts, drift=drift, near=near or again > 0)
-        z = channel.standardised(parts)
-        before, (tails, width) = tails, heavy_tails(z)
+    channel: ScatterOfChannel, *, offsets: bool = False
+) -> tuple[list[Described], ScatterOfChannel, float]:
+    """The descriptions, likeliest first, the readings with their weights, and the degrees of freedom, found in turn."""
+    found, tails = _descriptions(channel, offsets=offsets), math.inf
+    for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
+        z = channel.standardised(found[0])
+        tails, width = heavy_tails(z)
         weight = weights(z, tails, width)
         change = np.max(np.abs(np.sqrt(weight) - np.sqrt(channel.weight)))
         channel = replace(channel, weight=weight)
-        if change < constants.READING_WEIGHT_SETTLED or (math.isinf(tails) and math.isinf(before)):
+        if change < constants.SCATTER_SETTLED:
             break
-    return channel, parts, tails
+        found = [channel.sample.likeliest(found[0].by, found[0].x)]
+    return found, channel, tails
 
 
-def _accepted(
-    channel: MarginalChannel, start: MarginalParts, *, drift: bool, near: bool = False
-) -> MarginalParts:
-    """The likeliest parts, without growth or memory if the data do not ask for them.
+def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
+    """All descriptions of the errors, the likeliest first: a memory only if it is proven, along the shortest likely chains.
 
-    ``near``: the start is the solution for slightly different weights, so that no other maximum is sought.
+    Those with a memory along several chains are equally probable beforehand; errors without one beside it are tried along the
+    likeliest.
     """
-    second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
-    every = (*ALL, OFFSETS) if channel.runs is not None else ALL
-    every = (*every, INDEPENDENT) if start.independent else every
-    starts = (start,) if near else (start, second)
-    best, whole = max((_climb(channel, x, every) for x in starts), key=lambda climb: climb[1])
-    if drift and not (near and best.independent):
-        # A single memory may be a compromise between both parts that is no better than none.
-        longer = float(constants.LONG_MEMORY)
-        two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
-        free = tuple(dict.fromkeys((*every, INDEPENDENT)))
-        other, more = _climb(channel, two, free)
-        if more - whole > (0.0 if best.independent else constants.SCATTER_PART_GAIN):
-            best, whole, every = other, more, free
-    # Beside offsets of runs a memory stays that was found without them: drifts within the runs are no structure of the model.
-    for part in (GROWTH, MEMORY) if channel.runs is None else (GROWTH,):
-        lost = (MEMORY, INDEPENDENT) if part == MEMORY else (part,)
-        reduced = [0.0 if k in lost else value for k, value in enumerate(best)]
-        free = tuple(k for k in every if k not in lost and (k not in (GROWTH, MEMORY) or best[k]))
-        other, less = _climb(channel, MarginalParts(*reduced), free)
-        if whole - less < constants.SCATTER_PART_GAIN:
-            best, whole = other, less
-    return best
+    some = channel.sample
+    never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
+    first = some.likeliest(Description(offsets=offsets, probability=never))
+    growing = some.likeliest(replace(first.by, growth=True), first.x[:-1] if offsets else first.x)
+    if growing.log_probability - first.log_probability > constants.SURPRISING_LOG_ODDS:
+        first = growing
+    share = 1.0 / len(some.chains)
+    found = [
+        some.likeliest(replace(first.by, span=span, probability=with_memory * share), first.x)
+        for span in some.chains
+    ]
+    best = max(found, key=lambda one: one.log_probability)
+    both = replace(best.by, independent=True, probability=with_both * share)
+    found += [first, some.likeliest(both, best.x)]
+    found.sort(key=lambda one: -one.log_probability)
+    proven = found[0].log_probability - constants.SURPRISING_LOG_ODDS
+    if found[0].by.span is None:
+        return found
+    alike = [
+        one for one in found if one.by.independent == found[0].by.independent and one.by.span is not None
+    ]
+    spans = [one.by.span for one in alike if one.log_probability > proven]
+    shortest = next(span for span in some.chains if span in spans)
+    chosen = first if first.log_probability > proven else next(x for x in alike if x.by.span is shortest)
+    found.insert(0, found.pop(found.index(chosen)))
+    return found
 
 
-def _climb(
-    channel: MarginalChannel, start: MarginalParts, free: tuple[int, ...]
-) -> tuple[MarginalParts, float]:
-    """The maximum of the likelihood over the free parts, and its value."""
-    chosen, unit = list(free), np.array(constants.SCATTER_STEPS)
-
-    def full(y: np.ndarray) -> MarginalParts:
-        x = np.array(start)
-        x[chosen] = y * unit[chosen]
-        if MEMORY in free:
-            x[MEMORY] = math.tanh(x[MEMORY])
-        return MarginalParts(*x.tolist())
-
-    first, bounds = np.array(start), BOUNDS.copy()
-    if GROWTH in free and not start.growth:
-        first[GROWTH] = constants.SCATTER_START_GROWTH
-    first[MEMORY], bounds[MEMORY] = np.arctanh(first[MEMORY]), np.arctanh(bounds[MEMORY])
-
-    def falling(y: np.ndarray) -> tuple[float, np.ndarray]:
-        parts = full(y)
-        value, by = channel.likelihood_and_slopes(parts)
-        slopes = np.array(by._replace(memory=by.memory * (1.0 - parts.memory**2)))
-        return -value, -slopes[chosen] * unit[chosen]
-
-    found = minimize(
-        falling,
-        first[chosen] / unit[chosen],
-        jac=True,
-        bounds=bounds[chosen] / unit[chosen][:, None],
-        method="L-BFGS-B",
-        options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-6},
-    )
-    return full(found.x), -float(found.fun)
+def _log_sum(found: Sequence[Described]) -> float:
+    return float(np.logaddexp.reduce([one.log_probability for one in found]))

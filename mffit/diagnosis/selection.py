@@ -80,7 +80,7 @@ def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hyp
         left.add(current.ids)
         if not step.passes or step.best.ids in left:
             break
-        first = constants.MOST_EXCHANGE_CANDIDATES
+        first = constants.FEWEST_CANDIDATES_FITTED
         near = [trial.effects[-1] for trial in (*step.trials[:first], *steps[0].trials[:first])]
         current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
         current = _without_needless(problem, current, step.threshold, left)
@@ -121,7 +121,7 @@ def _exchanged(
                 if (1.0 + constants.PROMISING_SHARE) * gain + constants.PROMISING_GAIN < lacks:
                     continue
                 trial = problem.fit((*rest, other), current.numbers_of(rest))
-                if trial.log_evidence > best.log_evidence + constants.EXCHANGE_GAIN:
+                if trial.log_evidence > best.log_evidence + constants.TIED_EVIDENCE:
                     best = trial
         if best is current:
             break

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.noise import Noise
+from mffit.linearised.inputs import Input
+from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
@@ -40,12 +40,14 @@ NO_SMOOTH = Smooth({}, 0.0)
 
 
 def smooth_basis(points: Points, simulated: Readings) -> np.ndarray:
-    """Smooth changes (c n, k) of the readings, separate for every channel, smaller the higher their order.
+    """Smooth changes (c n, k) of the readings, separate for every channel, smaller the faster they change.
 
     At amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are proportional to the
     ``simulated`` readings, because the measured ones contain the errors to be explained.
     """
-    shapes, gains = _shapes(points), _gains(points)
+    angles, others = _conditions(points)
+    shapes = _functions({**angles, **others})
+    gains = _functions(others)[:, 1:]
     rows = []
     for name, model in simulated.items():
         size = float(np.nan_to_num(rms(points.channel(name))))
@@ -54,55 +56,37 @@ def smooth_basis(points: Points, simulated: Readings) -> np.ndarray:
     return block_diag(*rows)
 
 
-def _conditions(points: Points) -> list[np.ndarray]:
-    """Legendre polynomials (n, k) over every condition but the angles."""
-    few = constants.MOST_CONDITION_ORDER
-    others = [
-        (np.log(points.Fz), few),
-        (points.p, few),
-        (points.T, few),
-        (points.V, few),
-        (points.t, constants.MOST_TIME_ORDER),
-        (points.direction.astype(float), 1),
+def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """The angles, and all other conditions over which structure may be smooth, by name; those that vary."""
+    angles = {"alpha": points.alpha, "gamma": points.gamma}
+    others = {name: getattr(points, name).astype(float) for name in ("p", "T", "V", "t", "direction")}
+    varying = [
+        {name: x for name, x in group.items() if np.any(np.isfinite(x)) and np.nanmax(x) > np.nanmin(x)}
+        for group in (angles, {"Fz": np.log(points.Fz), **others})
     ]
-    return [_orders(np.where(np.isfinite(values), values, np.nan), most) for values, most in others]
+    return varying[0], varying[1]
 
 
-def _gains(points: Points) -> np.ndarray:
-    """Changes (n, k) of gain, relative, with load, pressure, temperature, speed, time or direction."""
-    columns = [along[:, k] / (1.0 + k) for along in _conditions(points) for k in range(1, along.shape[1])]
-    return np.column_stack(columns) if columns else np.zeros((len(points), 0))
-
-
-def _shapes(points: Points) -> np.ndarray:
-    """Products (n, k) of Legendre polynomials over angles and conditions, smaller the higher their order."""
-    most = constants.MOST_ANGLE_ORDER
-    a = _orders(np.arctan(points.alpha / constants.SATURATION_SIDESLIP.rad), most)
-    g = _orders(points.gamma, most)
-    angles = {
-        (i, j): a[:, i] * g[:, j]
-        for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
-        if i + j <= most
-    }
-    columns = [(i + j, shape) for (i, j), shape in angles.items()]
-    for along in _conditions(points):
-        for k in range(1, along.shape[1]):
-            for (i, j), shape in angles.items():
-                # Higher orders, which only time has, are combined with the simplest shapes alone.
-                if i + j + min(k, 2) <= constants.MOST_CROSS_ORDER or (k > 2 and i + j <= 1):
-                    columns.append((i + j + k, shape * along[:, k]))
-    scaled = [shape / (1.0 + order) for order, shape in columns if np.any(shape)]
-    return np.column_stack(scaled)
-
-
-def _orders(values: np.ndarray, most: int) -> np.ndarray:
-    """Legendre polynomials (n, k) over the range of values (n,); only the constant where they do not vary."""
-    known = values[np.isfinite(values)]
-    if not len(known) or np.ptp(known) <= 1e-9 * max(1.0, float(np.abs(known).max())):
-        return np.ones((len(values), 1))
-    middle, half = 0.5 * (known.max() + known.min()), 0.5 * np.ptp(known)
-    distinct = len(np.unique(np.round((known - middle) / half, 2)))
-    return legvander(np.nan_to_num((values - middle) / half), min(most, distinct - 1))
+def _functions(conditions: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Smooth functions (n, k) of some conditions, the constant first; where a condition is not known it is in the middle."""
+    inputs, at = [], []
+    for name, x in conditions.items():
+        lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
+        steps = {
+            "alpha": constants.DIVISIONS_OF_AN_ANGLE,
+            "gamma": constants.DIVISIONS_OF_AN_ANGLE,
+            "t": 2,
+            "Fz": 2,
+        }
+        distinct = len(np.unique(np.round((x[np.isfinite(x)] - lower) / (upper - lower), 2))) - 1
+        inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps.get(name, 1), distinct), 1)))
+        at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper)))
+    if not inputs:
+        return np.ones((len(conditions), 1))
+    functions = SmoothFunctions.over(tuple(inputs))
+    share, _ = functions.log_variance(np.array([one.spacing for one in inputs]))
+    found: np.ndarray = functions.columns(np.column_stack(at)) * np.exp(0.5 * share)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,7 @@ from collections.abc import Collection, Iterable
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import MemorySpan
-from mffit.diagnosis.noise import Noise, Origin, Scatter
+from mffit.diagnosis.noise import MemorySpan, Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.points.noise import neighbour_noise

@@ -91,7 +91,9 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
     left = noise.by_channel(found.problem.measured - found.problem.predict(found.refined.state))
     out = []
     for channel, residual in left.items():
-        if noise.scatter[channel].scale > constants.NOISE_BEYOND_STATED:
+        u = noise.of_channel(noise.u, channel)
+        known = np.isfinite(u)
+        if rms(u[known] / noise.of_channel(noise.stated, channel)[known]) > constants.NOISE_BEYOND_STATED:
             off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
             off = {name: size for name, size in off.items() if np.isfinite(size)}
             worst = max(off, key=off.__getitem__)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc, log_ndtr
 
+from mffit.constants import PREDICTION_FALSE_ALARM as FALSE_ALARM
+from mffit.constants import UPRIGHT
 from mffit.diagnosis import constants
 from mffit.diagnosis.remainder import Remainder, log_of
 from mffit.quantities import CONDITIONS
@@ -54,7 +56,7 @@ class Structure:
     @property
     def found(self) -> tuple[ResidualComparison, ...]:
         """Those that chance does not explain, their number accounted for."""
-        limit = math.log(constants.STRUCTURE_FALSE_ALARM / max(len(self.comparisons), 1))
+        limit = math.log(FALSE_ALARM / max(len(self.comparisons), 1))
         return tuple(c for c in self.comparisons if c.log_chance < limit)
 
     @property
@@ -107,7 +109,7 @@ def _conditions(
 
 
 def _side(degrees: np.ndarray) -> np.ndarray:
-    return np.sign(degrees) * (np.abs(degrees) > constants.STRUCTURE_UPRIGHT)
+    return np.sign(degrees) * (np.abs(degrees) > UPRIGHT)
 
 
 def _varying(
@@ -143,7 +145,7 @@ def _binned(
     cells, index, counts = np.unique(
         np.column_stack([label, side]), axis=0, return_inverse=True, return_counts=True
     )
-    filled = np.flatnonzero(counts >= constants.FEWEST_IN_A_BIN)
+    filled = np.flatnonzero(counts >= constants.FEWEST_READINGS_OF_A_REGION)
     if len(np.unique(cells[filled, 0])) < 2:
         return None
     members = (index.reshape(-1)[:, None] == filled).astype(float)
@@ -178,7 +180,7 @@ def _along(left: Remainder, channel: str, rows: np.ndarray) -> ResidualCompariso
         if len(sweep) > lag
     ]
     first = np.concatenate([start for start, _ in pairs]) if pairs else np.zeros(0, dtype=int)
-    if len(first) < constants.FEWEST_IN_A_BIN:
+    if len(first) < constants.FEWEST_READINGS_OF_A_REGION:
         return None
     second = np.concatenate([start + lag for start, lag in pairs])
     r, A = left.residual[rows], left.axes[rows]

@@ -16,7 +16,7 @@ def heavy_tails(z: np.ndarray) -> tuple[float, float]:
     from scipy.stats import norm, t  # loads in a third of a second, which other commands save
 
     width = rms(z)
-    best = float(np.sum(norm.logpdf(z, scale=width))) + constants.SCATTER_PART_GAIN
+    best = float(np.sum(norm.logpdf(z, scale=width))) + constants.SURPRISING_LOG_ODDS
     found = (math.inf, width)
     core = robust(z) or 1.0
     for dof in constants.TAIL_DEGREES_OF_FREEDOM:

@@ -19,7 +19,7 @@ class SeparatingRun(Enum):
     BACKWARD = "a backward sideslip sweep at {load:.0f} N"
     TURNED_ON_RIM = "a sideslip sweep at {load:.0f} N with the tyre turned on its rim"
     OTHER_LOAD = "a sideslip sweep at {load:.0f} N"
-    CAMBER = f"a camber sweep to {max(constants.TIE_RUN_CAMBERS):g} deg at {{load:.0f}} N"
+    CAMBER = f"a camber sweep to {constants.TIE_RUN_CAMBER:g} deg at {{load:.0f}} N"
     BACKWARD_CAMBER = "a backward camber sweep at {load:.0f} N"
     LEANED = f"a sideslip sweep at {constants.TIE_RUN_LEANED:g} deg camber and {{load:.0f}} N"
     LOW_PRESSURE = (
@@ -78,12 +78,11 @@ def candidate_runs(points: Points) -> tuple[tuple[SeparatingRun, Points], ...]:
     load = float(np.median(main.Fz))
     loads = np.unique(np.round(main.Fz, -1))
     lower, higher = np.array(constants.TIE_RUN_OTHER_LOADS) * (loads.min(), loads.max())
-    reach = float(np.max(np.abs(main.alpha)))
-    slip = _line(main, load, alpha=np.linspace(-reach, reach, constants.TIE_RUN_SIDESLIP_POINTS))
-    camber = _line(main, load, gamma=np.radians(constants.TIE_RUN_CAMBERS))
-    warmer = np.nan_to_num(slip.T, nan=constants.TIE_RUN_UNKNOWN_TEMPERATURE) + constants.TIE_RUN_WARMER
-    end = float(np.max(np.nan_to_num(points.t)))
-    later = constants.TIE_RUN_LATER_SHARE * end + constants.TIE_RUN_LATER
+    reach, along = float(np.max(np.abs(main.alpha))), np.linspace(-1.0, 1.0, constants.TIE_RUN_POINTS)
+    slip = _line(main, load, alpha=reach * along)
+    camber = _line(main, load, gamma=constants.TIE_RUN_CAMBER.rad * along)
+    warmer = np.nan_to_num(slip.T) + constants.TIE_RUN_WARMER
+    later = float(np.max(np.nan_to_num(points.t))) + constants.TIE_RUN_LATER
     runs = [
         (SeparatingRun.BACKWARD, slip.replace(direction=-1)),
         (SeparatingRun.TURNED_ON_RIM, slip.replace(mount=-1)),
@@ -105,7 +104,7 @@ def candidate_runs(points: Points) -> tuple[tuple[SeparatingRun, Points], ...]:
         ]
     if not np.all(points.free_rolling):
         reach = float(np.max(np.abs(main.kappa)))
-        drive = _line(main, load, kappa=np.linspace(-reach, reach, constants.TIE_RUN_SLIP_POINTS))
+        drive = _line(main, load, kappa=reach * along)
         steered = drive.replace(alpha=constants.TIE_RUN_STEERED.rad)
         runs += [
             (SeparatingRun.DRIVE, drive.replace(Fz=higher)),

@@ -14,7 +14,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.points import Points
 from mffit.rig import Simulation
-from mffit.rig_errors import RIG_ERRORS
+from mffit.rig_errors import RIG_ERRORS, error_of
 from mffit.scatter import rms
 
 
@@ -34,7 +34,7 @@ class Gap:
 class Validation:
     """The gap on left-out sweeps."""
 
-    folds: int  #: groups of whole sweeps, left out in turn
+    folds: int  #: sweeps, or parts of every run, left out in turn
     gap_before: Gap
     gap_after: Gap
     gap_file: Gap
@@ -95,35 +95,23 @@ def validate(
     weights: Noise | None = None,
     seen: bool = False,
 ) -> Validation:
-    """Refit the hypothesis without each group of sweeps and predict that group.
+    """Predict each group of sweeps from all others, to first order from one fit of all.
 
     Numbers of single runs say nothing about other runs: with such an effect, successive parts of every run are left out in turn.
     ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. ``weights``: another noise for
-    these fits. If the model was fitted to
-    these points (``seen``), it is refitted without the group for the gap before too, which it would otherwise predict from
-    itself.
+    the fit. If the model was fitted to these points (``seen``), its coefficients are estimated without the group for the gap
+    before too, which it would otherwise predict from itself.
     """
-    points, channels = problem.points, problem.channels
-    measured = np.concatenate([points.channel(name) for name in channels])
-    before = measured - problem.predict(problem.start)
-    after, alone = before.copy(), before.copy()
+    points = problem.points
+    before = problem.measured - problem.predict(problem.start)
+    after = alone = before
     fits = problem.seen_through(weights or problem.noise)
     within_runs = any(effect.differs_by_run for effect in hypothesis.effects)
-    group = _part_of_run(points.file) if within_runs else _group_of_sweeps(points.sweep)
-    for fold in range(int(group.max()) + 1):
-        out = group == fold
-        if not (hypothesis.effects or inexact) or out.all():
-            continue
-        rest, chosen, rows = fits.part(~out), points.select(out), np.tile(out, len(channels))
-        fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
-        if hypothesis.effects and not inexact:
-            fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
-        state = rest.refine(fitted, inexact)[0].state
-        after[rows] = measured[rows] - state.predict(chosen, channels)
-        alone[rows] = measured[rows] - file_alone(state, problem.start).predict(chosen, channels)
+    group = _part_of_run(points.file) if within_runs else np.unique(points.sweep, return_inverse=True)[1]
+    if (hypothesis.effects or inexact) and group.any():
+        after, alone = _left_out(fits, hypothesis, inexact, group)
         if seen:
-            unchanged = rest.refine(rest.null, inexact)[0].state
-            before[rows] = measured[rows] - unchanged.predict(chosen, channels)
+            before, _ = _left_out(fits, fits.refine(fits.null, inexact)[0], inexact, group)
     noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
     return Validation(
         folds=int(group.max()) + 1,
@@ -136,18 +124,32 @@ def validate(
     )
 
 
+def _left_out(
+    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness, group: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Measured less predicted (c n,) where each group (n,) is predicted from all others; the same for the file alone."""
+    found, state = problem.linearised(hypothesis, inexact), hypothesis.state
+    plain = file_alone(state, problem.start)
+    after, alone = (problem.measured - problem.predict(one) for one in (state, plain))
+    errors = [error_of(name) for name in found.names]
+    kept = [k for k, error in enumerate(errors) if error is None or error.kind == "tyre"]
+    slopes = np.zeros_like(found.slopes)
+    if kept:
+        of_file = plain.sensitivities(problem.points, [found.names[k] for k in kept], problem.channels)[1]
+        slopes[:, kept] = np.nan_to_num(of_file.stacked)
+    every = np.tile(group, len(problem.channels))
+    for number in range(int(group.max()) + 1):
+        change = found.moved_without(np.flatnonzero(every[problem.noise.used] == number))
+        rows = every == number
+        after[rows] -= found.slopes[rows] @ change
+        alone[rows] -= slopes[rows] @ change
+    return after, alone
+
+
 def file_alone(state: Simulation, given: Simulation) -> Simulation:
     """The simulation with the corrected property file, its rig and environment as ``given``."""
     tyre = {error.name: state.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
     return replace(state, faults=given.faults.replace(**tyre), of_parts=given.of_parts)
-
-
-def _group_of_sweeps(sweep: np.ndarray) -> np.ndarray:
-    """Number (n,) of the group of whole sweeps that each point belongs to."""
-    sweeps, index = np.unique(sweep, return_inverse=True)
-    many = len(sweep) >= constants.MANY_POINTS_TO_VALIDATE
-    most = constants.VALIDATION_FOLDS_OF_MANY_POINTS if many else constants.MOST_VALIDATION_FOLDS
-    return index % min(most, len(sweeps))
 
 
 def _part_of_run(file: np.ndarray) -> np.ndarray:
@@ -166,5 +168,5 @@ def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -
     """
     change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
     channel = noise.used // (len(before) // len(noise.channels))
-    chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
+    chance = numbers + constants.TWO_SIGMA * np.sqrt(2.0 * numbers)
     return tuple(name for k, name in enumerate(noise.channels) if change[channel == k].sum() > chance)

@@ -4,43 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import assert_never
 
-from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.chains import MemorySpan
-from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import (
-    AnotherTyre,
-    CampaignsTogether,
-    DirectMethodRedone,
-    FileKept,
-    HardlyThisTyre,
-    ModelFittedFirst,
-    ModelOfLastBuild,
-    NoiseBeyondStated,
-    NoRepair,
-    Note,
-    NotVisible,
-    OffsetsOrMemory,
-    OneSweep,
-    TakenOff,
-    WithoutNoise,
-)
+from mffit.diagnosis.noise import MemorySpan, Noise
+from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
 from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.structure import Structure
 from mffit.diagnosis.ties import Separation
-from mffit.diagnosis.validation import Gap, Validation
-from mffit.effects import NEEDS, Effect
+from mffit.diagnosis.validation import Validation
+from mffit.effects import Effect
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig_errors import OF_RUN, error_of, number_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
-from tir import Quantity
 from tir.errors import listed
-from tir.parameters import BY_NAME
 
 TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
@@ -61,7 +40,7 @@ THROUGH = {MemorySpan.SWEEP: "a sweep", MemorySpan.FILE: "a file", MemorySpan.PR
 def headline(diagnosis: Diagnosis) -> str:
     """The answer in one sentence, after those about a model of another tyre, and about what is not in the readings any more."""
     other = next((remark for remark in diagnosis.notes if isinstance(remark, AnotherTyre)), None)
-    warned = "" if other is None else f"Warning: {_another_tyre(other)} "
+    warned = "" if other is None else f"Warning: {other.sentence} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
     taken_off = "".join(f"{said[:1].upper()}{said[1:]}. " for said in _taken_off(diagnosis))
@@ -75,23 +54,20 @@ def headline(diagnosis: Diagnosis) -> str:
 
 def _taken_off(diagnosis: Diagnosis) -> list[str]:
     """Sentences, without full stop, about errors that were taken off the readings before effects were looked for."""
-    return [remark.sentence for remark in diagnosis.notes if isinstance(remark, TakenOff)]
+    return [remark.said for remark in diagnosis.notes if isinstance(remark, TakenOff)]
 
 
 def _nothing_named(diagnosis: Diagnosis) -> str:
     shown, bump = diagnosis.gap_examined, diagnosis.bump
     misfit = "the rms misfit is " + listed(
         [
-            f"{_short(shown.rms(name))} {unit} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {_short(noise)} {unit})"
+            f"{short(shown.rms(name))} {unit} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
             for name, unit, noise in _measured(diagnosis.noise)
         ]
     )
     if zeros_of_setups(diagnosis):
         after = listed(
-            [
-                f"{_short(diagnosis.gap_after.rms(name))} {unit}"
-                for name, unit, _ in _measured(diagnosis.noise)
-            ]
+            [f"{short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)]
         )
         misfit += f"; with the zeros of every set-up, estimated within what [rig] declares, it is {after}"
     if not diagnosis.unexplained:
@@ -101,7 +77,7 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
     if bump is None:
         return f"The model misses the data by more than their noise, and no effect of the library explains it: {misfit}."
     return (
-        f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {_short(bump.amplitude)} "
+        f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {short(bump.amplitude)} "
         f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
     )
 
@@ -110,7 +86,7 @@ def _as_read(diagnosis: Diagnosis, channel: str) -> str:
     """The misfit of all readings as they were read, for a sentence; empty if nothing was taken off them or left out."""
     if not (_taken_off(diagnosis) or any(isinstance(remark, Misread) for remark in diagnosis.notes)):
         return ""
-    return f"{_short(diagnosis.gap_before.rms(channel))} {CHANNELS[channel].unit} as read, "
+    return f"{short(diagnosis.gap_before.rms(channel))} {CHANNELS[channel].unit} as read, "
 
 
 def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
@@ -139,8 +115,8 @@ def _named(diagnosis: Diagnosis) -> str:
         verdict = f"The best explanation, though uncertain, is {names}"
     misfit = listed(
         [
-            f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_examined.rms(name))} {unit} in "
-            f"{CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {_short(noise)} {unit})"
+            f"{short(after.rms(name))} {unit} instead of {short(diagnosis.gap_examined.rms(name))} {unit} in "
+            f"{CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
             for name, unit, noise in _measured(diagnosis.noise)
         ]
     )
@@ -183,124 +159,7 @@ def _with_ties(found: AcceptedEffect) -> str:
 
 def notes(diagnosis: Diagnosis) -> list[str]:
     """The zeros of set-ups, if there are several, and all notes, as sentences."""
-    return [*_zeros(diagnosis), *(note(remark) for remark in diagnosis.notes)]
-
-
-def note(remark: Note) -> str:
-    """A note as a sentence."""
-    match remark:
-        case OneSweep():
-            return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
-        case CampaignsTogether(counts, grips):
-            looked = " and ".join(f"{number} points of {name}" for name, number in counts)
-            ratios = "".join(
-                f" The grip of the surface of {name} is {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} times that of "
-                f"{counts[0][0]}."
-                for name, value, u in grips
-            )
-            return f"Looked at together: {looked}; effects of rig and environment say which campaign they are of.{ratios}"
-        case Misread():
-            return remark.sentence
-        case AnotherTyre():
-            return _another_tyre(remark)
-        case TakenOff(sentence):
-            return f"{sentence[:1].upper()}{sentence[1:]}. The gap before has it; all else is without it."
-        case WithoutNoise(assumed):
-            sizes = " and ".join(f"{_short(u)} {CHANNELS[name].unit} in {name}" for name, u in assumed)
-            share = f"{100.0 * ASSUMED_NOISE_SHARE:g} %"
-            return (
-                f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as "
-                f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "
-                "numerical noise."
-            )
-        case NoiseBeyondStated(channel, noise, stated, sweep):
-            unit = CHANNELS[channel].unit
-            most = f" Most of it is in {sweep}: check that sweep first." if sweep else ""
-            return (
-                f"Nothing explains why {channel} scatters by {_short(noise)} {unit} where {_short(stated)} {unit} are stated: "
-                f"what single sweeps do on their own looks like noise.{most}"
-            )
-        case OffsetsOrMemory(channel, memory, noise, effects):
-            return (
-                f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated ({memory:.2f} "
-                f"between neighbours) and may as well be a {' or a '.join(e.name for e in effects)}: measure one condition "
-                "again in several runs to separate them."
-            )
-        case NotVisible(needs, effects):
-            lack = " and ".join(NEEDS[need] for need in needs)
-            return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."
-        case HardlyThisTyre(misfit, channel):
-            return (
-                f"No effect is named: even with the best effects the model misses the {CHANNELS[channel].word} by {misfit:.0f} "
-                "times its noise. It hardly is a model of this tyre; fit it first (mffit build)."
-            )
-        case NoRepair(effects, validation):
-            tried = listed(effects) if effects else "other coefficients"
-            before, after = validation.gap_before, validation.gap_after
-            return (
-                f"No repair is written: {tried} would fit these points better, but on left-out sweeps "
-                f"{_held_out(before, after)}."
-            )
-        case FileKept(terms, validation):
-            return (
-                f"The property file is the given one: without {' and '.join(terms)}, which no property file contains, the "
-                f"corrected one is worse on left-out sweeps ({_held_out(validation.gap_before, validation.gap_file)}). "
-                "The corrected one, which is right only with these terms, is written beside it."
-            )
-        case ModelOfLastBuild(file):
-            return f"The model is {file} of the last build."
-        case ModelFittedFirst(turn_slip):
-            return (
-                "The model was first fitted to these points, because there was no earlier build for simulations with turn slip "
-                f"{'on' if turn_slip else 'off'}."
-            )
-        case DirectMethodRedone():
-            return _redone(remark)
-        case _:
-            assert_never(remark)
-
-
-def _another_tyre(found: AnotherTyre) -> str:
-    """What differs between the model and tyre.toml."""
-    said = []
-    for name, model, stated in found.differences:
-        row = BY_NAME[name]
-        scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
-        said.append(f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})")
-    if all(BY_NAME[name].section != "DIMENSION" for name, *_ in found.differences):
-        return (
-            f"The model is for other nominal conditions than tyre.toml: {'; '.join(said)}. A file of this tyre may be; if it is "
-            "of another tyre, give the model of this one."
-        )
-    return (
-        f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct "
-        "[tyre]."
-    )
-
-
-def _held_out(before: Gap, after: Gap) -> str:
-    return listed(
-        [
-            f"the {CHANNELS[name].word} misses by {_short(rmse)} {CHANNELS[name].unit} instead of {_short(before.rms(name))} "
-            f"{CHANNELS[name].unit}"
-            for name, rmse in after.rmse.items()
-            if math.isfinite(rmse)
-        ]
-    )
-
-
-def _redone(found: DirectMethodRedone) -> str:
-    """The change of eps_gamma when the rig's faults are corrected."""
-    names, before, after = listed(found.causes), found.before, found.after
-    if before is None or after is None:
-        return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
-    if abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u:
-        return f"eps_gamma stays {_with_u(after)} (k = 1) with {names} corrected: the direct method allows for it."
-    return f"eps_gamma was {_with_u(before)} with {names}; corrected it is {_with_u(after)} (k = 1)."
-
-
-def _with_u(x: Quantity) -> str:
-    return f"{to_uncertainty(x.value, x.u)} +- {to_uncertainty(x.u, x.u)}"
+    return [*_zeros(diagnosis), *(remark.sentence for remark in diagnosis.notes)]
 
 
 def source(noise: Noise) -> str:
@@ -352,7 +211,7 @@ def method(validation: Validation) -> str:
     """The way in which sweeps were left out."""
     if validation.within_runs:
         return f"{validation.folds} parts of every run left out in turn"
-    return f"{validation.folds} groups of whole sweeps left out in turn"
+    return f"each of {validation.folds} sweeps left out in turn"
 
 
 def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
@@ -375,7 +234,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
 def _is_significant(found: AcceptedEffect, name: str) -> bool:
     """Whether a number of an effect differs from its value before."""
     value, u = found.parameters[name]
-    return abs(value - found.before[name]) > constants.SIGNIFICANT_EFFECT * u
+    return abs(value - found.before[name]) > constants.TWO_SIGMA * u
 
 
 def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -> str:
@@ -408,13 +267,8 @@ def _range(name: str, low: float, high: float) -> str:
     if name == "direction":
         return "backward runs" if high < 0 else "forward runs" if low > 0 else "both directions"
     quantity = CONDITIONS[name]
-    values = _short(low) if low == high else f"{_short(low)} to {_short(high)}"
+    values = short(low) if low == high else f"{short(low)} to {short(high)}"
     return f"{quantity.word} {values} {quantity.unit_behind}".rstrip()
-
-
-def _short(value: float) -> str:
-    """Three digits, but never a power of ten."""
-    return f"{value:.3g}" if abs(value) < 999.5 else f"{value:.0f}"
 
 
 def _around(bump: Bump) -> str:
@@ -450,7 +304,7 @@ def structure(found: Structure) -> str:
     for comparison in found.found:
         by_channel.setdefault(comparison.channel, []).append(comparison.word)
     said = [
-        f"those of {channel} follow {', '.join(words[: constants.MOST_CONDITIONS_IN_SENTENCE])}"
+        f"those of {channel} follow {', '.join(words[: constants.MOST_NUMBERS_IN_SENTENCE])}"
         for channel, words in by_channel.items()
     ]
     smallest = float(constants.SMALLEST_CHANCE_NAMED)

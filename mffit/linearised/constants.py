@@ -51,3 +51,9 @@ WIDER_THAN_THE_FIT = Real(
 )
 COMPONENT_STEPS = Count(60, "-", "Most steps of the search for the components.")
 COMPONENT_TOLERANCE = Real(0.05, "-", "Gain of log evidence at which the search for the components ends.")
+LONGEST_CHAIN = Count(
+    200, "-", "Readings after which a chain of errors with a memory is cut: many memories of any rig."
+)
+LEAST_KNOWN = Real(
+    1e-3, "-", "Smallest share of a reading's information that columns leave to it; keeps its error finite."
+)

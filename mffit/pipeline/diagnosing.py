@@ -14,7 +14,7 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
-from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
+from mffit.diagnosis.notes import DiagnosisNote, DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild
 from mffit.diagnosis.result import WITH_TERMS
 from mffit.diagnosis.strangers import another_tyre
 from mffit.effects import CATALOG, Effect
@@ -77,7 +77,7 @@ def diagnose(
     tyre, choice = chosen_model(config, model, progress)
     other = another_tyre(tyre, config)
     if other is not None:
-        progress(wording.note(other))
+        progress(other.sentence)
         choice = (other, *choice)
     with threadpool_limits(1):
         same = fitted_to(tyre, config)
@@ -129,7 +129,7 @@ def diagnose(
 
 def chosen_model(
     config: Config, model: Tyre | str | Path | None, progress: Progress
-) -> tuple[Tyre, tuple[Note, ...]]:
+) -> tuple[Tyre, tuple[DiagnosisNote, ...]]:
     """The given model, otherwise that of the last build, otherwise one fitted now; and notes on the choice."""
     if isinstance(model, Tyre):
         return model, ()
@@ -151,7 +151,9 @@ def _file_of_model(config: Config, model: Tyre | str | Path | None) -> Path | No
     return last_build(config) if model is None else Path(model)
 
 
-def _file_read(config: Config, model: Tyre | str | Path | None, choice: Sequence[Note]) -> Path | None:
+def _file_read(
+    config: Config, model: Tyre | str | Path | None, choice: Sequence[DiagnosisNote]
+) -> Path | None:
     """The file that the model was read from; None if it was given as a record or fitted now."""
     if any(isinstance(note, ModelFittedFirst) for note in choice):
         return None

@@ -116,7 +116,7 @@ def _stranger(diagnosis: Diagnosis, finished: FinishedFit) -> str:
     """Why the diagnosed model is not of this tyre; empty if it may be."""
     for remark in diagnosis.notes:
         if isinstance(remark, AnotherTyre | HardlyThisTyre):
-            return wording.note(remark).rstrip(".")
+            return remark.sentence.rstrip(".")
     sweeps = np.unique(diagnosis.points.sweep).tolist()
     for name in finished.used:
         missed = sum(finished.wrong(name, diagnosis.points.sweep == k) for k in sweeps)

@@ -13,7 +13,6 @@ from small_rigs import MZ, SAMPLE, built, disc, flat, simulated, truth
 import mffit
 import tir
 from mffit import config
-from mffit.diagnosis import wording
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
@@ -126,7 +125,7 @@ def test_the_points_are_written_with_their_parts_and_their_origin(small):
 
 
 def note_of(diagnosis) -> str:
-    (note,) = (wording.note(n) for n in diagnosis.notes if isinstance(n, DirectMethodRedone))
+    (note,) = (n.sentence for n in diagnosis.notes if isinstance(n, DirectMethodRedone))
     return note
 
 

@@ -64,9 +64,7 @@ def test_the_region_and_the_bump_are_in_the_channel_that_is_off(problem):
 
 def test_memory_acts_within_its_channel(problem):
     scatter = {name: Scatter(memory=0.6 if name == "Mx" else 0.0) for name in CHANNELS}
-    noise = stated_noise(problem.points, channels=CHANNELS).scattering(
-        scatter, np.zeros(3 * N), np.ones(3 * N)
-    )
+    noise = replace(stated_noise(problem.points, channels=CHANNELS), scatter=scatter)
     x = np.random.default_rng(1).standard_normal(3 * N) * np.repeat(list(U.values()), N)
     white, plain = noise.whiten(x), x / np.repeat(list(U.values()), N)
     for name, rows in noise.by_channel(np.arange(3 * N)).items():
@@ -87,10 +85,7 @@ def test_smooth_structure_of_a_channel_stays_in_it(problem):
         assert np.any(block[inside] != 0.0)
 
 
-def test_a_subset_keeps_the_rows_of_every_channel(problem):
-    keep = problem.points.sweep == 1
-    part = problem.part(keep)
-    assert part.measured == pytest.approx(np.concatenate([problem.points.channel(c)[keep] for c in CHANNELS]))
+def test_the_gap_of_a_given_model_needs_no_sweep_left_out(problem):
     check = validate(problem, problem.null)
     assert check.gap_before.rms("Mx") == pytest.approx(check.gap_after.rms("Mx"))
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import MemorySpan
-from mffit.diagnosis.marginal import lower_factor
-from mffit.diagnosis.noise import Noise, Scatter
+from mffit.diagnosis.noise import MemorySpan, Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.tails import outlying
+from mffit.linearised.chained import lower_factor
 from mffit.points import make_points
 
 N, SWEEPS = 400, 20
@@ -106,7 +105,7 @@ ERRORS = {
 def test_a_memory_is_not_taken_for_offsets_of_runs(errors):
     for seed in (1, 2):
         noise = found(errors(np.random.default_rng(seed)), offsets=5.0)
-        assert noise.offsets["run-offsets-fy"].log_odds < constants.RUN_OFFSET_LOG_ODDS
+        assert noise.offsets["run-offsets-fy"].log_odds < constants.SURPRISING_LOG_ODDS
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
@@ -115,7 +114,7 @@ def test_offsets_of_runs_are_not_taken_for_a_memory(memory):
     rng = np.random.default_rng(8)
     drawn = rng.normal(0.0, 33.0, SWEEPS)
     noise = found(correlated(rng, memory) + drawn[RUNS], offsets=5.0)
-    assert noise.offsets["run-offsets-fy"].log_odds > constants.RUN_OFFSET_LOG_ODDS
+    assert noise.offsets["run-offsets-fy"].log_odds > constants.SURPRISING_LOG_ODDS
     assert 5.0 * noise.offsets["run-offsets-fy"].size == pytest.approx(np.std(drawn), rel=0.25)
     scatter = noise.scatter["Fy"]
     assert scatter.memory == pytest.approx(memory, abs=0.15)
@@ -134,8 +133,8 @@ def test_a_few_runs_hardly_separate_offsets_from_a_memory(seed):
         for runs in (4, SWEEPS)
     )
     assert few < all_ - 1.0
-    assert few < constants.RUN_OFFSET_LOG_ODDS + 1.0
-    assert all_ > constants.RUN_OFFSET_LOG_ODDS + 1.0
+    assert few < constants.SURPRISING_LOG_ODDS + 1.0
+    assert all_ > constants.SURPRISING_LOG_ODDS + 1.0
 
 
 @pytest.mark.parametrize(("again", "span"), [(True, MemorySpan.SWEEP), (False, MemorySpan.PROGRAMME)])

@@ -1,4 +1,4 @@
-"""Formulae that save time, against the plain ones: slopes of the likelihood, and bumps beside shared changes."""
+"""Formulae that save time, against the plain ones: bumps beside shared changes."""
 
 from __future__ import annotations
 
@@ -9,58 +9,13 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.bumps import bump_scan
-from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.needs import HELD_AT, possible, without
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.effects import CATALOG
 from mffit.points import Points, make_points
 from mffit.rig import Simulation
 
-M = 60
 WARMTH = next(effect for effect in CATALOG if effect.id == "temperature")
-
-
-@pytest.fixture(scope="module")
-def channel() -> MarginalChannel:
-    rng = np.random.default_rng(1)
-    return MarginalChannel(
-        stated=rng.uniform(3.0, 6.0, M),
-        residual=rng.normal(0.0, 9.0, M),
-        size=rng.uniform(100.0, 2000.0, M),
-        chain=np.repeat(np.arange(6), 10),
-        named=rng.normal(0.0, 20.0, (M, 5)),
-        smooth=rng.normal(0.0, 300.0, (M, 4)),
-        weight=rng.uniform(0.3, 1.0, M),
-        runs=rng.normal(0.0, 5.0, (M, 6)),
-        least=0.3,
-    )
-
-
-@pytest.mark.parametrize(
-    "parts",
-    [
-        MarginalParts(0.2, 0.004, 0.7, 0.01, 0.8, 0.3),
-        MarginalParts(-0.1, 0.01, 0.95, 0.05, 0.2, 0.0),
-        MarginalParts(0.2, 0.004, 1e-3, 0.01, 0.8, 0.0),
-    ],
-)
-def test_slopes_of_the_likelihood_are_its_differences(channel, parts):
-    value, slopes = channel.likelihood_and_slopes(parts)
-    assert value == pytest.approx(channel.likelihood(parts), rel=1e-10)
-    for name, slope in slopes._asdict().items():
-        step = 1e-6 * max(getattr(parts, name), 0.1)
-        if name == "independent" and not parts.independent:
-            continue
-        up, down = (parts._replace(**{name: getattr(parts, name) + sign * step}) for sign in (1.0, -1.0))
-        difference = (channel.likelihood(up) - channel.likelihood(down)) / (2.0 * step)
-        assert slope == pytest.approx(difference, rel=1e-4, abs=1e-4), name
-
-
-def test_a_memory_of_zero_has_a_slope(channel):
-    at = MarginalParts(0.2, 0.004, 0.0, 0.01)
-    step = 1e-6
-    difference = (channel.likelihood(at._replace(memory=step)) - channel.likelihood(at)) / step
-    assert channel.likelihood_and_slopes(at)[1].memory == pytest.approx(difference, rel=1e-3)
 
 
 def _points(n: int = 120) -> Points:

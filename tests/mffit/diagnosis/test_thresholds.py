@@ -48,8 +48,8 @@ def test_all_of_a_small_library_may_be_taken():
     assert len(steps) == 2
 
 
-@pytest.mark.parametrize(("gain", "taken"), [(0.8, ["a", "b"]), (1.2, ["b", "c"])])
-def test_a_set_is_exchanged_for_one_that_is_better_by_one(gain, taken):
+@pytest.mark.parametrize(("gain", "taken"), [(1.2, ["a", "b"]), (1.8, ["b", "c"])])
+def test_a_set_is_exchanged_for_one_that_is_better_than_a_tie(gain, taken):
     problem = Table(
         a=(60.0,), b=(40.0,), c=(40.0,), ab=(80.0,), ac=(75.0,), bc=(80.0 + gain,), abc=(81.0 + gain,)
     )

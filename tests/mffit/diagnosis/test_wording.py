@@ -167,7 +167,7 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
     ],
 )
 def test_every_note_becomes_a_sentence(note, words):
-    assert words in wording.note(note)
+    assert words in note.sentence
 
 
 def test_the_file_keeps_its_keys(camber):
@@ -185,7 +185,7 @@ def test_the_file_keeps_its_keys(camber):
     assert content["effects"][0]["separate_by"] == ""
     assert content["effects"][0]["parameters"]["PKY6"].keys() == {"was", "value", "stderr"}
     assert content["validation"].keys() == {"method", "gap_before", "gap_after", "gap_file"}
-    assert content["notes"] == [wording.note(OneSweep())]
+    assert content["notes"] == [OneSweep().sentence]
 
 
 NAMES_OF_NUMBERS = [name for name in (*RIG_ERRORS_BY_NAME, "turn_slip") if "_" in name]
