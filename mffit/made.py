@@ -11,7 +11,7 @@ from importlib.metadata import version
 
 import mffit
 
-METHOD = 2
+METHOD = 3
 """Number of the method: raised whenever a change of the program can change a figure of a result.
 
 ``tests/mffit/test_method.py`` compares the figures of fixed projects with stored ones and asks for a new number if they differ.
