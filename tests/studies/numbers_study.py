@@ -203,9 +203,9 @@ def main() -> None:
     ask.add_argument("projects", nargs="*", default=[str(path) for path in SAMPLES])
     ask.add_argument("--rooms", nargs="*", default=[], help="modules whose numbers are changed")
     ask.add_argument("--commands", nargs="*", default=COMMANDS, choices=COMMANDS)
-    ask.add_argument("--together", type=int, default=6, help="numbers changed at a time")
+    ask.add_argument("--together", type=int, default=16, help="numbers changed at a time")
     ask.add_argument("--factors", type=float, nargs="*", default=FACTORS)
-    ask.add_argument("--out", type=Path, help="file of the lines, as they are found")
+    ask.add_argument("--out", type=Path, help="file to which the lines go as they are found; goes on where it ended")
     ask.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     given = ask.parse_args()
     if given.one:
@@ -216,9 +216,10 @@ def main() -> None:
     before = run([], 1.0, given.projects, given.commands)
     if "fails" in before:
         sys.exit(f"without a change: {before['fails']}")
-    every = numbers(given.rooms)
-    write = given.out.open("w", encoding="utf-8") if given.out else sys.stdout
+    known = given.out.read_text(encoding="utf-8") if given.out and given.out.exists() else ""
+    write = given.out.open("a", encoding="utf-8") if given.out else sys.stdout
     for factor in given.factors:
+        every = [one for one in numbers(given.rooms) if f"x{factor:.3g}  {one!s} " not in known]
         for begin in range(0, len(every), given.together):
             group = every[begin : begin + given.together]
             for number, found in search(
