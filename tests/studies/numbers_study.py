@@ -91,7 +91,7 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
     import mffit
     from mffit.pipeline.planning import plan_of
     from mffit.results import as_json
-    from mffit.results.as_json.values import plain
+    from mffit.results.values import plain
 
     found: dict[str, object] = {}
     for project in projects:
