@@ -50,7 +50,8 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/comparison": (f"{SUITE}/comparison", MANY),
     "mffit/config": (
         f"{SUITE}/config", f"{SUITE}/virtual_rig/test_virtual_plan.py", BAD_INPUT,
-        f"{SUITE}/suspicion/test_declarations.py", f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
+        f"{SUITE}/suspicion/test_declarations.py", f"{SUSPICION}/test_broken_units.py",
+        f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
     ),
     "mffit/conversion": (f"{SUITE}/conversion",),
     "mffit/diagnosis": (
@@ -101,8 +102,8 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/reference": (f"{SUITE}/reference", "tests/test_docs.py", "tests/test_constants.py"),
     "mffit/report": (f"{SUITE}/report", f"{SUITE}/test_output.py", f"{SUITE}/test_voice.py", MANY),
     "mffit/results": (
-        f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
-        f"{DIAGNOSIS}/test_wording.py",
+        f"{SUITE}/test_json.py", f"{SUITE}/test_records.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY,
+        f"{SUITE}/comparison", f"{DIAGNOSIS}/test_wording.py",
     ),
     "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", f"{FIT}/test_rig_numbers.py"),
     "mffit/rig_errors": (
