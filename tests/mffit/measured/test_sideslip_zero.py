@@ -12,6 +12,7 @@ from scipy.stats import chi2
 from mffit.measured import measure
 from mffit.parts import split
 from mffit.points.points import concatenate
+from mffit.results import as_json
 
 LOADS = (1000.0, 1500.0, 2000.0)
 OFF = math.radians(0.35)
@@ -128,6 +129,8 @@ def test_a_path_without_backward_zeros_has_the_axis_of_its_set_up_too():
             math.copysign(Plain().turn_slip_force(1500.0), row.phi_t), abs=3.0
         )
         assert row.misaligned
+    centres = {row.phi_t > 0.0: as_json.document(row)["path_centre"] for row in result.nominal.setups}
+    assert centres == {False: "left", True: "right"}  # phi_t = -1/R with the centre to the left
 
 
 def test_a_set_up_that_was_never_run_backwards_keeps_the_declared_doubt():
