@@ -78,7 +78,9 @@ def test_three_tyres_agree_with_the_explicit_normal_distribution():
             tyre.covariance, covariance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], rtol=1e-7
         )
     assert together.rig["F0_N"] == pytest.approx((mean[9], math.sqrt(covariance[9, 9])), rel=1e-8)
-    assert together.population["PKY6"].mean == pytest.approx(mean[12], rel=1e-8)
+    for name, row in (("PDY1", 11), ("PKY6", 12)):
+        common = together.population[name]
+        assert (common.mean, common.u_mean) == pytest.approx((mean[row], math.sqrt(covariance[row, row])), rel=1e-8)
 
 
 def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
