@@ -4,7 +4,7 @@
 of the tree, and prints the survivors and their share. `--rooms mffit/planning mffit/results --each` draws that many from each
 of these rooms; `--json FILE` keeps the results, also of an interrupted run. Needs cosmic-ray, which makes the changes: swapped
 operators and comparisons, numbers one larger or smaller, dropped signs and ``not``, swapped ``and``/``or``, True/False, loops
-that never run. ``<`` for ``<=`` is left out, because it makes no difference for measured numbers.
+that never run. Left out because they make no difference: ``<`` for ``<=`` of measured numbers, and ``strict`` of ``zip``.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/comparison": (f"{SUITE}/comparison", MANY),
     "mffit/config": (
         f"{SUITE}/config", f"{SUITE}/virtual_rig/test_virtual_plan.py", BAD_INPUT,
-        f"{SUITE}/suspicion/test_declarations.py", f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
+        f"{SUITE}/suspicion/test_declarations.py", f"{SUSPICION}/test_broken_units.py",
+        f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
     ),
     "mffit/conversion": (f"{SUITE}/conversion",),
     "mffit/diagnosis": (
@@ -75,6 +76,10 @@ TESTS: dict[str, tuple[str, ...]] = {
         PIPELINE, FIT,
     ),
     "mffit/fleet": (f"{SUITE}/fleet", f"{SUITE}/test_fleet_notes.py", MANY),
+    "mffit/linearised": (
+        f"{SUITE}/linearised", f"{SUITE}/test_left_out.py", f"{SUITE}/test_left_out_prediction.py", f"{SUITE}/prediction",
+        f"{FIT}/test_posterior.py",
+    ),
     "mffit/measured": (
         f"{SUITE}/measured", "tests/test_paper_tables.py", PIPELINE, f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
@@ -89,13 +94,16 @@ TESTS: dict[str, tuple[str, ...]] = {
         POINTS, BAD_INPUT, f"{SUITE}/recordings", f"{FIT}/test_trust.py", f"{FIT}/test_before_the_fit.py", SUSPICION, PIPELINE,
         CORPUS,
     ),
+    "mffit/prediction": (f"{SUITE}/prediction", f"{SUITE}/test_left_out_prediction.py", PIPELINE),
     "mffit/recordings": (
         f"{SUITE}/recordings/test_unstated_units.py", f"{POINTS}/test_points_recordings.py", f"{SUITE}/recordings", CORPUS,
         COMMANDS,
     ),
+    "mffit/reference": (f"{SUITE}/reference", "tests/test_docs.py", "tests/test_constants.py"),
+    "mffit/report": (f"{SUITE}/report", f"{SUITE}/test_output.py", f"{SUITE}/test_voice.py", MANY),
     "mffit/results": (
-        f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
-        f"{DIAGNOSIS}/test_wording.py",
+        f"{SUITE}/test_json.py", f"{SUITE}/test_records.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY,
+        f"{SUITE}/comparison", f"{DIAGNOSIS}/test_wording.py",
     ),
     "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", f"{FIT}/test_rig_numbers.py"),
     "mffit/rig_errors": (
@@ -106,6 +114,7 @@ TESTS: dict[str, tuple[str, ...]] = {
         *(f"{SUITE}/sweeps/test_sweeps_{name}.py" for name in ("channels", "files", "frames", "formats", "fuzz")),
         BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py", f"{SUITE}/recordings", POINTS, COMMANDS,
     ),
+    "mffit/viewer": (f"{SUITE}/viewer",),
     "mffit/window": (
         *(f"{SUITE}/window/test_window_{name}.py" for name in ("edits", "folder", "server")),
     ),
@@ -219,7 +228,7 @@ def mutant(room: str, module: Path, operator: str, occurrence: int) -> Mutant | 
 
 
 def _executed(source: str) -> str:
-    """The code without annotations and decorators of records; "" if it is not valid Python."""
+    """The code without annotations, decorators of records and ``strict``; "" if it is not valid Python."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
@@ -229,6 +238,8 @@ def _executed(source: str) -> str:
             node.annotation = None if isinstance(node, ast.arg) else ast.Constant(None)
         if isinstance(node, ast.FunctionDef):
             node.returns = None
+        if isinstance(node, ast.Call):  # strict= of zip is a check, not a result
+            node.keywords = [keyword for keyword in node.keywords if keyword.arg != "strict"]
         if isinstance(node, ast.ClassDef):
             node.decorator_list = []  # mypy checks that records are frozen
     return ast.dump(tree)

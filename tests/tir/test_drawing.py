@@ -43,6 +43,14 @@ def test_the_lines_are_the_forces_at_the_loads_asked_for():
 
 
 @needs_matplotlib
+def test_of_itself_a_picture_has_the_nominal_load_between_a_lower_and_a_higher_one():
+    tyre = tir.read(FILE)
+    low, middle, high = (float(text.get_text().split()[0]) for text in tyre.plot().legends[0].get_texts())
+    assert low < middle < high
+    assert middle == pytest.approx(tyre["FNOMIN"], abs=0.5)
+
+
+@needs_matplotlib
 def test_turn_slip_is_drawn_when_asked_for():
     plain, spun = (tir.read(FILE).plot(turn_slip=on).axes[3].lines[0].get_ydata() for on in (False, True))
     assert np.max(np.abs(plain - spun)) > 10.0

@@ -263,6 +263,17 @@ def test_machine_code_refuses_wrong_arguments(tyre, kind, arguments):
 
 
 @needs_llvm
+def test_machine_code_lets_go_of_its_arrays_also_after_an_error(tyre):
+    run = kernel.load("batch", Switches()).run_of(calls._values(tyre, Switches(), calls.FORCES))
+    given, out = np.ones(8), np.ones((6, 8))
+    before = sys.getrefcount(given), sys.getrefcount(out)
+    run(*(given,) * 7, out, 0, 8)
+    with pytest.raises((TypeError, ValueError, BufferError)):
+        run(*(given,) * 7, b"not to be written", 0, 8)
+    assert (sys.getrefcount(given), sys.getrefcount(out)) == before
+
+
+@needs_llvm
 @pytest.mark.parametrize("asked", ["1", "3", "100000", "4,2", "²", ""])
 def test_any_number_of_threads_gives_the_same(tyre, compiled, monkeypatch, asked):
     compiled(Switches(), "batch")

@@ -11,6 +11,7 @@ from mffit import config
 from mffit.config.globs import is_pattern, matches
 from mffit.config.locate import lines_of_keys
 from mffit.config.problems import known_keys
+from mffit.config.rig_declaration import setup_names
 from mffit.errors import InputError
 
 MINIMAL = """[tyre]
@@ -486,3 +487,12 @@ def test_wrong_settings_of_the_fit_are_named_with_what_is_allowed(tmp_path, line
     with pytest.raises(InputError) as refused:
         config.load(path)
     assert sentence in str(refused.value)
+
+
+def test_a_set_up_without_a_name_has_that_of_its_path(tmp_path):
+    """The radius is in it where a side of the disc has several."""
+    own = ("", "path_centre = 'left'\npath_radius = 1.9", "path_radius = 1.9", "setup = 'mine'")
+    sweeps = "\n".join(f"[[sweep]]\nfile = '{k}.csv'\n{keys}" for k, keys in enumerate(own))
+    (tmp_path / "tyre.toml").write_text(f"{MINIMAL.split('[[sweep]]')[0]}path_centre = 'right'\n{sweeps}\n")
+    found = config.load(tmp_path / "tyre.toml")
+    assert setup_names(found.rig, found.sweep) == ("right-1.323m", "left", "right-1.9m", "mine")

@@ -98,6 +98,7 @@ def test_what_is_held_and_why(recorded, truth, found):
 def test_the_json_has_both_directions(found):
     written = {**as_json.document(found[SIDEWAYS]), "slip": as_json.document(found[SLIP])}
     assert [round(run["load_N"], -2) for run in written["runs"]] == [2000, 4200, 6500, 4200]
+    assert [round(run["p_kPa"], -1) for run in written["runs"]] == [240, 240, 240, 280]
     assert written["runs"][0]["sigma_y_m"] == found[SIDEWAYS].runs[0].length.value
     assert len(written["slip"]["runs"]) == 4
     assert written["slip"]["runs"][0]["sigma_x_m"] == found[SLIP].runs[0].length.value

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mffit.fleet import Information, estimate, to_json
 from mffit.fleet.information import from_json
-from mffit.fleet.record import scatter_of
+from mffit.fleet.record import Fleet, scatter_of
 from tir import Quantity
 
 OWN = ("PDY1", "PKY6", "PECP1")
@@ -78,7 +79,11 @@ def test_three_tyres_agree_with_the_explicit_normal_distribution():
             tyre.covariance, covariance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], rtol=1e-7
         )
     assert together.rig["F0_N"] == pytest.approx((mean[9], math.sqrt(covariance[9, 9])), rel=1e-8)
-    assert together.population["PKY6"].mean == pytest.approx(mean[12], rel=1e-8)
+    for name, row in (("PDY1", 11), ("PKY6", 12)):
+        common = together.population[name]
+        assert (common.mean, common.u_mean) == pytest.approx(
+            (mean[row], math.sqrt(covariance[row, row])), rel=1e-8
+        )
 
 
 def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
@@ -237,6 +242,12 @@ def test_the_scatter_between_tyres_is_that_of_a_sample():
     )
     assert found.beyond == pytest.approx(math.sqrt(5.0))
     assert scatter_of([Quantity(value, 1.0, "-") for value in (1.0, 1.1)]).beyond == 0.0
+
+
+def test_one_tyre_has_no_scatter():
+    rows = [SimpleNamespace(numbers={"C_alpha": Quantity(value, 1.0, "N/rad")}) for value in (1e4, 2e4)]
+    assert Fleet((*rows[:1], SimpleNamespace(numbers={})), (), ()).scatter("C_alpha") is None
+    assert Fleet(tuple(rows), (), ()).scatter("C_alpha").mean == 15e3
 
 
 def only(one: Information, keep: list[int]) -> Information:

@@ -79,3 +79,14 @@ def test_what_is_given_without_uncertainty_is_exact():
     found = direct_method(given)
     assert found.epsilon_gamma.nominal_value == pytest.approx(1.0 - 0.29 * 2000.0 / (400.0 * 1.3))
     assert found.epsilon_gamma.std_dev < 1e-9
+
+
+@pytest.mark.parametrize("alpha_b", [0.002, -0.002])
+def test_sideslip_of_backlash_and_its_uncertainty_are_forces_by_the_cornering_stiffness(alpha_b):
+    exact = {"u_offset": 0.0, "u_gamma_0": 0.0, "u_slip_force": 0.0}
+    given = DirectInputs(
+        F_raw=-400.0, C_gamma=-2e3, r_e=0.29, R=1.3, C_alpha=-18e3, alpha_b=alpha_b, u_alpha_b=0.001, **exact
+    )
+    found = direct_method(given).F_phit
+    assert found.nominal_value == pytest.approx(-400.0 + 18e3 * alpha_b)
+    assert found.std_dev == pytest.approx(18.0)

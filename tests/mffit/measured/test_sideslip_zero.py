@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from plain_tyre import Plain, settings, share
 from scipy.stats import chi2
+from uncertainties import ufloat
 
 from mffit.measured import measure
+from mffit.measured.axis import ZeroSplit, camber_at_true_zero
 from mffit.parts import split
 from mffit.points.points import concatenate
+from mffit.results import as_json
 
 LOADS = (1000.0, 1500.0, 2000.0)
 OFF = math.radians(0.35)
@@ -119,6 +122,15 @@ def test_the_camber_stiffness_is_that_at_true_zero_of_sideslip(share, off):
     assert abs(leant.value - straight.value) < 1.8 * leant.u
 
 
+def test_what_camber_shares_with_sideslip_is_any_part_as_likely():
+    """A rectangular distribution from 0 to 1 has the variance 1/12; the slope changes by a tenth at the misalignment."""
+    exact = 1e-12
+    bend, angle = ufloat(130e3, exact), ufloat(math.radians(0.5), exact)
+    C_alpha = float(10.0 * (bend * angle).nominal_value)
+    factor = camber_at_true_zero(C_alpha, bend, ZeroSplit(angle, ufloat(0.0, exact)))
+    assert (factor.nominal_value, factor.std_dev) == pytest.approx((0.95, 0.1 / math.sqrt(12.0)))
+
+
 def test_a_path_without_backward_zeros_has_the_axis_of_its_set_up_too():
     both = Plain(alpha_0=OFF).campaign()
     other = zeros(Plain(side=1, alpha_0=OFF).campaign(backward=False))
@@ -128,6 +140,8 @@ def test_a_path_without_backward_zeros_has_the_axis_of_its_set_up_too():
             math.copysign(Plain().turn_slip_force(1500.0), row.phi_t), abs=3.0
         )
         assert row.misaligned
+    centres = {row.phi_t > 0.0: as_json.document(row)["path_centre"] for row in result.nominal.setups}
+    assert centres == {False: "left", True: "right"}  # phi_t = -1/R with the centre to the left
 
 
 def test_a_set_up_that_was_never_run_backwards_keeps_the_declared_doubt():

@@ -57,6 +57,14 @@ def test_a_misfit_beyond_the_noise_enlarges_the_uncertainty():
     assert quiet.u_noise > 0.5 * loud.u_noise
 
 
+def test_a_misfit_of_the_shape_at_large_angles_is_no_noise():
+    """A shape without curvature E misses a curve with E = -2 by far more than 2 N, one with it does not."""
+    b = 20000.0 * X / (1.3 * 2500.0)
+    curve = 2500.0 * np.sin(1.3 * np.arctan(b + 2.0 * (b - np.arctan(b))))
+    quiet, loud = (slope_at_zero(X, curve, u * ONE, local=0.0) for u in (2.0, 2000.0))
+    assert quiet.u_noise < 2.0 * loud.u_noise / 1000.0  # the misfit would make it ten times as large
+
+
 def test_without_a_cubic_a_twentieth_is_in_doubt():
     found = slope_at_zero(X, 20000.0 * X, 1e-3 * ONE, local=np.radians(1.0))
     assert np.isnan(found.cubic)

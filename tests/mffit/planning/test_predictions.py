@@ -21,6 +21,7 @@ from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
 from mffit.pipeline.refining import finite_spin_bias
 from mffit.planning import ADDITIONS, addition_named, read_goal, wording
 from mffit.planning.knowledge import Knowledge
+from mffit.planning.outlook import Outlook
 from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
@@ -250,6 +251,21 @@ def test_two_runs_that_help_only_together_are_found(result):
     assert [step.run.addition.id for step in found.steps] == ["pressure", "pressure"]
     assert len({step.run.load for step in found.steps}) == 2
     assert found.then < 0.3 * found.now
+    assert plan_of(result, read_goal("PPY2", on_disc=True), runs=1).steps == ()
+
+
+def test_a_file_with_eps_gamma_of_the_joint_fit_has_the_uncertainty_of_that_fit(result, knowledge):
+    """With ``spin.pecp1 = "model"`` the direct method is not asked, and what trades with PECP1 is less certain."""
+    spin = result.config.spin.model_copy(update={"pecp1": "model"})
+    config = result.config.model_copy(update={"spin": spin})
+
+    def direct(*_):
+        raise AssertionError("the direct method was asked")
+
+    goal = read_goal("PKY6", on_disc=True)
+    found = Outlook(config, result.points, result.measured, result.fit, goal, direct).u([])
+    assert found == pytest.approx(knowledge.posterior([], FREE).stderr["PKY6"], rel=1e-6)
+    assert found > knowledge.posterior([], held={"PECP1": 0.0}).stderr["PKY6"]
 
 
 def test_sheets_are_in_the_rigs_axes_and_their_path_is_declared(result, plan):

@@ -110,12 +110,13 @@ def test_names_that_say_backward(name, backward):
 
 
 def test_the_zero_is_where_the_force_vanishes():
-    """A straight line of force over load whose zero is at 1.5 deg, and points that must not count."""
+    """A straight line of force over load whose zero is at 1.5 deg at any load, and points that must not count."""
     alpha = np.radians([-2.0, -1.0, 0.0, 1.0, 2.0, 0.0, 8.0])
     gamma = np.radians([0.0, 0.0, 0.0, 0.0, 0.0, 30.0, 0.0])
-    Fy = -15.0 * (alpha - np.radians(1.5)) * 1000.0
+    Fz = np.array([500.0, 1000.0, 2000.0, 800.0, 1500.0, 1000.0, 1000.0])
+    Fy = -15.0 * (alpha - np.radians(1.5)) * Fz
     Fy[5:] = 5000.0
-    points = make_points(alpha, gamma, 1000.0, p=2e5, V=10.0, phi_t=0.0, Fy=Fy)
+    points = make_points(alpha, gamma, Fz, p=2e5, V=10.0, phi_t=0.0, Fy=Fy)
     assert zero_of_upright(points) == pytest.approx(1.5)
     assert np.isnan(zero_of_upright(points.select(np.arange(2))))
 

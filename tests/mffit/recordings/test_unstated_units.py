@@ -112,6 +112,13 @@ def test_the_unit_of_time_gives_a_usual_rate_of_steering(factor, unit):
     assert units(ET=factor * STEP * np.arange(N))["time_s"] == unit
 
 
+def test_a_unit_of_time_is_explained_by_the_speed_of_the_angle():
+    """Up and down between -6 and 6 deg, a second each way."""
+    seconds = STEP * np.arange(N)
+    found = guessed(ET=1e3 * seconds, SA=6.0 - 12.0 * np.abs(seconds % 2.0 - 1.0)).found["time_s"]
+    assert "ms, in which the angle moves at 12 deg/s" in found.why
+
+
 def test_the_rate_of_steering_distinguishes_steps_of_a_second_and_a_millisecond():
     slow = 9.0 * np.sin(np.linspace(0.0, 2.0, N))
     assert units(ET=np.arange(N), SA=slow)["time_s"] == "ms"

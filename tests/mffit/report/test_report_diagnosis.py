@@ -168,6 +168,8 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
     assert "unexplained:" in text.diagnosis_summary(unknown)
     nowhere = dataclasses.replace(unknown, unexplained_where=())
     assert "unexplained:" not in text.diagnosis_summary(nowhere)
+    (noise,) = (line.split() for line in summary.splitlines() if line.startswith("noise "))
+    assert float(noise[-1]) == 1.0  # of chi2 per degree of freedom
     for diagnosis in (misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()

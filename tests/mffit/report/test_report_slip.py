@@ -134,6 +134,14 @@ def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
             assert np.mean(gap) == pytest.approx(0.0, abs=0.02)
 
 
+def test_the_axis_of_a_weight_holds_all_that_it_may_be(view):
+    """From 0, where the other slip leaves nothing, past 1, where it takes nothing, to the end of the widest band."""
+    for panel in slip.weights(view).panels:
+        assert panel.y.low < 0.0
+        ends = [s.high[np.isfinite(s.high)] for s in panel.series if isinstance(s, Band)]
+        assert panel.y.high > np.concatenate([*ends, [1.0]]).max()
+
+
 def test_a_band_is_what_the_coefficient_moves(view):
     where = {"Fz": 1400.0, "kappa": np.linspace(-0.2, 0.2, 9), "alpha": 0.05, "Vx": 16.0, "pressure": 250e3}
     known = Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]]))
@@ -171,6 +179,15 @@ def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
     assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves if c.over == "kappa")
     macro = page._environment().get_template("macros.html.j2").module
     assert "5 more panels are not drawn" in macro.figure(picture)
+
+
+def test_whatever_a_picture_shows_can_be_seen(view, result):
+    """A line has a width, a mark a size, an area some colour."""
+    sheets = [one.make() for built in (view, view_of(result)) for one in build.planned(built)]
+    looks = [s.look for sheet in sheets for panel in sheet.panels for s in panel.series if hasattr(s, "look")]
+    assert all(look.line or look.marker or look.opacity > 0.0 for look in looks)
+    assert min(look.width for look in looks if look.line) > 0.3  # pt
+    assert min(look.size for look in looks if look.marker) > 0.9
 
 
 def test_pictures_of_slip_are_drawn_only_where_slip_was_run(view, result):

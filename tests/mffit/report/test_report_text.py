@@ -42,7 +42,10 @@ def test_the_spin_of_the_disc_is_nothing_to_improve(result):
         result.measured.nominal, budget=lines, epsilon_gamma=Quantity(-0.1, math.hypot(0.06, 0.03), "-")
     )
     summary = text.spin_summary(replace(result.measured, nominal=row))
-    assert "Improve first: load-cell offset;" in summary
+    # Half of 0.03 is left, so the variance is 0.06^2 + 0.015^2.
+    assert (
+        "Improve first: load-cell offset; half of it would bring u(eps_gamma) from 0.067 to 0.062." in summary
+    )
     assert "effective degrees of freedom: infinite" in summary
 
 

@@ -166,3 +166,15 @@ def test_faults_compare_by_what_is_disturbed():
     assert Faults(F0_N=3.0) == Faults().replace(F0_N=3.0) != Faults()
     assert repr(Faults(F0_N=3.0)) == "Faults(F0_N=3.0)"
     assert hash(Faults(F0_N=3.0)) == hash(Faults(F0_N=3.0))
+
+
+@pytest.mark.parametrize("error", RIG_ERRORS, ids=lambda error: error.name)
+def test_an_error_acts_if_any_of_its_numbers_is_known_and_not_the_undisturbed_one(error):
+    """Of an array with one number per point as of a plain number."""
+    usual, other = (
+        error.undisturbed,
+        (0.0 if math.isnan(error.undisturbed) else error.undisturbed) + error.spread,
+    )
+    for number, acts in ((usual, False), (math.nan, False), (other, True)):
+        assert error.acts(number) is acts
+        assert error.acts(np.array([usual, math.nan, number])) is acts

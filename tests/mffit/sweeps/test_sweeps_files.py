@@ -236,6 +236,14 @@ def test_the_direction_column_is_used_and_a_contradiction_is_warned_about(projec
     assert np.sum(sweep_named(found, NAME).direction < 0) == 6
 
 
+@pytest.mark.parametrize(("up", "down"), [("-1", "+1"), ("-1", "1"), ("Backward", "FORWARD")])
+def test_a_direction_is_a_word_or_a_sign(project, up, down):
+    table = project.tables[NAME]
+    table["direction"] = np.where(table["alpha_deg"] > 0, up, down)
+    found = sweep_named(load(project.write()), NAME).direction
+    assert np.array_equal(found, np.where(table["alpha_deg"] > 0, -1, 1))
+
+
 def test_each_run_is_a_sweep(project):
     table = project.tables[NAME]
     table["run"] = np.where(table["alpha_deg"] > 0, "left", "right")
