@@ -120,7 +120,10 @@ def figure_of(sheet: Sheet) -> Figure:
             title = panel.title
             if len(title) > longest + 4:
                 title = textwrap.shorten(title, longest, placeholder="…")
-            axes.set_title(_text(title), x=(style.LEFT - left) / size[0])
+            start = max(
+                4.0, min(style.LEFT, width - style.LETTER * len(title))
+            )  # a long one begins further left
+            axes.set_title(_text(title), x=(start - left) / size[0])
             _draw_panel(axes, panel, width)
     return figure
 
