@@ -7,8 +7,9 @@ from tir.constant import Count, Real, Series
 POINTS_PER_SERIES = Count(
     4000, "-", "Most points of a series in a picture and its table: more lie on top of each other."
 )
-MOST_MARKS = Count(
-    150, "-", "Panels with more marks show them small, and as pixels in a page, which is then swift."
+MOST_MARKS = Count(150, "-", "Panels with more marks show them small, so that they cover each other less.")
+COLOURS_OF_MAP = Count(
+    17, "-", "The eye tells no more apart, and marks of one colour are one element of a page."
 )
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
 MOST_FRAMES = Count(3, "-", "Most regions framed in a map; more frames would hide it.")
@@ -41,4 +42,8 @@ NEIGHBOUR_SHIFT = Real(
 )
 MOST_LEFT_OUT_ONE_BY_ONE = Count(
     5, "-", "Readings of one file that one rule leaves out, listed one by one; more share a line of the page."
+)
+SMALLEST_GAIN = Real(1.0, "-", "Left end of the logarithmic scale of log evidence: less is no gain.")
+MOST_REASONS = Count(
+    2, "-", "Sentences against a result, or of warnings, for which one screen has room; --explain has all."
 )

@@ -24,11 +24,9 @@ LETTER = 5.0
 """Width of a letter of a title or key [pt], wide ones among them."""
 SETTINGS: dict[str, Any] = {
     "figure.dpi": 110,
-    "savefig.dpi": 110,
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that pictures are the same on every machine
     "font.size": 7.8,
     "mathtext.default": "regular",
-    "svg.fonttype": "none",
     "text.color": INK,
     "axes.titlesize": 8.5,
     "axes.titlelocation": "left",

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import gc
-import io
 import re
 import textwrap
 import warnings
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape
 
 import matplotlib.style
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from mffit.report import constants, style
+from mffit.report.drawing.ink import FINE, Ink
 from mffit.report.drawing.records import (
     Axis,
     Band,
@@ -42,15 +41,10 @@ from mffit.report.drawing.records import (
 INCH = 72.0
 KEY_LINE = 13.0
 """Height of a line of the key [pt]."""
-MARKS, LINES = 1.8, 2.0
-"""Order of drawing; where marks are many, a page has them and what is below them as pixels."""
-KEY, PANEL = "key", "panel-{}"
-"""Names of the parts of a drawing."""
-SVG = "{http://www.w3.org/2000/svg}"
+SCALE = (14.0, 17.0, 180.0, 7.0)
+"""Left, bottom, width and height of the scale of maps, in what is above the panels [pt]."""
 NO_FORMULA = re.compile(r"\$(?!_\{\w+\}\$)(?<!\}\$)")
 """A dollar sign that does not belong to a subscript such as that of ``QuantityName.mathtext``."""
-ET.register_namespace("", SVG[1:-1])
-ET.register_namespace("xlink", "http://www.w3.org/1999/xlink")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,35 +57,25 @@ class Drawing:
 
 def draw(sheet: Sheet, name: str) -> Drawing:
     """Draw the sheet; the same sheet and name give the same bytes. Names of the page's other pictures must differ."""
-    with _settings(name):
+    with _settings():
         figure = figure_of(sheet)
-        drawn = _png(figure)
-        figure.set_layout_engine("none")  # both have the layout of the first
-        svg = io.BytesIO()
-        figure.savefig(svg, format="svg", dpi=160, transparent=True, metadata={"Date": None})
-        return Drawing(png=drawn, markup=_markup(ET.fromstring(svg.getvalue()), figure, sheet))
+        ink = Ink(figure.bbox.width, figure.bbox.height, figure.dpi, name)
+        figure.draw(ink)
+        return Drawing(png=ink.png(), markup=_markup(ink, figure, sheet))
 
 
 def save(sheet: Sheet, path: Path) -> None:
     """Draw the sheet as a PNG alone."""
-    with _settings(path.stem):
-        path.write_bytes(_png(figure_of(sheet)))
-
-
-def _png(figure: Figure) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 3})
-    return stream.getvalue()
+    path.write_bytes(draw(sheet, path.stem).png)
 
 
 @contextmanager
-def _settings(name: str) -> Iterator[None]:
+def _settings() -> Iterator[None]:
     """Drawing in our style, whatever a user's matplotlibrc says; letters that the font lacks become boxes."""
-    settings = {**style.SETTINGS, "svg.hashsalt": name}
     collected = gc.isenabled()
     gc.disable()  # a figure is thousands of small objects that all live; to look for dead ones takes a sixth of the time
     try:
-        with matplotlib.style.context(settings, after_reset=True), warnings.catch_warnings():
+        with matplotlib.style.context(style.SETTINGS, after_reset=True), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph")
             yield
     finally:
@@ -100,30 +84,47 @@ def _settings(name: str) -> Iterator[None]:
 
 
 def figure_of(sheet: Sheet) -> Figure:
-    """The sheet as a figure: a key, and below it a grid of parts of one size, each with the axes of a panel."""
-    columns = sheet.columns
-    width, height = style.WIDTH / columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    """The sheet as a figure: a key, and below it panels of one size in rows, each with its axes."""
     entries = _columns_of_key(sheet)
     above = KEY_LINE * -(-len(sheet.key) // entries) + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
-    # To lay out every panel takes as long as to draw it: names beside an axis need that, numbers have their margins.
-    named = any(panel.y.words for panel in sheet.panels)
-    size = (style.WIDTH / INCH, (above + height * len(sheet.rows)) / INCH)
-    figure = Figure(figsize=size, layout="constrained" if named else None)
-    grid = figure.add_gridspec(
-        len(sheet.rows) + 1, columns, height_ratios=[above] + [height] * len(sheet.rows)
-    )
-    margins = {"left": style.LEFT / width, "right": 1.0 - style.RIGHT / width}
-    margins |= {"bottom": style.BOTTOM / height, "top": 1.0 - style.TOP / height}
-    if sheet.key or sheet.scale:
-        _draw_key(figure.add_subfigure(grid[0, :]), sheet, entries, above)
-    number = 0
-    for row, panels in enumerate(sheet.rows, 1):
+    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    whole = above + height * len(sheet.rows)
+    figure = Figure(figsize=(style.WIDTH / INCH, whole / INCH))
+    if sheet.key:
+        handles = [_sample(look) for look in sheet.key.values()]
+        key = figure.legend(handles, [_text(label) for label in sheet.key], loc="upper left", ncols=entries)
+        key.set_gid("key")
+    if sheet.scale:
+        left, bottom, wide, high = SCALE
+        place = left / style.WIDTH, (whole - above + bottom) / whole, wide / style.WIDTH, high / whole
+        _draw_scale(figure.add_axes(place, gid="scale"), sheet.scale)
+    longest = int((width - style.RIGHT) / style.LETTER)
+    for row, panels in enumerate(sheet.rows):
         for column, panel in enumerate(panels):
-            part = figure.add_subfigure(grid[row, column])
-            part.set_gid(PANEL.format(number))
-            axes = part.subplots(gridspec_kw=None if named else margins)
+            lines = "\n".join(_words_of(panel.y, width)).split("\n")
+            left = max(style.LEFT, style.LETTER * max(map(len, lines)) + 6.0)
+            bottom = whole - above - height * (row + 1) + style.BOTTOM
+            size = width - left - style.RIGHT, height - style.BOTTOM - style.TOP
+            place = (
+                (width * column + left) / style.WIDTH,
+                bottom / whole,
+                size[0] / style.WIDTH,
+                size[1] / whole,
+            )
+            axes = figure.add_axes(place, gid=f"panel-{len(figure.axes)}")
+            axes.patch.set_visible(False)
+            axes.xaxis.set_label_coords(
+                0.5, -19.0 / size[1]
+            )  # a place that depends on the numbers costs a third
+            axes.yaxis.set_label_coords((12.0 - left) / size[0], 0.5)
+            title = panel.title
+            if len(title) > longest + 4:
+                title = textwrap.shorten(title, longest, placeholder="…")
+            start = max(
+                4.0, min(style.LEFT, width - style.LETTER * len(title))
+            )  # a long one begins further left
+            axes.set_title(_text(title), x=(start - left) / size[0])
             _draw_panel(axes, panel, width)
-            number += 1
     return figure
 
 
@@ -133,15 +134,6 @@ def _columns_of_key(sheet: Sheet) -> int:
     return max(1, int(0.5 * style.WIDTH / (style.LETTER * (longest + 6))))
 
 
-def _draw_key(part: SubFigure, sheet: Sheet, columns: int, height: float) -> None:
-    part.set_gid(KEY)
-    if sheet.key:
-        handles = [_sample(look) for look in sheet.key.values()]
-        part.legend(handles, [_text(label) for label in sheet.key], loc="upper left", ncols=columns)
-    if sheet.scale:
-        _draw_scale(part, sheet.scale, height)
-
-
 def _sample(look: Look) -> Line2D | Patch:
     """A piece of what an entry of the key names."""
     if look.opacity:
@@ -149,12 +141,15 @@ def _sample(look: Look) -> Line2D | Patch:
     return Line2D([], [], **_line(look))
 
 
-def _draw_scale(part: SubFigure, scale: ColourScale, height: float) -> None:
-    axes = part.add_axes((14.0 / style.WIDTH, 17.0 / height, 180.0 / style.WIDTH, 7.0 / height))
-    colours = ScalarMappable(Normalize(-scale.limit, scale.limit), style.DIVERGING)
-    bar = part.colorbar(colours, cax=axes, orientation="horizontal")
-    bar.outline.set_visible(False)
-    bar.ax.text(1.04, 0.5, _text(scale.label), transform=axes.transAxes, va="center", size=8)
+def _draw_scale(axes: Axes, scale: ColourScale) -> None:
+    n = int(constants.COLOURS_OF_MAP)
+    edges = np.linspace(-scale.limit, scale.limit, n + 1)
+    colours = colormaps[style.DIVERGING].resampled(n)(np.arange(n))
+    axes.bar(edges[:-1], 1.0, np.diff(edges), align="edge", color=colours)
+    axes.set(xlim=(-scale.limit, scale.limit), ylim=(0.0, 1.0), yticks=[])
+    axes.spines[:].set_visible(False)
+    axes.grid(False)
+    axes.text(1.04, 0.5, _text(scale.label), transform=axes.transAxes, va="center", size=8)
 
 
 def _text(text: str) -> str:
@@ -163,13 +158,6 @@ def _text(text: str) -> str:
 
 
 def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
-    longest = int((width - style.RIGHT) / style.LETTER)
-    title = (
-        panel.title
-        if len(panel.title) <= longest + 4
-        else textwrap.shorten(panel.title, longest, placeholder="…")
-    )
-    axes.set_title(_text(title))
     for name in "xy":
         _set_axis(axes, name, getattr(panel, name), width)
     for span in panel.spans:
@@ -180,8 +168,6 @@ def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
         across = axes.axvline if guide.axis == "x" else axes.axhline
         across(guide.at, zorder=1.5, **_line(guide.look))
     dense = sum(len(s) for s in panel.series if isinstance(s, Map) or _marked(s)) > constants.MOST_MARKS
-    if dense:
-        axes.set_rasterization_zorder(LINES)
     for series in panel.series:
         _draw_series(axes, series, 0.6 if dense else 1.0)
     for name in "xy":
@@ -206,13 +192,22 @@ def _set_axis(axes: Axes, name: str, axis: Axis, width: float) -> None:
         axes.locator_params("y", nbins=5)
     if axis.logarithmic:
         axes.set(**{f"{name}scale": "log", f"{name}lim": (axis.low, axis.high)})
+        getattr(axes, f"{name}axis").set_major_formatter(_power)
     if axis.words is not None:
-        half = int(0.58 * width / style.LETTER)
-        words = [
-            textwrap.fill(_text(word), half) if name == "y" else _text(word) for word in axis.words.values()
-        ]
+        words = _words_of(axis, width) if name == "y" else [_text(word) for word in axis.words.values()]
         axes.set(**{f"{name}ticks": [*axis.words], f"{name}ticklabels": words})
         axes.grid(False, axis=name)  # type: ignore[arg-type]
+
+
+def _power(x: float, _: object) -> str:
+    """A power of ten, without the formula of matplotlib."""
+    return "10" + f"{np.log10(x):.0f}".translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def _words_of(axis: Axis, width: float) -> list[str]:
+    """The names at a vertical axis, in lines that leave room for the data."""
+    half = int(0.58 * width / style.LETTER)
+    return [textwrap.fill(_text(word), half) for word in (axis.words or {}).values()]
 
 
 def _line(look: Look) -> dict[str, Any]:
@@ -237,19 +232,28 @@ def _draw_series(axes: Axes, series: DataSeries, size: float) -> None:
     match series:
         case Trace(x=x, y=y, look=look):
             look = replace(look, size=size * look.size)
-            axes.plot(x, y, **_line(look), zorder=MARKS if look.marker else LINES)
+            axes.plot(x, y, **_line(look), zorder=1.8 if look.marker else 2.0)
         case Band(x=x, low=low, high=high, x_high=x_high, look=look):
             back = (x if x_high is None else x_high)[::-1], high[::-1]
             around = np.concatenate([x, back[0]]), np.concatenate([low, back[1]])
             axes.fill(*around, color=look.colour, alpha=look.opacity, linewidth=0.0)
         case ErrorBars(x=x, y=y, u=u, look=look, along=along):
-            sides: dict[str, Any] = {f"{along}err": u, "elinewidth": look.width, "capthick": look.width}
-            axes.errorbar(x, y, **sides, **{**_line(look), "linestyle": "none"})
+            ends = (x - u, x + u, y, y) if along == "x" else (x, x, y - u, y + u)
+            none = np.full(len(x), np.nan)
+            bars = [np.column_stack([*pair, none]).ravel() for pair in (ends[:2], ends[2:])]
+            cap: dict[str, Any] = {
+                "marker": "|" if along == "x" else "_",
+                "markersize": 5.0,
+                "markeredgewidth": look.width,
+            }
+            axes.plot(*bars, color=look.colour, linewidth=look.width, **cap)
+            axes.plot(x, y, **{**_line(look), "linestyle": "none"})
         case Bars():
             begin = axes.get_xlim()[0] if axes.get_xscale() == "log" else 0.0
             axes.barh(series.places, series.lengths - begin, series.height, begin, color=series.colours)
         case Map(x=x, y=y, values=values, limit=limit):
-            colours: dict[str, Any] = {"c": values, "cmap": style.DIVERGING, "vmin": -limit, "vmax": limit}
+            shades = colormaps[style.DIVERGING].resampled(int(constants.COLOURS_OF_MAP))
+            colours: dict[str, Any] = {"c": values, "cmap": shades, "vmin": -limit, "vmax": limit}
             axes.scatter(
                 x,
                 y,
@@ -257,7 +261,7 @@ def _draw_series(axes: Axes, series: DataSeries, size: float) -> None:
                 marker="s",
                 linewidths=0.4,
                 edgecolors=style.FAINT,
-                zorder=MARKS,
+                zorder=1.8,
                 **colours,
             )
 
@@ -275,45 +279,35 @@ def _draw_frame(axes: Axes, frame: Frame) -> None:
     axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, fill=False, **edge))  # type: ignore[arg-type]
 
 
-def _markup(svg: ET.Element, figure: Figure, sheet: Sheet) -> str:
+def _markup(ink: Ink, figure: Figure, sheet: Sheet) -> str:
     """The key and rows of panels, each a drawing of its own with the part of the figure that it shows."""
-    parts = {part.get_gid(): part for part in figure.subfigs}
-    groups = {group.get("id"): group for group in svg.iter(f"{SVG}g")}
-    shared = svg.findall(f"{SVG}defs")  # clip paths
-    for group in groups.values():
-        group.attrib.pop("id", None)
+    scale, high = figure.dpi / INCH, figure.bbox.height
+    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    above = high / scale - height * len(sheet.rows)
 
-    def drawing(name: str, title: str = "") -> str:
-        box = _extent(figure, parts[name])
-        alone = ET.Element(
-            f"{SVG}svg", {"viewBox": " ".join(f"{x:.2f}" for x in box), "style": f"--w:{box[2]:.2f}"}
+    def drawing(name: str, left: float, top: float, width: float, height: float, title: str = "") -> str:
+        box = " ".join(str(round(FINE * scale * x)) for x in (left, top, width, height))
+        said = f"<title>{escape(title)}</title>" if title else ""
+        return f'<svg viewBox="{box}" style="--w:{width:.5g}">{said}{ink.parts[name]}</svg>'
+
+    keys = [*figure.legends, *(axes for axes in figure.axes if axes.get_gid() == "scale")]
+    boxes = {key.get_gid(): key.get_tightbbox(ink) for key in keys}
+    shown = [
+        drawing(
+            name or "", 0.0, (high - box.y1) / scale - 2.0, box.x1 / scale + 9.0, box.height / scale + 4.0
         )
-        if title:
-            ET.SubElement(alone, f"{SVG}title").text = title
-        alone.extend([*shared, groups[name]])
-        shared.clear()
-        return ET.tostring(alone, encoding="unicode")
-
-    out = [
-        f'<div class="panels" style="--widest:{style.WIDTH / sheet.columns:.2f};--abreast:{sheet.columns}">'
+        for name, box in boxes.items()
+        if box is not None
     ]
-    if KEY in parts:
-        out.append(f'<div class="key">{drawing(KEY)}</div>')
-    numbers = iter(range(len(sheet.panels)))
-    for row in sheet.rows:
-        out += [
-            '<div class="row">',
-            *(drawing(PANEL.format(next(numbers)), panel.title) for panel in row),
-            "</div>",
-        ]
+    names = (axes.get_gid() for axes in figure.axes if axes.get_gid() != "scale")
+    out = [f'<div class="panels" style="--widest:{width:.5g};--abreast:{sheet.columns}">']
+    if shown:
+        out.append(f'<div class="key">{"".join(shown)}</div>')
+    for row, panels in enumerate(sheet.rows):
+        places = ((width * column, above + height * row, width, height) for column in range(len(panels)))
+        alone = (
+            drawing(str(name), *place, panel.title)
+            for place, panel, name in zip(places, panels, names, strict=False)
+        )
+        out.append(f'<div class="row">{"".join(alone)}</div>')
     return "\n".join([*out, "</div>"])
-
-
-def _extent(figure: Figure, part: SubFigure) -> tuple[float, float, float, float]:
-    """Left, top, width and height [pt] of a part of a figure, of a key without the empty part at its right."""
-    scale, box = INCH / figure.dpi, part.bbox
-    right = box.x1
-    if part.get_gid() == KEY:
-        boxes = [artist.get_tightbbox() for artist in (*part.legends, *part.axes)]
-        right = max(inside.x1 for inside in boxes if inside is not None) + 4.0
-    return box.x0 * scale, (figure.bbox.height - box.y1) * scale, (right - box.x0) * scale, box.height * scale

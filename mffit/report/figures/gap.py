@@ -37,8 +37,6 @@ from mffit.report.figures.residuals import (
 from mffit.rounding import number
 from mffit.scatter import rms
 
-SMALLEST_GAIN = 1.0
-"""Left end of the logarithmic scale of log evidence."""
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
 GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
@@ -165,7 +163,7 @@ def evidence(view: DiagnosisView) -> Sheet:
 
 def _candidates(step: RankedStep, number_of: int) -> Panel:
     rows = step.candidates[: constants.MOST_ROWS]
-    gains = np.array([max(c.gain, SMALLEST_GAIN) for c in rows])
+    gains = np.array([max(c.gain, constants.SMALLEST_GAIN) for c in rows])
     names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
     after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
     title = f"Step {number_of}{'' if step.passed else ', nothing passes'}: {after}"
@@ -173,7 +171,7 @@ def _candidates(step: RankedStep, number_of: int) -> Panel:
         title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
         x=Axis(
             label="gain in log evidence",
-            low=SMALLEST_GAIN,
+            low=constants.SMALLEST_GAIN,
             high=12.0 * max(10.0, *gains),
             logarithmic=True,
         ),

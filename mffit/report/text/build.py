@@ -8,6 +8,7 @@ from mffit.diagnosis import wording
 from mffit.fit import Coefficient
 from mffit.measured import wording as of_direct
 from mffit.quantities import CHANNELS
+from mffit.report import constants
 from mffit.report.text.direct import MAIN, estimates, setups_table, spin_numbers
 from mffit.report.text.layout import blocks, cut, paragraphs, table, wrapped
 from mffit.report.verdict import purposes, verdict
@@ -16,16 +17,13 @@ from mffit.rounding import number, times
 from tir.errors import counted
 from tir.parameters import BY_NAME
 
-MOST_REASONS = 2
-"""Sentences against a result, or of warnings, in one screen."""
-
 
 def build_summary(result: BuildResult, written: str = "") -> str:
     """What ``mffit build`` prints: the verdict, the files and whom they are for, the numbers, and what to do next."""
     files = [f"  {name}: for {text}" for name, text in purposes(result).items()]
     parts = [
         wrapped(verdict(result)),
-        *(cut(f"NOT TO BE TRUSTED: {sentence}.", 2) for sentence in result.reasons[:MOST_REASONS]),
+        *(cut(f"NOT TO BE TRUSTED: {sentence}.", 2) for sentence in result.reasons[: constants.MOST_REASONS]),
         "\n".join([f"written to {written}", *files] if written else files),
         spin_numbers(result.measured, MAIN) if result.measured.epsilon_gamma is not None else "",
         _misfits(result),
@@ -37,7 +35,9 @@ def build_summary(result: BuildResult, written: str = "") -> str:
 def build_explained(result: BuildResult) -> str:
     """What ``mffit build --explain`` prints besides: what each file is and is not, limits, residuals, statuses."""
     fit, scatter = result.fit, result.measured.setup_scatter
-    parts = [wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in result.reasons[MOST_REASONS:]]
+    parts = [
+        wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in result.reasons[constants.MOST_REASONS :]
+    ]
     if result.measured.epsilon_gamma is not None:
         parts += [spin_numbers(result.measured), estimates(result.measured), setups_table(result.measured)]
         parts.append(wrapped(of_direct.setup_scatter(scatter)) if scatter else "")
@@ -49,7 +49,7 @@ def build_explained(result: BuildResult) -> str:
 def few(warnings: Iterable[str]) -> list[str]:
     """The first warnings, each cut to two lines, and how many there are."""
     every = list(warnings)
-    shown = [cut(sentence, 2, " " * len("warning: ")) for sentence in every[:MOST_REASONS]]
+    shown = [cut(sentence, 2, " " * len("warning: ")) for sentence in every[: constants.MOST_REASONS]]
     more = len(every) - len(shown)
     return shown + ([f"{more} more: report.html, --explain or --quiet shows them"] if more > 0 else [])
 
