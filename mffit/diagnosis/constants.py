@@ -233,6 +233,11 @@ MOST_POINTS_EXAMINED = Count(
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
 )
+DISTINCT_DIRECTION = Real(
+    1e-6,
+    "-",
+    "A direction with a smaller share of the power of the strongest one is one with others: it adds no number.",
+)
 AS_GOOD_SHARE = Real(
     0.9,
     "-",

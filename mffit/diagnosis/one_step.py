@@ -137,7 +137,7 @@ def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.nda
     information = change.T @ own
     size = np.sqrt(np.diag(information))
     power, axes = np.linalg.eigh(information / np.outer(size, size))
-    clear = power > constants.IMITATED_SHARE
+    clear = power > constants.DISTINCT_DIRECTION
     inverse = (axes[:, clear] / power[clear]) @ axes[:, clear].T / np.outer(size, size)
     score = change.T @ left.residual
     amount, explained = inverse @ score, float(score @ inverse @ score)

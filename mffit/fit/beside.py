@@ -50,7 +50,7 @@ class BesideNumbers:
     ) -> dict[str, float]:
         """The coefficients of a tyre whose other ``values`` were drawn before; ``best`` are those of the fit.
 
-        Drawn again until they keep their limits; after many draws they are the best ones.
+        Drawn again until they keep their limits; after many draws nearer and nearer to the best ones.
         """
         if not self.values:
             return {}
@@ -59,8 +59,9 @@ class BesideNumbers:
             mean = mean + self.slope @ [
                 float(values.get(n, 0.0)) - float(best.get(n, 0.0)) for n in self.leans_on
             ]  # rig errors move no coefficient
-        for _ in range(constants.MOST_DRAWS):
-            draw = mean + root(self.covariance) @ random.standard_normal(len(mean))
+        for k in range(2 * constants.MOST_DRAWS):
+            away = root(self.covariance) @ random.standard_normal(len(mean))
+            draw = mean + away * 0.5 ** max(0, k - constants.MOST_DRAWS)
             drawn = {name: BY_NAME[name].inside(x) for name, x in zip(names, draw.tolist(), strict=True)}
             if self.keeps_limits({**values, **drawn}):
                 return drawn

@@ -46,7 +46,8 @@ class PagePicture:
 
 def write(template: str, path: Path, planned: Iterable[Planned], **content: object) -> None:
     """Draw the pictures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
-    pictures = {one.name: draw(path.parent, one) for one in planned}
+    drawn = {one.name: draw(path.parent, one) for one in planned}
+    pictures = {name: picture for name, picture in drawn.items() if picture is not None}
     filled = _environment().get_template(template)
     known = made()
     foot = {
@@ -61,12 +62,14 @@ def write(template: str, path: Path, planned: Iterable[Planned], **content: obje
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(folder: Path, planned: Planned) -> PagePicture:
-    """Draw a picture into ``folder/plots/<name>.png``, and as it stands in the page."""
+def draw(folder: Path, planned: Planned) -> PagePicture | None:
+    """Draw a picture into ``folder/plots/<name>.png``, and as it stands in the page; None if these data give it no panel."""
     from mffit.report.drawing import pictures
 
-    (folder / "plots").mkdir(parents=True, exist_ok=True)
     whole = with_shorter_series(planned.make(), int(constants.POINTS_PER_SERIES))
+    if not whole.panels:
+        return None
+    (folder / "plots").mkdir(parents=True, exist_ok=True)
     sheet = with_fewer_rows(whole, int(constants.MOST_PANELS))
     picture = pictures.draw(sheet, planned.name)
     (folder / "plots" / f"{planned.name}.png").write_bytes(picture.png)

@@ -205,7 +205,9 @@ def main() -> None:
     ask.add_argument("--commands", nargs="*", default=COMMANDS, choices=COMMANDS)
     ask.add_argument("--together", type=int, default=16, help="numbers changed at a time")
     ask.add_argument("--factors", type=float, nargs="*", default=FACTORS)
-    ask.add_argument("--out", type=Path, help="file to which the lines go as they are found; goes on where it ended")
+    ask.add_argument(
+        "--out", type=Path, help="file to which the lines go as they are found; goes on where it ended"
+    )
     ask.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     given = ask.parse_args()
     if given.one:

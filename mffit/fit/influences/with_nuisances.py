@@ -56,11 +56,8 @@ def fit_with_nuisances(
 
     def extended(fitted: Fitted) -> NuisanceFit:
         choice = choose(config, fitted)
-        # A coefficient that is put back has the value that the file then states, not the start that was read off the points.
-        given = {name: float(problem.simulation.values[name]) for name in plan.free}
-        known = without_runaways(fitted, replace(plan, expected={**plan.expected, **given}), choice)
-        known, near = replace(known, expected=plan.expected), choice.near.problem
-        held = {name: given[name] for name in plan.free if name not in known.free}
+        known, near = without_runaways(fitted, plan, choice), choice.near.problem
+        held = {name: plan.expected[name] for name in plan.free if name not in known.free}
         if held:
             again = polish(fitted.problem.with_values(held), known)
             fitted = replace(again, attempts=fitted.attempts)

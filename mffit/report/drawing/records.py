@@ -211,7 +211,7 @@ class Sheet:
     @property
     def columns(self) -> int:
         """Panels that the width has room for; a sole one is half as wide as the picture."""
-        return max(*map(len, self.rows), 1 if self.wide else 2)
+        return max([1 if self.wide else 2, *map(len, self.rows)])
 
 
 def in_rows(*groups: Sequence[Panel], columns: int = 5) -> list[list[Panel]]:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from mffit.diagnosis.constants import LIMIT_COVERAGE
 from mffit.diagnosis.limits import limits
 
 RESIDUAL = np.zeros(3)
@@ -40,7 +39,7 @@ def test_the_start_at_which_an_even_effect_is_seen_best_counts():
     """A column of length s leaves 1/sqrt(s^2 + 1) of the usual size: 0.1 from one start, 0.5 from the other."""
     weak, strong = column(np.sqrt(3.0)), column(np.sqrt(99.0), row=1)
     for starts in ([weak, strong], [strong, weak]):
-        assert found({"bend": starts})["bend"].share == pytest.approx(0.1 * LIMIT_COVERAGE)
+        assert found({"bend": starts})["bend"].share == pytest.approx(0.2)
 
 
 def test_what_the_readings_show_adds_to_the_limit():
