@@ -30,9 +30,9 @@ class Ink(RendererBase):
     def __init__(self, width: float, height: float, dpi: float, name: str) -> None:
         super().__init__()
         self.pixels: Any = RendererAgg(width, height, dpi)  # type: ignore[no-untyped-call]
-        self.parts: dict[str, Part] = {}
+        self.parts: dict[str, DrawnPart] = {}
         self._name = name
-        self._part: Part | None = None
+        self._part: DrawnPart | None = None
         self._down = Affine2D().scale(FINE, -FINE).translate(0.0, FINE * height)
 
     def png(self) -> bytes:
@@ -43,7 +43,7 @@ class Ink(RendererBase):
 
     def open_group(self, s: str, gid: str | None = None) -> None:
         if gid:
-            self._part = self.parts[gid] = Part(f"{self._name}-{gid}")
+            self._part = self.parts[gid] = DrawnPart(f"{self._name}-{gid}")
 
     def get_canvas_width_height(self) -> tuple[float, float]:
         size: tuple[float, float] = self.pixels.get_canvas_width_height()
@@ -131,7 +131,7 @@ class Ink(RendererBase):
 
     def _mark(
         self,
-        part: Part,
+        part: DrawnPart,
         gc: GraphicsContextBase,
         marker: Path,
         trans: Transform,
@@ -194,7 +194,7 @@ class Ink(RendererBase):
         return left, top, right - left, bottom - top
 
 
-class Part:
+class DrawnPart:
     """SVG of a part of a figure: neighbours that look the same are one path, and texts follow at the end."""
 
     def __init__(self, name: str) -> None:

@@ -61,7 +61,7 @@ def test_the_result_says_so_everywhere(rough):
     (reason, *_) = rough.result["reasons"]
     assert "misses Fy of camber_1400" in reason
     page = (rough.out / "report.html").read_text(encoding="utf-8")
-    assert page.index("Not to be trusted") < page.index("What this file is for")
+    assert page.index("Not to be trusted") < page.index("Which file goes where")
     tyre = tir.read(rough.out / rough.result["tir"])
     assert "misses Fy of camber_1400" in tyre.provenance["NOT TO BE TRUSTED"]
 
