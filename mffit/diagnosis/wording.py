@@ -78,7 +78,7 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
         return f"The model misses the data by more than their noise, and no effect of the library explains it: {misfit}."
     return (
         f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {short(bump.amplitude)} "
-        f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
+        f"{CHANNELS[bump.channel].unit} around {_around(bump)}; {misfit}."
     )
 
 
