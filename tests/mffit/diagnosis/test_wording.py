@@ -73,7 +73,10 @@ def test_an_unexplained_rest_without_a_bump_has_no_place(camber):
 
 def test_a_bump_is_stated_with_its_size_and_place(nothing):
     said = wording.headline(replace(nothing, unexplained=True, bump=BUMP))
-    assert "Mz is off by -6.2 Nm around sideslip -4 to -2.5 deg and load 1400 to 1600 N; the rms misfit is " in said
+    assert (
+        "Mz is off by -6.2 Nm around sideslip -4 to -2.5 deg and load 1400 to 1600 N; the rms misfit is "
+        in said
+    )
 
 
 def test_an_effect_is_named_with_its_ties(camber):
