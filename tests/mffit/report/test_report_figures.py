@@ -99,7 +99,7 @@ def corners(drawn):
 def corner(*members):
     """Left, right, bottom and top of the first data area in the drawing [pt]."""
     (axes, *_) = axes_of(*members)
-    box, figure = axes.get_window_extent(), axes.get_figure(root=True)
+    box, figure = axes.get_window_extent(), axes.figure
     scale = 72.0 / figure.dpi
     high = figure.bbox.height
     return box.x0 * scale, box.x1 * scale, (high - box.y0) * scale, (high - box.y1) * scale
