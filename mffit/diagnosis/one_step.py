@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.special import chdtrc, fdtrc, ndtri
 
-from mffit.constants import PREDICTION_FALSE_ALARM as FALSE_ALARM
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.noise import Noise, Scatter
@@ -62,7 +62,7 @@ class BestEffect:
     @property
     def significant(self) -> bool:
         """Whether chance does not explain it."""
-        return self.chance < FALSE_ALARM
+        return self.chance < PREDICTION_FALSE_ALARM
 
 
 def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
@@ -80,7 +80,7 @@ def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEff
         best_of.setdefault(step.effect.id, step)
     tried = len(best_of)  # the starts of one effect are nearly the same direction
     if not left.at_noise:
-        beyond_chance = math.log(FALSE_ALARM / tried)
+        beyond_chance = math.log(PREDICTION_FALSE_ALARM / tried)
         best_of = {
             s.effect.id: s
             for s in sorted(best_of.values(), key=lambda s: (s.log_chance > beyond_chance, -s.share))

@@ -337,9 +337,10 @@ def _of_channel(
     alone, most, best = _log_sum(every), needed, None
     for effect, columns in runs.items():
         if columns.shape[1]:
-            beside = _descriptions(channel.with_runs(columns), offsets=True)
+            shifted = channel.with_runs(columns)
+            beside = _descriptions(shifted, offsets=True)
             odds = _log_sum(beside) - alone
-            size = channel.with_runs(columns).numbers(beside[0].x, beside[0].by).offsets
+            size = shifted.numbers(beside[0].x, beside[0].by).offsets
             offsets[effect] = RunOffsets(odds, needed, size, frozenset())
             if odds > most:
                 most, best = odds, columns

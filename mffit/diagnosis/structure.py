@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc, log_ndtr
 
-from mffit.constants import PREDICTION_FALSE_ALARM as FALSE_ALARM
-from mffit.constants import UPRIGHT
+from mffit.constants import PREDICTION_FALSE_ALARM, UPRIGHT
 from mffit.diagnosis import constants
 from mffit.diagnosis.remainder import Remainder, log_of
 from mffit.quantities import CONDITIONS
@@ -56,7 +55,7 @@ class Structure:
     @property
     def found(self) -> tuple[ResidualComparison, ...]:
         """Those that chance does not explain, their number accounted for."""
-        limit = math.log(FALSE_ALARM / max(len(self.comparisons), 1))
+        limit = math.log(PREDICTION_FALSE_ALARM / max(len(self.comparisons), 1))
         return tuple(c for c in self.comparisons if c.log_chance < limit)
 
     @property

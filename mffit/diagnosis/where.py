@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import ndtr
 
-from mffit.constants import PREDICTION_FALSE_ALARM as FALSE_ALARM
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
@@ -59,7 +59,7 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
         return ()
     p_values = [2.0 * ndtr(-abs(region.z)) for region, _ in found]
     adjusted = false_discovery_control(np.clip(p_values, 1e-300, 1.0))
-    passing = [found[k] for k in np.flatnonzero(adjusted < FALSE_ALARM)]
+    passing = [found[k] for k in np.flatnonzero(adjusted < PREDICTION_FALSE_ALARM)]
     passing.sort(key=lambda item: -abs(item[0].z))
     return _distinct(passing)
 

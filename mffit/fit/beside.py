@@ -59,8 +59,9 @@ class BesideNumbers:
             mean = mean + self.slope @ [
                 float(values.get(n, 0.0)) - float(best.get(n, 0.0)) for n in self.leans_on
             ]  # rig errors move no coefficient
+        spread = root(self.covariance)
         for k in range(2 * constants.MOST_DRAWS):
-            away = root(self.covariance) @ random.standard_normal(len(mean))
+            away = spread @ random.standard_normal(len(mean))
             draw = mean + away * 0.5 ** max(0, k - constants.MOST_DRAWS)
             drawn = {name: BY_NAME[name].inside(x) for name, x in zip(names, draw.tolist(), strict=True)}
             if self.keeps_limits({**values, **drawn}):

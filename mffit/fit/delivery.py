@@ -63,11 +63,8 @@ def deliver(
     only: str | None = None,
 ) -> Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
-    held = {
-        name: fitted.simulation.values[name] for name in fitted.held
-    }  # some at a start that was read off the points
-    known = known.having({n: x for n, x in held.items() if x != known.values[n]}, "estimate")
-    known = known_after_fit(known, fitted.values, fitted.regularised, base)
+    held = {name: fitted.simulation.values[name] for name in fitted.held}
+    known = known_after_fit(known, fitted.values, fitted.regularised, held, base)
     rolling = _rolling_resistance(config, known, points)
     for name, q in rolling.found.items():
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")

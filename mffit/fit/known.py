@@ -110,13 +110,18 @@ def _as_set(known: Known) -> Known:
 
 
 def known_after_fit(
-    known: Known, fitted: Mapping[str, float], regularised: frozenset[str], base: Tyre | None
+    known: Known,
+    fitted: Mapping[str, float],
+    regularised: frozenset[str],
+    held: Mapping[str, float],
+    base: Tyre | None,
 ) -> Known:
     """The values with the fitted ones in their place, and the estimates that follow from these.
 
     A fitted coefficient that belongs to no stage keeps its origin; ``regularised`` ones are decided by the priors as much as by
-    the points.
+    the points. ``held`` ones have the values of the fit, some of them starts that were read off the points.
     """
+    known = known.having({name: x for name, x in held.items() if x != known.values[name]}, "estimate")
     for name, value in fitted.items():
         origin = "regularised" if name in regularised else "fitted" if BY_NAME[name].stage else ""
         known = known.having({name: value}, origin)

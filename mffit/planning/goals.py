@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection
 from dataclasses import dataclass
 
 from mffit.effects import CATALOG, Effect
-from mffit.errors import InputError
+from mffit.errors import InputError, meant
 from mffit.fit.relaxation import DIRECTIONS
 from mffit.quantities import CHANNELS, DIRECT
 from mffit.rig import SIMULATED
@@ -84,8 +83,8 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
     if text == "PECP1":
         return read_goal(EPSILON, on_disc=on_disc)
     known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
-    near = difflib.get_close_matches(text, known, n=1)
-    hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
+    near = meant(text, known)
+    hint = f"; did you mean {near}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
     raise InputError(f'"{text}" is neither a goal of a plan nor a coefficient that its runs inform{hint}')
 
 

@@ -6,7 +6,6 @@ sweeps is judged by one to the others: its numbers, what it misses, and what its
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -210,18 +209,19 @@ def _suspects(
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
     level = PREDICTION_FALSE_ALARM / (len(found) * len(channels))
-    for (name, channel), missed in itertools.product(channels.items(), (True, False)):
+    for name, channel in channels.items():
         rows = [np.flatnonzero(np.isin(channel.rows, g.index)) for g in found]
         seen = [k for k, own in enumerate(rows) if len(own)]
-        predicted = channel.without_runs([rows[k] for k in seen], missed=missed)
-        errors = {
-            k: _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
-            for k, one in zip(seen, predicted, strict=True)
-        }
-        usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
-        for k, e in errors.items():
-            if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
-                worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
+        for missed in (True, False):
+            predicted = channel.without_runs([rows[k] for k in seen], missed=missed)
+            errors = {
+                k: _error(name, one, size[name] * float(np.mean(points.Fz[found[k].index])))
+                for k, one in zip(seen, predicted, strict=True)
+            }
+            usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
+            for k, e in errors.items():
+                if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
+                    worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import csv
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import resources
 
-from mffit import constants
+from mffit.errors import meant
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,16 +56,13 @@ def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
     for alias in (channel.name, *channel.aliases):
         if alias.lower() in written:
             return written[alias.lower()]
-    near = difflib.get_close_matches(
-        channel.name.lower(), written, n=1, cutoff=constants.LIKENESS_OF_MISSPELT
-    )
+    near = meant(channel.name.lower(), written)
     stem = channel.name.rpartition("_")[0].lower() or channel.name.lower()
     starts = [heading for low, heading in written.items() if low.startswith(stem)]
-    return written[near[0]] if near else starts[0] if starts else ""
+    return written[near] if near else starts[0] if starts else ""
 
 
 def nearest_channel(heading: str, *, likeness: float) -> str:
     """The channel whose name is most like a heading; "" if none is as like as ``likeness``, from 0 to 1."""
     lower = {name.lower(): name for name in BY_NAME}
-    near = difflib.get_close_matches(heading.lower(), lower, n=1, cutoff=likeness)
-    return lower[near[0]] if near else ""
+    return lower.get(meant(heading.lower(), lower, likeness=likeness), "")
