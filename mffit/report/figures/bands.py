@@ -11,7 +11,7 @@ from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace, banded
+from mffit.report.drawing.records import Guide, Look, Panel, Sheet, Trace
 from mffit.rig import Simulation
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
@@ -55,16 +55,11 @@ def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
-    files = view.files
-    assert files is not None
-    x, guides = _ends(files, over)
+    assert view.files is not None
+    x, guides = _ends(view.files, over)
     at = x if over == "kappa" else np.degrees(x)
-    series: list[Band | Trace] = []
-    for load, colour in colours.items():
-        series += model_curve(view, name, at, load, colour, **{over: x})
-    return Panel(
-        title=CHANNELS[name].short_axis, x=labels.angle_axis(over), y=Axis(), series=series, guides=guides
-    )
+    series = [model_curve(view, name, at, load, colour, **{over: x}) for load, colour in colours.items()]
+    return Panel(title=CHANNELS[name].short_axis, x=labels.angle_axis(over), series=series, guides=guides)
 
 
 def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
@@ -87,7 +82,7 @@ def model_curve(
     alpha: np.ndarray | float = 0.0,
     gamma: np.ndarray | float = 0.0,
     kappa: np.ndarray | float = 0.0,
-) -> list[Band | Trace]:
+) -> Trace:
     """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
     tyre = Simulation.of(view.model, turn_slip=view.on_disc)
     alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
@@ -95,4 +90,4 @@ def model_curve(
     line = tyre.readings(where, (channel,))[channel]
     half = view.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
-    return banded(labels.LOAD.of(load), at, line, half, look)
+    return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)

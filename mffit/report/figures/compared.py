@@ -8,7 +8,7 @@ from mffit.comparison import Comparison, CurveGap, wording
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
-from mffit.report.drawing.records import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, banded, in_rows
+from mffit.report.drawing.records import ZERO, Axis, Bars, Guide, Look, Panel, Sheet, Trace, in_rows, listed
 
 FIRST, SECOND = (
     Look(colour=style.ACCENT, line="-", width=1.2),
@@ -26,21 +26,16 @@ def curves(found: Comparison, channel: str) -> Sheet:
 
 def _panel(found: Comparison, gap: CurveGap) -> Panel:
     x = gap.x if gap.over == "kappa" else np.degrees(gap.x)
-    series: list[Band | Trace] = []
-    for name, line, half, look in (
-        (found.first, gap.first, gap.half_first, FIRST),
-        (found.second, gap.second, gap.half_second, SECOND),
-    ):
-        series += (
-            [Trace(name=name, x=x, y=line, look=look)] if half is None else banded(name, x, line, half, look)
-        )
     known = CHANNELS[gap.channel]
     return Panel(
         title=f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {known.unit} rms",
         x=labels.angle_axis(gap.over),
         y=Axis(label=known.short_axis),
-        series=series,
-        guides=[Guide(axis="y", at=0.0)],
+        series=[
+            Trace(name=found.first, x=x, y=gap.first, half=gap.half_first, look=FIRST),
+            Trace(name=found.second, x=x, y=gap.second, half=gap.half_second, look=SECOND),
+        ],
+        guides=[ZERO],
     )
 
 
@@ -57,11 +52,7 @@ def differences(found: Comparison) -> Sheet:
     )
     panel = Panel(
         x=Axis(label=f"{found.second} less {found.first}, in standard uncertainties"),
-        y=Axis(
-            low=len(rows) - 0.4,
-            high=-0.6,
-            words={k: f"{wording.quantity(row).word}, {wording.place(row)}" for k, row in enumerate(rows)},
-        ),
+        y=listed([f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows]),
         series=[bars],
         guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )

@@ -7,7 +7,7 @@ import numpy as np
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import Look, Panel, Sheet, Trace
 from mffit.report.figures.bands import LIMITS, tested_edges
 from mffit.rounding import number
 
@@ -47,7 +47,6 @@ def _panel(view: BuildView, channel: str, over: str) -> Panel:
     return Panel(
         title=f"{CHANNELS[channel].short_axis}, {labels.LOAD.of(load)}",
         x=labels.angle_axis(over),
-        y=Axis(),
         series=series,
         guides=tested_edges(files.tested[end]),
     )

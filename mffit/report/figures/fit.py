@@ -12,7 +12,7 @@ from mffit.points import Points
 from mffit.report import labels, style
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, CurveKey
-from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.lines import CurveLine
 from mffit.rounding import number
 
@@ -89,7 +89,7 @@ def _panel(
         x=labels.angle_axis(members[0].over),
         y=Axis(label=channel.label),
         series=[s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])],
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 

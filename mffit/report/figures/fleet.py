@@ -10,7 +10,7 @@ import numpy as np
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import COMPARED
 from mffit.report import constants, labels, style
-from mffit.report.drawing.records import Axis, ErrorBars, Look, Panel, Sheet, in_rows
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace, in_rows
 
 if TYPE_CHECKING:
     from tir import Quantity
@@ -43,7 +43,6 @@ def numbers_of_all(found: Fleet) -> Sheet:
         Panel(
             title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
             x=_names(found, COLUMNS),
-            y=Axis(),
             series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
         )
         for key, quantity in COMPARED.items()
@@ -51,10 +50,10 @@ def numbers_of_all(found: Fleet) -> Sheet:
     return Sheet(rows=in_rows(panels, columns=COLUMNS), height=1.9)
 
 
-def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> ErrorBars:
+def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> Trace:
     known = [(k + shift, q.value, q.u) for k, q in enumerate(numbers) if q is not None]
     x, y, u = np.array(known, dtype=float).reshape(-1, 3).T
-    return ErrorBars(name=name, x=x, y=y, u=u, look=look)
+    return Trace(name=name, x=x, y=y, half=u, look=look)
 
 
 def _names(found: Fleet, columns: int = 1) -> Axis:

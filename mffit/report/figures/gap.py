@@ -15,6 +15,7 @@ from mffit.diagnosis.where import Region
 from mffit.report import constants, labels, style
 from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
 from mffit.report.drawing.records import (
+    ZERO,
     Axis,
     Bars,
     ColourScale,
@@ -26,14 +27,9 @@ from mffit.report.drawing.records import (
     Sheet,
     Trace,
     in_rows,
+    listed,
 )
-from mffit.report.figures.residuals import (
-    ANGLES,
-    SLIPS,
-    driven,
-    residual_map,
-    rolling,
-)
+from mffit.report.figures.residuals import ANGLES, SLIPS, driven, residual_map, rolling
 from mffit.rounding import number
 from mffit.scatter import rms
 
@@ -78,7 +74,7 @@ def _bars(view: DiagnosisView, size: Callable[[Gap], float], floor: float, title
     return Panel(
         title=title,
         x=Axis(label=label, low=0.0, high=1.25 * max([*before, *after, float(np.nan_to_num(floor))])),
-        y=Axis(low=len(pairs) - 0.45, high=-0.55, words={float(k): name for k, name in enumerate(pairs)}),
+        y=listed([*pairs]),
         series=[
             Bars(name=name, lengths=values, places=at, colours=[colour] * len(values), height=0.34)
             for name, values, at, colour in sides
@@ -120,7 +116,7 @@ def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
             ),
             *(Trace(name=said, x=line.x, y=line.raw[name], look=look) for said, line, look in lines),
         ],
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 
@@ -137,7 +133,7 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
                     title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
                     framed = frames if when == "before" else ()
                     values = getattr(channel, when)
-                    maps.append(residual_map(view.points, values, condition, limit, title, framed, over=over))
+                    maps.append(residual_map(view.points, values, condition, title, framed, over=over))
             rows.append(maps)
     label = "measured − simulated [noise of a point]"
     scale = ColourScale(limit=limit, label=label)
@@ -175,7 +171,7 @@ def _candidates(step: RankedStep, number_of: int) -> Panel:
             high=12.0 * max(10.0, *gains),
             logarithmic=True,
         ),
-        y=Axis(low=len(rows) - 0.4, high=-0.6, words={float(k): name for k, name in enumerate(names)}),
+        y=listed(names),
         series=[
             Bars(
                 name="gain",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from mffit.report import labels
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Guide, Panel, Sheet, in_rows
+from mffit.report.drawing.records import ZERO, Axis, Panel, Sheet, in_rows
 from mffit.report.figures.fit import MODEL, READINGS, curve_traces
 from mffit.report.style import ramp
 
@@ -43,5 +43,5 @@ def _panel(view: BuildView, channel: ChannelRow, members: list[Curve]) -> Panel:
         x=labels.angle_axis(members[0].over),
         y=Axis(label=channel.label),
         series=[s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])],
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )

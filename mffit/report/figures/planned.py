@@ -9,7 +9,7 @@ import numpy as np
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import style
-from mffit.report.drawing.records import Axis, Bars, Guide, Look, Note, Panel, Sheet
+from mffit.report.drawing.records import Axis, Bars, Guide, Look, Note, Panel, Sheet, listed
 
 
 def u_against_runs(plan: Plan) -> Sheet:
@@ -28,7 +28,7 @@ def u_against_runs(plan: Plan) -> Sheet:
             low=0.0,
             high=1.3 * max(u for _, u in known),
         ),
-        y=Axis(low=len(values) - 0.4, high=-0.6, words={float(k): name for k, name in enumerate(names)}),
+        y=listed(names),
         series=[
             Bars(
                 name=plan.goal.label,

@@ -11,10 +11,11 @@ from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import CurveCondition, shown_values
-from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Panel, Sheet, Trace, in_rows
 
 ANGLES = ("alpha", "gamma")
 SLIPS = ("kappa", "alpha")
+READING = Look(marker="s", size=4.0)
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
@@ -55,10 +56,9 @@ def residual_maps(
 
     ``over`` names what lies at the axes, ``("alpha", "gamma")`` or ``("kappa", "alpha")``.
     """
-    limit = constants.RESIDUAL_SCALE
     groups = [
         [
-            residual_map(points, values, condition, limit, f"{name}: {condition.title}", over=over)
+            residual_map(points, values, condition, f"{name}: {condition.title}", over=over)
             for condition in conditions
         ]
         for name, values in residuals
@@ -66,7 +66,7 @@ def residual_maps(
     return Sheet(
         rows=in_rows(*groups),
         height=1.45,
-        scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"),
+        scale=ColourScale(limit=constants.RESIDUAL_SCALE, label=f"measured − model [{unit}]"),
     )
 
 
@@ -74,7 +74,6 @@ def residual_map(
     points: Points,
     values: np.ndarray,
     condition: CurveCondition,
-    limit: float,
     title: str,
     frames: Sequence[Frame] = (),
     over: tuple[str, str] = ANGLES,
@@ -84,7 +83,7 @@ def residual_map(
     x, y = (shown_values(points, name)[rows] for name in over)
     (left, right), (low, high) = (_all_points(points, name) for name in over)
     y = y + _apart(points, over, x, y, low, high)
-    series: list[Map | Trace] = [Map(name="measured − model", x=x, y=y, values=values[rows], limit=limit)]
+    series = [Trace(name="measured − model", x=x, y=y, shade=values[rows], look=READING)]
     backward = points.direction[rows] < 0
     if backward.any():
         series.append(Trace(name="run backwards", x=x[backward], y=y[backward], look=BACKWARD))

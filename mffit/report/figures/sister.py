@@ -7,7 +7,7 @@ import numpy as np
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, labels
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Panel, Sheet
+from mffit.report.drawing.records import Panel, Sheet
 from mffit.report.figures.bands import key_of_loads, model_curve, three_loads
 
 
@@ -20,13 +20,9 @@ def borrowed_force(view: BuildView) -> Sheet:
         Panel(
             title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {sideslip:.0f}°",
             x=labels.angle_axis("kappa"),
-            y=Axis(),
             series=[
-                series
+                model_curve(view, "Fx", kappa, load, colour, alpha=np.radians(sideslip), kappa=kappa)
                 for load, colour in colours.items()
-                for series in model_curve(
-                    view, "Fx", kappa, load, colour, alpha=np.radians(sideslip), kappa=kappa
-                )
             ],
         )
         for sideslip in (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,17 +15,7 @@ from mffit.quantities import CHANNELS, MODEL
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import (
-    Axis,
-    Band,
-    Guide,
-    Look,
-    Panel,
-    Sheet,
-    Trace,
-    banded,
-    in_rows,
-)
+from mffit.report.drawing.records import ZERO, Axis, Guide, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.figures.fit import MODEL as LINE
 from mffit.report.figures.fit import READINGS, SLIP, held_key, varied
 from mffit.report.with_band import Banded, several_with_band
@@ -36,7 +27,7 @@ EDGE = Look(colour=style.INK, line="-", width=1.1)
 BEYOND = Look(colour=style.INK, line=":", width=1.1)
 EDGE_NAME = "limit of the model"
 EDGE_NAME_RUN = "limit as tested"
-ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
+ZEROS = (Guide(axis="x", at=0.0), ZERO)
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
     ("Fy", "weight of slip G$_{yk}$ [–]", lateral.combined_weight),
@@ -100,19 +91,19 @@ def friction_ellipse(view: BuildView) -> Sheet:
 
 def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: dict[float, str]) -> Panel:
     Fx, Fy = (view.felt.channel(name) for name in ("Fx", "Fy"))
-    series: list[Band | Trace] = []
+    series = []
     slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
     for curve in members:
         look = Look(colour=colours[curve.held], line="-", width=1.0)
-        name = f"{labels.held(curve)}"
+        name = labels.held(curve)
         alpha = float(np.median(view.felt.alpha[curve.index]))
-        series += _path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look)
+        series.append(_path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look))
         dots = Look(colour=colours[curve.held], marker=".", size=1.6)
         series.append(Trace(name=f"measured, {name}", x=Fy[curve.index], y=Fx[curve.index], look=dots))
     series += _limit(view, members[0])
     end = 1.05 * max(float(np.nanmax(np.abs(part))) for s in series for part in s.columns().values())
     return Panel(
-        title=f"{labels.LOAD.of(load)}",
+        title=labels.LOAD.of(load),
         x=Axis(label=CHANNELS["Fy"].axis, low=-end, high=end),
         y=Axis(label=CHANNELS["Fx"].axis, low=-end, high=end),
         series=series,
@@ -143,18 +134,17 @@ def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
     return outputs_of(("Fx", "Fy"), tyre, where, turn_slip=view.on_disc)
 
 
-def _limit(view: BuildView, curve: Curve) -> list[Band | Trace]:
+def _limit(view: BuildView, curve: Curve) -> list[Trace]:
     """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
-    ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
     beyond = _beyond_combined(view, alpha)
     if not np.any(beyond):
-        return [ribbon, whole]
+        return [whole]
     ends = np.flatnonzero(np.diff(beyond)) + 1
     run = [part for part in np.split(np.arange(len(alpha)), ends) if not beyond[part[0]]]
-    x, y = whole.x, whole.y
-    inside = [Trace(name=EDGE_NAME_RUN, x=x[part], y=y[part], look=EDGE) for part in run]
-    return [ribbon, Trace(name=EDGE_NAME, x=x, y=y, look=BEYOND), *inside]
+    inside = [Trace(name=EDGE_NAME_RUN, x=whole.x[part], y=whole.y[part], look=EDGE) for part in run]
+    return [replace(whole, look=BEYOND), *inside]
 
 
 def _path(
@@ -165,7 +155,7 @@ def _path(
     name: str,
     look: Look,
     across: np.ndarray | None = None,
-) -> tuple[Band, Trace]:
+) -> Trace:
     """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
@@ -180,12 +170,7 @@ def _path(
         return [across_x * F[0] + across_y * F[1]]
 
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
-    dx, dy = across_y * band.half, across_x * band.half
-    shade = Look(colour=look.colour, opacity=style.SHADE)
-    return (
-        Band(name=name, x=Fy + dx, low=Fx + dy, x_high=Fy - dx, high=Fx - dy, look=shade),
-        Trace(name=name, x=Fy, y=Fx, look=look),
-    )
+    return Trace(name=name, x=Fy, y=Fx, half=across_x * band.half, half_x=across_y * band.half, look=look)
 
 
 def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any]:
@@ -208,21 +193,16 @@ def weights(view: BuildView) -> Sheet:
     for channel, label, weight in WEIGHTS:
         panels = []
         for load, members in groups:
-            series: list[Band | Trace] = []
-            for curve in members:
-                if channel == "Fy" and abs(curve.held) < UPRIGHT:
-                    continue
-                series += _weight(view, curve, channel, weight, colours[curve.held])
-            largest = max(
-                (float(np.nanmax(s.columns()["upper"])) for s in series if isinstance(s, Band)), default=1.0
-            )
+            shown = [c for c in members if channel == "Fx" or abs(c.held) >= UPRIGHT]
+            series = [s for c in shown for s in _weight(view, c, channel, weight, colours[c.held])]
+            largest = max((float(np.nanmax(s.y + s.half)) for s in series if s.half is not None), default=1.0)
             panels.append(
                 Panel(
                     title=labels.LOAD.of(load),
                     x=Axis(label=labels.SLIP.axis),
                     y=Axis(label=label, low=-0.05, high=max(1.3, 1.05 * largest)),
                     series=series,
-                    guides=[Guide(axis="y", at=1.0), Guide(axis="y", at=0.0)],
+                    guides=[Guide(axis="y", at=1.0), ZERO],
                 )
             )
         rows += in_rows(panels, columns=4)
@@ -232,7 +212,7 @@ def weights(view: BuildView) -> Sheet:
 
 def _weight(
     view: BuildView, curve: Curve, channel: str, weight: Callable[[Any, Any], Any], colour: str
-) -> list[Band | Trace]:
+) -> list[Trace]:
     """The model's weight with its band, and the one that the readings show where the pure force is large enough."""
     name = labels.held(curve)
     alpha = float(np.median(view.felt.alpha[curve.index]))
@@ -250,9 +230,9 @@ def _weight(
     )
     large = np.abs(pure) > constants.LEAST_PURE_FORCE * np.max(np.abs(pure))
     shown = at + (view.felt.channel(channel)[curve.index] - model) / np.where(large, pure, np.nan)
-    dots = Look(colour=colour, marker=".", size=1.6)
+    drawn, dots = Look(colour=colour, line="-", width=1.0), Look(colour=colour, marker=".", size=1.6)
     return [
-        *banded(name, slip, line, half, Look(colour=colour, line="-", width=1.0), f"model, {name}"),
+        Trace(name=f"model, {name}", x=slip, y=line, half=half, look=drawn),
         Trace(name=f"measured, {name}", x=read, y=shown, look=dots),
     ]
 
@@ -285,7 +265,7 @@ def trail(view: BuildView) -> Sheet:
     )
     rows: list[list[Panel]] = [[] for _ in quantities]
     for load, members in sorted(main_slip_curves(view).items()):
-        series: list[list[Band | Trace]] = [[] for _ in quantities]
+        series: list[list[Trace]] = [[] for _ in quantities]
         for slip, colour in colours.items():
             where = _inputs(view, members[0], kappa=np.full_like(x, slip), alpha=x)
 
@@ -296,7 +276,7 @@ def trail(view: BuildView) -> Sheet:
             name = f"{labels.SLIP.symbol} = {number(slip, 2)}"
             for drawn, (_, _, unit), (line, half) in zip(series, quantities, found, strict=True):
                 look = Look(colour=colour, line="-", width=1.0)
-                drawn += banded(name, np.degrees(x), unit * line, unit * half, look)
+                drawn.append(Trace(name=name, x=np.degrees(x), y=unit * line, half=unit * half, look=look))
         for row, (_, label, _), drawn in zip(rows, quantities, series, strict=True):
             row.append(
                 Panel(

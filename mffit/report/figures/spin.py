@@ -15,9 +15,9 @@ from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
+    ZERO,
     Axis,
     Bars,
-    ErrorBars,
     Guide,
     Look,
     Note,
@@ -25,6 +25,7 @@ from mffit.report.drawing.records import (
     Sheet,
     Trace,
     in_rows,
+    listed,
 )
 from mffit.report.published import TYRES
 
@@ -54,27 +55,18 @@ def camber_reduction(view: BuildView) -> Sheet:
 
 def _among_published(name: str, measured: Measured) -> Panel:
     rows = [(tyre.name, tyre.epsilon_gamma, tyre.u) for tyre in TYRES]
-    if measured.epsilon_gamma is not None:
-        rows.append(
-            (
-                textwrap.shorten(name, 24, placeholder="…"),
-                measured.epsilon_gamma.value,
-                measured.epsilon_gamma.u,
-            )
-        )
+    own = measured.epsilon_gamma
+    if own is not None:
+        rows.append((textwrap.shorten(name, 24, placeholder="…"), own.value, own.u))
     places = np.arange(len(rows))
     values, u = (np.array([row[k] for row in rows]) for k in (1, 2))
     sides = ((places < len(TYRES), "published", PUBLISHED), (places >= len(TYRES), "this tyre", OWN))
     return Panel(
         title="Among published tyres",
         x=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
-        y=Axis(
-            low=len(rows) - 0.4,
-            high=-0.6,
-            words={float(k): row[0] for k, row in enumerate(rows)},
-        ),
+        y=listed([row[0] for row in rows]),
         series=[
-            ErrorBars(name=said, x=values[which], y=places[which], u=u[which], look=look, along="x")
+            Trace(name=said, x=values[which], y=places[which], half_x=u[which], look=look)
             for which, said, look in sides
         ],
         guides=[Guide(axis="x", at=0.0)],
@@ -85,7 +77,6 @@ def _budget(measured: Measured) -> Panel:
     lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_ROWS]
     widths = np.array([abs(line.contribution) for line in lines])
     total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
-    last = len(lines) - 1
     return Panel(
         title="Its uncertainty budget",
         x=Axis(
@@ -93,7 +84,7 @@ def _budget(measured: Measured) -> Panel:
             low=0.0,
             high=1.25 * max([total, *widths]),
         ),
-        y=Axis(low=last + 0.6, high=-0.6, words={float(k): line.source for k, line in enumerate(lines)}),
+        y=listed([line.source for line in lines]),
         series=[
             Bars(
                 name="contribution",
@@ -103,7 +94,7 @@ def _budget(measured: Measured) -> Panel:
             )
         ],
         guides=[Guide(axis="x", at=total, look=COMBINED)],
-        notes=[Note(x=total, y=float(last), text=f"{total:.3f}", colour=style.CONTRAST)],
+        notes=[Note(x=total, y=len(lines) - 1.0, text=f"{total:.3f}", colour=style.CONTRAST)],
     )
 
 
@@ -111,9 +102,7 @@ def _over_load(view: BuildView) -> Panel:
     measured, nominal = view.measured, view.config.tyre.nominal_load
     found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
     load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
-    series: list[ErrorBars | Trace] = [
-        ErrorBars(name="this tyre", x=load, y=value, u=u, look=replace(OWN, size=4.5, width=1.4))
-    ]
+    series = [Trace(name="this tyre", x=load, y=value, half=u, look=replace(OWN, size=4.5, width=1.4))]
     if measured.pecp1 is not None:
         over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
         line = measured.pecp1 * (1.0 + measured.pecp2 * (over - nominal) / nominal)
@@ -123,7 +112,7 @@ def _over_load(view: BuildView) -> Panel:
         x=Axis(label=labels.LOAD.axis),
         y=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
         series=series,
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 

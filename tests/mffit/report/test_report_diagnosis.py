@@ -105,7 +105,8 @@ def test_maps_before_and_after_share_one_scale(misaligned):
     view = view_of(misaligned)
     sheet = gap.residuals_before_after(view)
     assert len(sheet.panels) == 2 * len(view.channels) * len(view.conditions)
-    assert {panel.series[0].limit for panel in sheet.panels} == {sheet.scale.limit}
+    assert sheet.scale.limit == gap.colour_limit(view.channels)
+    assert all(panel.series[0].shade is not None for panel in sheet.panels)
 
 
 def test_evidence_ranks_the_named_effect_first(misaligned):
