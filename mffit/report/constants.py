@@ -43,7 +43,6 @@ NEIGHBOUR_SHIFT = Real(
 MOST_LEFT_OUT_ONE_BY_ONE = Count(
     5, "-", "Readings of one file that one rule leaves out, listed one by one; more share a line of the page."
 )
-SMALLEST_GAIN = Real(1.0, "-", "Left end of the logarithmic scale of log evidence: less is no gain.")
 MOST_REASONS = Count(
     2, "-", "Sentences against a result, or of warnings, for which one screen has room; --explain has all."
 )

@@ -11,9 +11,10 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.diagnosis import Gap
 from mffit.diagnosis.constants import TIED_EVIDENCE
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.report import constants, labels, style
-from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
+from mffit.report.diagnosis_view import DiagnosisView, GapChannel, Shown
 from mffit.report.drawing.records import (
     ZERO,
     Axis,
@@ -37,6 +38,8 @@ KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": styl
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
 GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
 FOUND = Look(colour=style.ACCENT, line="-", width=1.2)
+LEAST_GAIN = 1.0
+"""Where the logarithmic axis of gains begins."""
 FLOOR = Look(colour=style.CONTRAST, line="--", width=1.2)
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
 
@@ -149,50 +152,45 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
 
 def evidence(view: DiagnosisView) -> Sheet:
     """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
-    steps = shown_steps(view)
-    panels = [_candidates(step, number_of) for number_of, step in enumerate(steps, 1)]
+    panels = [_candidates(step, number_of) for number_of, step in enumerate(view.steps, 1)]
     most = max(len(panel.y.words or {}) for panel in panels)
-    present = {c.kind for step in steps for c in step.candidates}
+    present = {trial.effects[-1].kind for step in view.steps for trial in step.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
     return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 
 
-def _candidates(step: RankedStep, number_of: int) -> Panel:
-    rows = step.candidates[: constants.MOST_ROWS]
-    gains = np.array([max(c.gain, constants.SMALLEST_GAIN) for c in rows])
-    names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
-    after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
-    title = f"Step {number_of}{'' if step.passed else ', nothing passes'}: {after}"
+def _candidates(step: ForwardStep, number_of: int) -> Panel:
+    gained = [(trial.log_evidence - step.before.log_evidence, trial.effects[-1]) for trial in step.trials]
+    rows = sorted(gained, key=lambda row: -row[0])[: constants.MOST_ROWS]
+    gains = np.array([max(gain, LEAST_GAIN) for gain, _ in rows])
+    beside = " and ".join(effect.name for effect in step.before.effects)
+    passed = rows[0][0] > step.threshold
+    after = f"beside {beside}" if beside else "one effect alone"
+    title = f"Step {number_of}{'' if passed else ', nothing passes'}: {after}"
+    bars = Bars(
+        name="gain",
+        lengths=gains,
+        places=np.arange(len(rows)),
+        colours=[KIND_COLOURS.get(effect.kind, style.MUTED) for _, effect in rows],
+    )
     return Panel(
         title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
-        x=Axis(
-            label="gain in log evidence",
-            low=constants.SMALLEST_GAIN,
-            high=12.0 * max(10.0, *gains),
-            logarithmic=True,
-        ),
-        y=listed(names),
-        series=[
-            Bars(
-                name="gain",
-                lengths=gains,
-                places=np.arange(len(rows)),
-                colours=[KIND_COLOURS.get(c.kind, style.MUTED) for c in rows],
-            )
-        ],
+        x=Axis(label="gain in log evidence", low=LEAST_GAIN, high=12.0 * max(10.0, *gains), logarithmic=True),
+        y=listed([labels.typeset(textwrap.shorten(effect.name, 31, placeholder="…")) for _, effect in rows]),
+        series=[bars],
         guides=[Guide(axis="x", at=step.threshold, look=THRESHOLD)],
-        notes=_distances(rows, gains) if step.passed else [],
+        notes=_distances([gain for gain, _ in rows], gains) if passed else [],
     )
 
 
-def _distances(rows: Sequence[Candidate], gains: np.ndarray) -> list[Note]:
+def _distances(gained: Sequence[float], ends: np.ndarray) -> list[Note]:
     """At the end of each bar its distance to the best, dark where it may be a tie."""
     notes = []
-    for place, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
-        behind = rows[0].gain - candidate.gain
+    for place, (gain, end) in enumerate(zip(gained, ends, strict=True)):
+        behind = gained[0] - gain
         text = "best" if place == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
         colour = style.INK if behind < TIED_EVIDENCE else style.MUTED
-        notes.append(Note(x=float(gain), y=place, text=text, colour=colour))
+        notes.append(Note(x=float(end), y=place, text=text, colour=colour))
     return notes
 
 
