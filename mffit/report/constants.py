@@ -20,10 +20,6 @@ MOST_ROWS = Count(
 FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
 SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
-LOAD_ROUNDING = Real(10.0, "N", "Load levels are named by multiples of this, the accuracy of a held load.")
-PRESSURE_ROUNDING = Real(
-    1000.0, "Pa", "Pressure levels are named by multiples of this, the resolution of gauges."
-)
 STEPS_OF_LINE = Count(61, "-", "Points of a model's line; it looks smooth.")
 NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture of the alignment.")
 HELD_SHARES = Series(

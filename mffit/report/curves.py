@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,22 +71,16 @@ class CurveCondition:
         return condition(self.load, self.pressure)
 
 
-def load_levels(points: Points) -> np.ndarray:
-    """Load of each point's level [N], rounded."""
-    step = constants.LOAD_ROUNDING
+def _load_and_pressure(points: Points) -> tuple[np.ndarray, np.ndarray]:
+    """Load [N] and pressure [kPa] of each point's level, rounded to what rigs hold and gauges show."""
     held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
-    return np.round(levels.median_of_labels(points.Fz, held) / step) * step
-
-
-def pressure_levels(points: Points) -> np.ndarray:
-    """Pressure of each point's level [kPa], rounded."""
-    step = constants.PRESSURE_ROUNDING
-    return np.round(levels.level_values(points.p, levels.PRESSURE) / step) * step / 1000.0
+    load = levels.median_of_labels(points.Fz, held)
+    return np.round(load, -1), np.round(levels.level_values(points.p, levels.PRESSURE) / 1000.0)
 
 
 def conditions(points: Points) -> list[CurveCondition]:
     """The points by load and pressure, in that order."""
-    keys = np.column_stack([load_levels(points), pressure_levels(points)])
+    keys = np.column_stack(_load_and_pressure(points))
     return [CurveCondition(float(k[0]), float(k[1]), index) for k, index in _groups(keys)]
 
 
@@ -95,100 +89,69 @@ def curves(points: Points) -> list[Curve]:
 
     Series over an angle are of the freely rolling wheel.
     """
-    driven = _slip_curves(points)
-    taken = np.zeros(len(points), dtype=bool)
-    for curve in driven:
-        taken[curve.index] = True
+    alpha, gamma = (shown_values(points, name) for name in ("alpha", "gamma"))
+    slipping = np.isin(points.sweep, points.sweep[~points.free_rolling])
     held = {
         "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
         "gamma": np.degrees(levels.level_values(points.alpha, levels.SIDESLIP)),
+        "kappa": _held_at_slip(points, points.alpha, slipping, levels.SIDESLIP),
     }
-    load, pressure = load_levels(points), pressure_levels(points)
-    found = driven
-    for name, members in _sweeps(points):
-        rows = members[points.free_rolling[members] & ~taken[members]]
-        if not len(rows):
-            continue
-        over = _varied(np.degrees(points.alpha[rows]), np.degrees(points.gamma[rows]))
-        keys = np.column_stack(
-            [load[rows], pressure[rows], held[over][rows], points.direction[rows], points.mount[rows]]
-        )
-        found += _along(points, name, over, rows, keys, constants.SET_POINT_WIDTH)
+    camber = np.round(_held_at_slip(points, points.gamma, slipping, levels.CAMBER), 1)
+    shared = [*_load_and_pressure(points), points.direction, points.mount]
+    found: list[Curve] = []
+    for i, name in enumerate(points.sweep_names):
+        rows = np.flatnonzero(points.sweep == i)
+        driven: list[Curve] = []
+        if slipping[rows].any():
+            driven = _along(points, name, "kappa", rows, [*shared, held["kappa"], camber])
+        rest = np.setdiff1d(rows[points.free_rolling[rows]], [row for curve in driven for row in curve.index])
+        # a grid counts as sideslip sweeps at several cambers
+        over = "alpha" if _set_points(alpha[rest], "alpha") >= _set_points(gamma[rest], "gamma") else "gamma"
+        found += [*driven, *_along(points, name, over, rest, [*shared, held[over], 0.0 * camber])]
     return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.camber, c.held, not c.forward))
 
 
-def _slip_curves(points: Points) -> list[Curve]:
-    """The series over longitudinal slip."""
-    if np.all(points.free_rolling):
-        return []
-    found: list[Curve] = []
-    load, pressure = load_levels(points), pressure_levels(points)
-    driven = [(name, rows) for name, rows in _sweeps(points) if not np.all(points.free_rolling[rows])]
-    alpha = _held_angles(points.alpha, [rows for _, rows in driven], levels.SIDESLIP)
-    gamma = _held_angles(points.gamma, [rows for _, rows in driven], levels.CAMBER)
-    for name, rows in driven:
-        keys = np.column_stack(
-            [
-                load[rows],
-                pressure[rows],
-                alpha[rows],
-                points.direction[rows],
-                points.mount[rows],
-                np.round(gamma[rows], 1),
-            ]
-        )
-        found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
-    return found
-
-
-def _held_angles(angle: np.ndarray, sweeps: Sequence[np.ndarray], kind: levels.LevelKind) -> np.ndarray:
+def _held_at_slip(
+    points: Points, angle: np.ndarray, slipping: np.ndarray, kind: levels.LevelKind
+) -> np.ndarray:
     """The angle (n,) [deg] held at each point of sweeps of slip, the same for sweeps of one level; NaN elsewhere."""
     # Levels within each sweep first: those of a sideslip sweep over all angles say nothing about the angles that are held here.
     held = np.full(len(angle), np.nan)
-    for rows in sweeps:
+    for i in np.unique(points.sweep[slipping]):
+        rows = points.sweep == i
         held[rows] = levels.level_values(angle[rows], kind)
-    degrees: np.ndarray = np.degrees(levels.level_values(held, kind))
+    degrees: np.ndarray = np.degrees(levels.level_values(held, kind)) if slipping.any() else held
     return degrees
 
 
-def _along(
-    points: Points, name: str, over: str, rows: np.ndarray, keys: np.ndarray, width: float
-) -> list[Curve]:
-    """The groups of rows with equal keys (k, 5 or 6) that have enough set-points, in order of what varies."""
+def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequence[np.ndarray]) -> list[Curve]:
+    """The groups of rows with equal keys that have enough set-points, in order of what varies."""
     values, found = shown_values(points, over), []
-    for key, members in _groups(keys):
+    for key, members in _groups(np.column_stack(keys)[rows]):
         index = rows[members]
-        if len(np.unique(np.round(values[index] / width))) < constants.FEWEST_SET_POINTS_OF_CURVE:
+        if _set_points(values[index], over) < constants.FEWEST_SET_POINTS_OF_CURVE:
             continue
+        load, pressure, direction, mount, held, camber = key.tolist()
         found.append(
             Curve(
                 over=over,
-                load=float(key[0]),
-                pressure=float(key[1]),
-                held=float(key[2]),
-                forward=bool(key[3] > 0),
-                mount=int(key[4]),
+                load=load,
+                pressure=pressure,
+                held=held,
+                forward=direction > 0,
+                mount=int(mount),
                 sweep=name,
                 index=index[np.argsort(values[index], kind="stable")],
-                camber=float(key[5]) + 0.0 if over == "kappa" else 0.0,
+                camber=camber + 0.0,
             )
         )
     return found
 
 
-def _sweeps(points: Points) -> Iterable[tuple[str, np.ndarray]]:
-    for i, name in enumerate(points.sweep_names):
-        yield name, np.flatnonzero(points.sweep == i)
-
-
-def _varied(alpha: np.ndarray, gamma: np.ndarray) -> str:
-    """The angle with more set-points; a grid counts as sideslip sweeps at several cambers."""
-    return "alpha" if _set_points(alpha) >= _set_points(gamma) else "gamma"
-
-
-def _set_points(angle: np.ndarray) -> int:
-    """Number of set-points of an angle (k,) [deg]."""
-    return len(np.unique(np.round(angle / constants.SET_POINT_WIDTH)))
+def _set_points(values: np.ndarray, over: str) -> int:
+    """Number of set-points of an angle (k,) [deg], or of longitudinal slip."""
+    width = constants.SLIP_SET_POINT_WIDTH if over == "kappa" else constants.SET_POINT_WIDTH
+    return len(np.unique(np.round(values / width)))
 
 
 def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -198,9 +198,9 @@ def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
     """A frame around every region at this load; none for a range of slip, over which the maps are not drawn."""
     found = []
     for region in (item.region for item in regions):
-        (low, high), step = region.get("Fz_N", (-np.inf, np.inf)), constants.LOAD_ROUNDING
+        low, high = np.round(region.get("Fz_N", (-np.inf, np.inf)), -1)
         if "kappa" in region:
             continue
-        if {"alpha_deg", "gamma_deg"} & region.keys() and low - step <= load <= high + step:
+        if {"alpha_deg", "gamma_deg"} & region.keys() and low <= load <= high:
             found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
     return found
