@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch
 
 from mffit.report import constants, style
 from mffit.report.drawing.ink import FINE, Ink
@@ -28,7 +28,6 @@ from mffit.report.drawing.records import (
     Axis,
     Bars,
     ColourScale,
-    Frame,
     Look,
     Panel,
     Sheet,
@@ -84,7 +83,7 @@ def figure_of(sheet: Sheet) -> Figure:
     """The sheet as a figure: a key, and below it panels of one size in rows, each with its axes."""
     entries = _columns_of_key(sheet)
     above = KEY_LINE * -(-len(sheet.key) // entries) + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
-    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    width, height = _size_of_panel(sheet)
     whole = above + height * len(sheet.rows)
     figure = Figure(figsize=(style.WIDTH / INCH, whole / INCH))
     if sheet.key:
@@ -123,6 +122,11 @@ def figure_of(sheet: Sheet) -> Figure:
             axes.set_title(_text(title), x=(start - left) / size[0])
             _draw_panel(axes, panel, width, sheet.scale)
     return figure
+
+
+def _size_of_panel(sheet: Sheet) -> tuple[float, float]:
+    """Width and height of a panel with its margins [pt]."""
+    return style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
 
 
 def _columns_of_key(sheet: Sheet) -> int:
@@ -180,8 +184,6 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, scale: ColourScale | Non
     for name in "xy":
         axis: Axis = getattr(panel, name)
         axes.set(**{f"{name}lim": (axis.low, axis.high)})
-    for frame in panel.frames:
-        _draw_frame(axes, frame)
     for note in panel.notes:
         axes.annotate(
             note.text,
@@ -278,23 +280,10 @@ def _draw_uncertainty(axes: Axes, series: Trace) -> None:
         )
 
 
-def _draw_frame(axes: Axes, frame: Frame) -> None:
-    """A frame within the axes, widened so that a single value has a width."""
-    sides = []
-    for name in "xy":
-        low, high = sorted(getattr(axes, f"get_{name}lim")())
-        pad, bounds = 0.03 * (high - low), getattr(frame, name)
-        first, last = (low, high) if bounds is None else (min(bounds) - pad, max(bounds) + pad)
-        sides.append((max(first, low), min(last, high)))
-    (left, right), (bottom, top) = sides
-    edge = {"linestyle": "--", "linewidth": 1.0, "edgecolor": style.INK, "zorder": 3.0}
-    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, fill=False, **edge))  # type: ignore[arg-type]
-
-
 def _markup(ink: Ink, figure: Figure, sheet: Sheet) -> str:
     """The key and rows of panels, each a drawing of its own with the part of the figure that it shows."""
     scale, high = figure.dpi / INCH, figure.bbox.height
-    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    width, height = _size_of_panel(sheet)
     above = high / scale - height * len(sheet.rows)
 
     def drawing(name: str, left: float, top: float, width: float, height: float, title: str = "") -> str:

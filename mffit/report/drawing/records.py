@@ -94,14 +94,6 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
-    """A dashed frame around a region; None reaches to the ends of the axis."""
-
-    x: tuple[float, float] | None
-    y: tuple[float, float] | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
     """A text behind a place in a panel."""
 
@@ -137,7 +129,6 @@ class Panel:
     series: Sequence[DataSeries]
     guides: Sequence[Guide] = ()
     spans: Sequence[Span] = ()
-    frames: Sequence[Frame] = ()
     notes: Sequence[Note] = ()
 
 

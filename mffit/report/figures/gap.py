@@ -20,7 +20,6 @@ from mffit.report.drawing.records import (
     Axis,
     Bars,
     ColourScale,
-    Frame,
     Guide,
     Look,
     Note,
@@ -30,7 +29,7 @@ from mffit.report.drawing.records import (
     in_rows,
     listed,
 )
-from mffit.report.figures.residuals import ANGLES, SLIPS, driven, residual_map, rolling
+from mffit.report.figures.residuals import ANGLES, SLIPS, Framed, driven, residual_map, rolling
 from mffit.rounding import number
 from mffit.scatter import rms
 
@@ -194,7 +193,7 @@ def _distances(gained: Sequence[float], ends: np.ndarray) -> list[Note]:
     return notes
 
 
-def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
+def _frames(regions: Sequence[Region], load: float) -> list[Framed]:
     """A frame around every region at this load; none for a range of slip, over which the maps are not drawn."""
     found = []
     for region in (item.region for item in regions):
@@ -202,5 +201,5 @@ def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
         if "kappa" in region:
             continue
         if {"alpha_deg", "gamma_deg"} & region.keys() and low <= load <= high:
-            found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
+            found.append((region.get("alpha_deg"), region.get("gamma_deg")))
     return found
