@@ -26,7 +26,7 @@ from tir.evaluate import OperatingCondition, unchecked
 from tir.record import TyreRecord
 
 if TYPE_CHECKING:
-    from tir.codegen.lag import Lag
+    from tir.codegen.lag import ContactLag
 
 Function = Callable[..., Any]
 Made = TypeVar("Made")
@@ -208,7 +208,7 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
     return None if loaded is None else _prepared(tyre, "batch", switches, FORCES, loaded.run_of)
 
 
-def lag_of(tyre: TyreRecord, switches: Switches) -> Lag:
+def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
     """The lag of the tyre's contact, cached in the tyre.
 
     Raises
@@ -217,7 +217,7 @@ def lag_of(tyre: TyreRecord, switches: Switches) -> Lag:
         If a parameter is not a real number.
     """
 
-    def lag(values: dict[str, float]) -> Lag:
+    def lag(values: dict[str, float]) -> ContactLag:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
         return lag_functions(values, switches)

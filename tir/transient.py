@@ -23,7 +23,7 @@ from tir.errors import TirError
 from tir.tyre import Tyre
 
 if TYPE_CHECKING:
-    from tir.codegen.lag import Lag
+    from tir.codegen.lag import ContactLag
 
 
 class Contact(NamedTuple):
@@ -118,11 +118,11 @@ def _lag(
     damping: float,
     turn_slip: bool | None,
     limits: bool,
-) -> tuple[Lag, tuple[Any, ...]]:
+) -> tuple[ContactLag, tuple[Any, ...]]:
     """The functions of the tyre's lag, and their inputs without the deflection."""
     lag = lag_of(tyre, Switches(tyre.turns(turn_slip, phi_t), False, bool(limits)))
     return lag, (*moving, 0.0 if phi_t is None else phi_t, tyre["INFLPRES"] if p is None else p, damping)
 
 
-def _forces(lag: Lag, contact: Contact, inputs: tuple[Any, ...]) -> Forces:
+def _forces(lag: ContactLag, contact: Contact, inputs: tuple[Any, ...]) -> Forces:
     return Forces(*lag.deflected(*contact, *inputs)[: len(Forces._fields)])

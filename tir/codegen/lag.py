@@ -44,20 +44,20 @@ def lag_programs(tyre: TyreRecord, switches: Switches, states: Sequence[str]) ->
     return _programs(graph, p, switches, states)
 
 
-class Lag(NamedTuple):
+class ContactLag(NamedTuple):
     """The same two of a tyre, as functions of (u, v, *LAG_INPUTS): single numbers, or arrays that broadcast."""
 
     after: Callable[..., tuple[Any, ...]]  #: takes dt behind them
     deflected: Callable[..., tuple[Any, ...]]  #: gives forces and the lagging slips
 
 
-def lag_functions(values: Mapping[str, float], switches: Switches) -> Lag:
+def lag_functions(values: Mapping[str, float], switches: Switches) -> ContactLag:
     """The lag of a tyre with these parameters."""
     functions = []
     for names, prepare, run, in_numpy in _compiled(switches):
         quick = with_defaults(run, constants(prepare, values))
         functions.append(partial(_run, quick, partial(_in_numpy, in_numpy, values, names)))
-    return Lag(*functions)
+    return ContactLag(*functions)
 
 
 @cache
