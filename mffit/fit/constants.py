@@ -58,11 +58,6 @@ SISTER_SLIP = Real(
     "Slip up to which the limits of Fx are checked for a drawn sister tyre: about the slip of the peak.",
 )
 
-# Other campaigns of the same tyre
-UNKNOWN_RATIO_OF_GRIPS = Real(
-    0.1, "-", "Relative uncertainty of the ratio of two surfaces' grips where nothing was run on both."
-)
-
 # Radii
 LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."

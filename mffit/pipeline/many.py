@@ -18,9 +18,8 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
 from mffit.output import written_by
-from mffit.pipeline.build_output import REPORT, WRITTEN, resolved_text
+from mffit.pipeline.build_output import FOLDER, REPORT, WRITTEN, resolved_text
 from mffit.pipeline.building import build
-from mffit.pipeline.members import FOLDER
 from mffit.pipeline.provenance import METHOD, PROGRAM, fitted_to
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
 from mffit.results import BuildOutcome

@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-import mffit.planning as search
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.csv_tables import write_csv
@@ -18,11 +17,11 @@ from mffit.errors import InputError
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
-from mffit.pipeline.measuring import measure
-from mffit.pipeline.refining import finite_spin_bias, undistorted
+from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
-from mffit.planning.outlook import Direct, DirectU
+from mffit.planning.plan import plan as found_plan
+from mffit.planning.prospect import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import column
@@ -47,8 +46,8 @@ def plan(
     Parameters
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
-    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"tie:ply-steer"`` or the name of
-        a coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
+    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"file"`` or the name of a
+        coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
     runs : largest number of runs in the list
     without : kinds of runs that this rig cannot make, for example ``"other-side"``
     out : folder to write to; nothing is written if None
@@ -87,7 +86,7 @@ def plan_of(
     """:func:`plan` for a finished build."""
     config = result.config
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        return search.plan(
+        return found_plan(
             config,
             result.points,
             result.measured,

@@ -14,9 +14,9 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.errors import InputError, readable
 from mffit.output import digest, written_by
+from mffit.pipeline.build_output import FOLDER, write_members
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_names
-from mffit.pipeline.members import FOLDER, write_members
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult, Verification, as_json
 from mffit.results.verification import ComparedNumbers, compared, largest_first

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
@@ -15,7 +17,6 @@ from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRo
 from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
     bands,
-    campaigns,
     decomposition,
     files,
     fit,
@@ -159,14 +160,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         when=lambda view: bool(view.radii.rms),
     ),
     Picture(
-        name="campaigns",
-        title="Load over sideslip, camber and longitudinal slip of the points of every campaign",
-        shows="The points of every campaign. Each campaign is fitted by itself; the misfits above are those of these fits.",
-        section="campaigns",
-        draw=campaigns.where_run,
-        when=lambda view: bool(view.campaigns),
-    ),
-    Picture(
         name="bands",
         title="Forces and moments of the fitted model with 95 % bands at three loads",
         shows="Uncertainty of the curves: the fitted model on a straight path, at the smallest, the nominal and the largest load "
@@ -185,7 +178,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "similar tyres.",
         section="sister",
         draw=sister.borrowed_force,
-        when=lambda view: view.files is not None and view.lent is not None,
+        when=lambda view: view.files is not None and view.build.fit.lent is not None,
     ),
     Picture(
         name="residuals",
@@ -211,8 +204,8 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
         "Only what chance does not explain is drawn, the number of comparisons accounted for.",
         section="structure",
-        draw=lambda view: structure.residual_means(view.remains.structure),
-        when=lambda view: bool(view.remains.structure.found),
+        draw=lambda view: structure.residual_means(view.build.remains.structure),
+        when=lambda view: bool(view.build.remains.structure.found),
     ),
 )
 """Every picture of the report, in its order."""
@@ -223,17 +216,6 @@ def planned(view: BuildView) -> Iterator[Planned]:
     opening = "camber_reduction" if view.on_disc else "bands"
     for one in (one for picture in BUILD for one in picture.planned(view)):
         yield replace(one, section="top") if one.name == opening else one
-    own = {f"fit_{channel.name}" for channel in view.channels}
-    for number, other in enumerate(view.campaigns, 1):
-        for one in (one for picture in BUILD for one in picture.planned(other.build)):
-            if one.section in ("fit", "slip") and one.name not in own:
-                yield replace(
-                    one,
-                    name=f"campaign{number}_{one.name}",
-                    title=f"{other.name}: {one.title}",
-                    shows=f"{other.name}: {one.shows} Points, lines and bands are of its own fit, on its surface.",
-                    section=f"campaign{number}",
-                )
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -244,6 +226,12 @@ def write_build(result: BuildResult, folder: Path) -> None:
         folder / "report.html",
         planned(view),
         view=view,
+        build=result,
+        fit=result.fit,
+        paired={
+            kind: int(np.sum(result.parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")
+        },
+        radii_agreement=result.fit.radii.agreement(result.fit.tyre.values),
         verdict=verdict(result),
         headlines=headlines(result),
         purposes=purposes(result),

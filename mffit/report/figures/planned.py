@@ -9,7 +9,7 @@ import numpy as np
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import style
-from mffit.report.drawing.records import Axis, Bars, Guide, Look, Note, Panel, Sheet, listed
+from mffit.report.drawing.records import Axis, Bars, Note, Panel, Sheet, listed
 
 
 def u_against_runs(plan: Plan) -> Sheet:
@@ -17,12 +17,10 @@ def u_against_runs(plan: Plan) -> Sheet:
     values = [plan.now, *(step.after for step in plan.steps)]
     names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
     known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
-    told = plan.told_below
     epsilon = DIRECT["epsilon_gamma"]
     unit = "" if plan.goal.unit in ("", "-") else f" [{plan.goal.unit}]"
-    edge = Look(colour=style.CONTRAST, line="--", width=1.0)
     panel = Panel(
-        title="" if told is None else "dashed: told apart below",
+        title="",
         x=Axis(
             label=f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext),
             low=0.0,
@@ -37,7 +35,6 @@ def u_against_runs(plan: Plan) -> Sheet:
                 colours=[style.FAINT if k == 0 else style.ACCENT for k, _ in known],
             )
         ],
-        guides=[] if told is None else [Guide(axis="x", at=told, look=edge)],
         notes=[Note(x=u, y=k, text=wording.shown(plan, u)) for k, u in known],
     )
     return Sheet(rows=[[panel]], height=0.28 * len(values) + 0.1)
