@@ -12,7 +12,7 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, published
+from mffit.report import page, published, words
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
@@ -236,9 +236,10 @@ def write_build(result: BuildResult, folder: Path) -> None:
         headlines=headlines(result),
         purposes=purposes(result),
         sections=_by_section(view),
-        statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
+        statuses=[s for s in STATUS_ORDER if any(row.found.status == s for row in view.rows)],
         channels=CHANNELS,
         places=PLACES,
+        of_number=words.of_number,
         epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
         of_residuals=of_residuals,
@@ -257,5 +258,5 @@ def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:
     """The rows of the coefficient table by section; values of other sections come last."""
     out: dict[str, list[CoefficientRow]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
     for row in view.rows:
-        out[SECTION_TITLES.get(row.section, OTHER_SECTIONS)].append(row)
+        out[SECTION_TITLES.get(row.known.section, OTHER_SECTIONS)].append(row)
     return {title: rows for title, rows in out.items() if rows}
