@@ -14,9 +14,8 @@ from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
 from mffit.measured import Measured
 from mffit.points import Points
-from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, CurveKey, conditions, curves
-from mffit.report.lines import CurveLine, model_lines
+from mffit.report.catalogue import NamedChannel
+from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
 from tir import Tyre
@@ -100,7 +99,7 @@ class BuildView:
     )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
-    lines: Mapping[CurveKey, CurveLine]
+    lines: Mapping[Curve, CurveLine]
     conditions: tuple[CurveCondition, ...]
     measured: Measured
     rows: tuple[CoefficientRow, ...]

@@ -25,9 +25,6 @@ NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture o
 HELD_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "What curves hold, as shares of the tested camber, sideslip and slip."
 )
-LEAST_PURE_FORCE = Real(
-    0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
-)
 LARGEST_SLIP_TO_DRAW = Real(0.2, "-", "Longitudinal slip to which the force of a sister tyre is drawn.")
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 LARGEST_GAP_SCALE = Real(

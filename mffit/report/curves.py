@@ -1,24 +1,21 @@
-"""Points of one curve and curves of one panel, for the pictures only."""
+"""Points of one curve, curves of one panel, and the model as a line along a curve, for the pictures only."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.points import Points, levels
-from mffit.quantities import CONDITIONS
+from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.report import constants
+from mffit.rig import Simulation
 
 
 def condition(load: float, pressure: float) -> str:
     """Load [N] and pressure [kPa] of a panel, in words."""
     return f"{CONDITIONS['Fz_N'].of(load)}, {CONDITIONS['p_kPa'].of(pressure)}"
-
-
-CurveKey = tuple[str, str, float, float, float, bool, int, float]
-"""Sweep, what varies, load, pressure, the held angle, forward, mount, camber."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,13 +31,6 @@ class Curve:
     sweep: str
     index: np.ndarray  #: (k,) rows of the points, in order of what varies
     camber: float = 0.0  #: of a curve over longitudinal slip [deg]
-
-    @property
-    def key(self) -> CurveKey:
-        """Identifies this curve among all."""
-        return (
-            self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount, self.camber,
-        )  # fmt: skip
 
     @property
     def condition(self) -> str:
@@ -158,3 +148,61 @@ def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Rows with equal keys, in order of the keys."""
     keys = np.nan_to_num(keys)
     return [(keys[rows[0]], rows) for rows in levels.rows_of_equal(keys)]
+
+
+VARIED = ("alpha", "gamma", "kappa", "Fz", "p", "V")
+"""Conditions that a line holds at their median, or lets vary."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveLine:
+    """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
+
+    x: np.ndarray  #: what varies: an angle [deg] or longitudinal slip [-]
+    raw: Mapping[str, np.ndarray]  #: by channel
+    even: Mapping[str, np.ndarray]  #: its even part
+
+
+def model_lines(
+    simulation: Simulation, points: Points, curves: Sequence[Curve], channels: Iterable[str] = SIDEWAYS
+) -> dict[Curve, CurveLine]:
+    """A line per curve, at the curve's median load, pressure, speed and held angle.
+
+    Parameters
+    ----------
+    simulation : the model on the rig, with the errors of the rig
+    points : the measured points (n,), angles as read
+    curves : rows of the points that belong together
+    channels : those to compute
+    """
+    if not curves:
+        return {}
+    grid = _along_curves(points, curves)
+    mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
+    here, there = (simulation.readings(p, channels) for p in (grid, mirrored))
+    steps = constants.STEPS_OF_LINE
+    lines = {}
+    for i, curve in enumerate(curves):
+        rows = slice(i * steps, (i + 1) * steps)
+        lines[curve] = CurveLine(
+            x=shown_values(grid, curve.over)[rows],
+            raw={name: values[rows] for name, values in here.items()},
+            even={name: 0.5 * (values + there[name])[rows] for name, values in here.items()},
+        )
+    return lines
+
+
+def _along_curves(points: Points, curves: Sequence[Curve]) -> Points:
+    """Points at equal distances along each curve's range."""
+    steps = constants.STEPS_OF_LINE
+    columns: dict[str, list[np.ndarray]] = {name: [] for name in VARIED}
+    for curve in curves:
+        for name, values in columns.items():
+            here = getattr(points, name)[curve.index]
+            values.append(
+                np.linspace(here.min(), here.max(), steps)
+                if name == curve.over
+                else np.full(steps, np.median(here))
+            )
+    rows = np.repeat([curve.index[0] for curve in curves], steps)
+    return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})

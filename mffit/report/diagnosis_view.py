@@ -12,9 +12,8 @@ from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.points import Points
 from mffit.report import constants
-from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, conditions, curves
-from mffit.report.lines import CurveLine, model_lines
+from mffit.report.catalogue import NamedChannel
+from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,6 +99,6 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
         for simulation in (diagnosis.given, diagnosis.state)
     )
     return tuple(
-        Shown(word=word, curve=curve, before=before[curve.key], after=after[curve.key])
+        Shown(word=word, curve=curve, before=before[curve], after=after[curve])
         for word, curve in chosen.items()
     )

@@ -48,7 +48,7 @@ def even_parts(view: BuildView) -> Sheet:
     for channel in view.channels:
 
         def series(curve: Curve, channel: ChannelRow = channel) -> list[Trace]:
-            line, index, x = view.lines[curve.key], curve.index, curve.varied(view.points)
+            line, index, x = view.lines[curve], curve.index, curve.varied(view.points)
             even, u = channel.even[index], channel.u_odd[index]
             return [
                 Trace(name="measured, ± 1 u", x=x, y=even, half=u, look=MEASURED),

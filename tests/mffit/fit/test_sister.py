@@ -16,7 +16,7 @@ import tir
 from mffit.errors import InputError
 from mffit.fit.borrowed.sister import LENT, Sister, _scaled
 from mffit.report.build_view import view_of
-from mffit.report.figures.sister import borrowed_force
+from mffit.report.figures.bands import borrowed_force
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
 FRICTION, STIFFNESS = 1.08, 0.9

@@ -420,7 +420,7 @@ def test_a_campaign_of_many_conditions_has_a_panel_for_each(view):
         for k in range(1, 41)
         for curve in (next(c for c in view.curves if c.over == over) for over in labels.ANGLES)
     ]
-    lines = {curve.key: next(iter(view.lines.values())) for curve in many}
+    lines = {curve: next(iter(view.lines.values())) for curve in many}
     sheet = fit.model_against_points(
         dataclasses.replace(view, curves=tuple(many), lines=lines), view.channels[0]
     )

@@ -73,7 +73,7 @@ def test_panels_over_slip_hold_every_driven_reading_of_each_channel(view):
 def test_lines_over_slip_drive_forwards_and_go_through_the_readings(view):
     (Fx,) = (channel for channel in view.channels if channel.name == "Fx")
     for curve in fit.varied(view.curves, fit.SLIP):
-        line = view.lines[curve.key]
+        line = view.lines[curve]
         assert np.all(line.raw["Fx"][line.x > 0.02] > 0.0)
         apart = Fx.measured[curve.index] - np.interp(curve.varied(view.points), line.x, line.raw["Fx"])
         assert np.std(apart) < 2.0 * belt.NOISE["Fx"] + 0.01 * np.ptp(line.raw["Fx"])  # chords of a bent line
@@ -114,31 +114,6 @@ def test_the_friction_limit_is_dotted_where_no_sweep_combined_as_much(view):
     assert whole.look.line == ":"
     assert sum(len(s.x) for s in inside) == np.sum(np.abs(np.degrees(alpha)) < 5.6) < len(alpha)
     assert all(s.look.line == "-" for s in inside)
-
-
-def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
-    tyre, sheet = belt.truth(), slip.weights(view)
-    for panel in sheet.panels[:3]:
-        load = float(panel.title.split()[0])
-        for line in named(panel, "model"):
-            alpha = np.radians(float(line.name.split("= ")[1].rstrip("°").replace("−", "-")))
-            far = np.abs(line.x) > 0.05
-            kappa = line.x[far]
-            pure = tyre(load, 0.0, 0.0, kappa, Vx=16.0, p=250e3, turn_slip=False).Fx
-            both = tyre(load, alpha, 0.0, kappa, Vx=16.0, p=250e3, turn_slip=False).Fx
-            assert line.y[far] == pytest.approx(both / pure, abs=1e-3)
-            (read,) = named(panel, line.name.replace("model", "measured"))
-            shown = np.isfinite(read.y)
-            gap = read.y[shown] - np.interp(read.x[shown], line.x, line.y)
-            assert np.mean(gap) == pytest.approx(0.0, abs=0.02)
-
-
-def test_the_axis_of_a_weight_holds_all_that_it_may_be(view):
-    """From 0, where the other slip leaves nothing, past 1, where it takes nothing, to the end of the widest band."""
-    for panel in slip.weights(view).panels:
-        assert panel.y.low < 0.0
-        ends = [np.nanmax(s.y + s.half) for s in panel.series if s.half is not None]
-        assert panel.y.high > max([*ends, 1.0])
 
 
 def test_a_band_is_what_the_coefficient_moves(view):
@@ -191,6 +166,6 @@ def test_whatever_a_picture_shows_can_be_seen(view, result):
 
 def test_pictures_of_slip_are_drawn_only_where_slip_was_run(view, result):
     names = {one.name for one in build.planned(view)}
-    own = {f"slip_{name}" for name in belt.NOISE} | {"friction_ellipse", "weights", "trail", "residuals_slip"}
+    own = {f"slip_{name}" for name in belt.NOISE} | {"friction_ellipse", "residuals_slip"}
     assert own <= names
     assert not own & {one.name for one in build.planned(view_of(result))}

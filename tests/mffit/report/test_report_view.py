@@ -11,8 +11,7 @@ from report_toys import TRUE, R, made_points, made_result, programme
 
 import tir
 from mffit.report.build_view import view_of
-from mffit.report.curves import curves
-from mffit.report.lines import model_lines
+from mffit.report.curves import curves, model_lines
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
@@ -24,7 +23,7 @@ def test_line_includes_the_faults_that_are_known():
     found = curves(points)
     read, lines = rig.readings(points), model_lines(rig, points, found)
     for curve in found:
-        assert lines[curve.key].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
+        assert lines[curve].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
 
 
 def test_place_between_the_bounds(result):
