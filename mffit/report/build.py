@@ -12,7 +12,7 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, published, words
+from mffit.report import page, words
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
@@ -63,7 +63,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
     Picture(
         name="camber_reduction",
         title="Camber reduction factor beside published tyres, its uncertainty budget and its course over load",
-        shows=f"Left: this tyre among the six that have been published ({published.SOURCE}). Middle: the contribution of each "
+        shows=f"Left: this tyre among the six that have been published ({spin.SOURCE}). Middle: the contribution of each "
         "source to u(eps_gamma); the orange line is the combined uncertainty with correlations. Right: eps_gamma at every load "
         "and the line that the file carries.",
         section="spin",

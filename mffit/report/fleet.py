@@ -14,7 +14,7 @@ from mffit.quantities import COMPARED, DIRECT
 from mffit.report import constants, labels, page, style
 from mffit.report.catalogue import Picture
 from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace, in_rows
-from mffit.report.text.fleet import misfit_channels
+from mffit.report.text.many import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
 
 if TYPE_CHECKING:

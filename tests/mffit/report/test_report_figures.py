@@ -21,7 +21,7 @@ from mffit.report.drawing import pictures
 from mffit.report.drawing.ink import FINE
 from mffit.report.drawing.records import Axis, Bars, Guide, Look, Panel, Sheet, Trace, with_fewer_rows
 from mffit.report.figures import decomposition, fit, residuals, spin
-from mffit.report.published import TYRES
+from mffit.report.figures.spin import TYRES
 
 
 @pytest.fixture(scope="module")
