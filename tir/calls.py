@@ -100,17 +100,10 @@ def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Force
 
 def state(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
-    return State(*some_of(tyre, inputs, switches, STATE))
-
-
-def some_of(
-    tyre: TyreRecord, inputs: Sequence[Any], switches: Switches, outputs: tuple[str, ...]
-) -> tuple[Any, ...]:
-    """The named forces and states for the same."""
     arrays = [np.asarray(x) for x in inputs]
     if _real(arrays) and all(a.shape == () for a in arrays):
-        return _one(tyre, arrays, switches, outputs)
-    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches, outputs)
+        return State(*_one(tyre, arrays, switches, STATE))
+    return State(*_evaluated(tyre, _of_any_kind(inputs, arrays), switches, STATE))
 
 
 def _of_any_kind(inputs: Sequence[Any], arrays: Sequence[np.ndarray]) -> list[Any]:

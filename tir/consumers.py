@@ -53,6 +53,11 @@ def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
             yield Problem(rule.level, rule.sentence, rule.name)
 
 
+def _at(level: str, line: FileLine, sentence: str, name: str = "") -> Problem:
+    """A problem at a line, about its key or another one."""
+    return Problem(level, f"line {line.number}{sentence}", name or line.key, line.number)
+
+
 def _remedy(target: Target) -> str:
     return f'write it for this program by tir.read(path).write(other, target="{target.name}")'
 
@@ -73,19 +78,12 @@ def _text(tyre: TyreRecord, document: Document, target: Target) -> Iterator[Prob
     keys = {line.key: line for line in reversed(document.entries)}
     if not document.text.isascii():
         line = next(line for line in document.lines if not line.text.isascii())
-        yield Problem("warning", f"line {line.number} has characters outside ASCII", line=line.number)
+        yield _at("warning", line, " has characters outside ASCII")
     for line in document.lines:
         if len(line.text) >= LONGEST_READABLE_LINE:
-            yield Problem(
-                "warning", f"line {line.number} has {len(line.text)} characters", line.key, line.number
-            )
+            yield _at("warning", line, f" has {len(line.text)} characters")
         if target.dollar_only and line.key and "!" in line.text[line.start :].split("$")[0]:
-            yield Problem(
-                "error",
-                f"line {line.number}: only $ starts a comment here, so {line.key} would be read as text",
-                line.key,
-                line.number,
-            )
+            yield _at("error", line, f": only $ starts a comment here, so {line.key} would be read as text")
     if target.si:
         yield from _other_units(document)
     if target.positions:
@@ -97,11 +95,8 @@ def _other_units(document: Document) -> Iterator[Problem]:
     for line in document.entries:
         kind = KINDS.get(line.key, {}) if line.section == "UNITS" else {}
         if kind.get(line.value.strip("'\" ").lower(), 1.0) != 1.0:
-            yield Problem(
-                "error",
-                f"line {line.number}: {line.key} in {line.value} is ignored, and every number is taken as SI",
-                line.key,
-                line.number,
+            yield _at(
+                "error", line, f": {line.key} in {line.value} is ignored, and every number is taken as SI"
             )
 
 
@@ -122,12 +117,8 @@ def _out_of_place(tyre: TyreRecord, document: Document, target: Target) -> Itera
         for line, name in zip(body, rows, strict=False):
             if line.key not in BY_NAME or tyre[line.key] != tyre[name]:
                 found = line.key or "a line without a key"
-                yield Problem(
-                    "error",
-                    f"line {line.number}: the program counts lines, and {found} is where it expects {name}",
-                    name,
-                    line.number,
-                )
+                said = f": the program counts lines, and {found} is where it expects {name}"
+                yield _at("error", line, said, name)
                 break
         else:
             if len(body) < len(rows):
@@ -146,18 +137,8 @@ def _keys_of_its_own(keys: dict[str, FileLine], target: Target) -> Iterator[Prob
             sentence = f"{name} is {keys[name].value}, but has to be {wanted}: {_remedy(target)}"
             yield Problem("warning", sentence, name)
     if "FUNCTION_NAME" in keys and "USER_SUB_ID" in keys:
-        line = keys["USER_SUB_ID"]
-        yield Problem(
-            "error",
-            f"line {line.number}: USER_SUB_ID names the model in old files, FUNCTION_NAME in those of 6.2; keep one of them",
-            "USER_SUB_ID",
-            line.number,
-        )
+        said = ": USER_SUB_ID names the model in old files, FUNCTION_NAME in those of 6.2; keep one of them"
+        yield _at("error", keys["USER_SUB_ID"], said)
     for line in keys.values():
         if not line.section and line.key in BY_NAME:
-            yield Problem(
-                "error",
-                f"line {line.number}: {line.key} comes before the first [SECTION]",
-                line.key,
-                line.number,
-            )
+            yield _at("error", line, f": {line.key} comes before the first [SECTION]")

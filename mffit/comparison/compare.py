@@ -11,7 +11,7 @@ import numpy as np
 from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
-from mffit.constants import SLIP_BEYOND_THE_PEAK
+from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
 from mffit.fit import Posterior
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
@@ -88,7 +88,7 @@ def _curves(
 ) -> Iterator[CurveGap]:
     """The curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
     for over, end, channels in CURVES:
-        x = np.linspace(-reach[end], reach[end], constants.STEPS_OF_COMPARED_CURVE)
+        x = np.linspace(-reach[end], reach[end], STEPS_OF_LINE)
         alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
         where = make_points(
             alpha, gamma, load, kappa=kappa, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real, Series
+from tir.constant import Real, Series
 
 COMPARED_LOADS = Series(
     (0.6, 1.0, 1.4), "-", "Compared loads over the nominal one, within the ranges of both files."
 )
-STEPS_OF_COMPARED_CURVE = Count(61, "-", "Points of a compared curve.")
 ROUNDING_OF_NUMBERS = Real(
     1e-12,
     "-",

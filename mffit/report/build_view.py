@@ -88,18 +88,28 @@ class CoefficientRow(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BuildView:
+class Overlay:
+    """Points with the curves and lines through them."""
+
+    points: Points  #: angles as read
+    channels: tuple[ChannelRow, ...]
+    curves: tuple[Curve, ...]
+    lines: Mapping[Curve, CurveLine]
+
+    def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of readings without weight, and of the points of doubtful sweeps: none unless a fit says so."""
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuildView(Overlay):
     """A build, and what its pictures draw."""
 
     build: BuildResult
     config: Config
-    points: Points  #: angles as read
     felt: (
         Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
     )
-    channels: tuple[ChannelRow, ...]
-    curves: tuple[Curve, ...]
-    lines: Mapping[Curve, CurveLine]
     conditions: tuple[CurveCondition, ...]
     measured: Measured
     rows: tuple[CoefficientRow, ...]
@@ -110,7 +120,6 @@ class BuildView:
     radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
-        """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
         single = [o.row for o in self.build.fit.outliers if o.channel == channel]
         doubtful = [row for doubt in self.build.fit.doubts for row in doubt.index]
         return np.array(single, dtype=int), np.array(doubtful, dtype=int)

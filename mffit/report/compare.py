@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +9,11 @@ import numpy as np
 from mffit.comparison import Comparison, CurveGap, wording
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.plan import channels_of
-from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, page, style
-from mffit.report.build_view import ChannelRow
+from mffit.report.build_view import ChannelRow, Overlay
 from mffit.report.catalogue import ChannelPicture, NamedChannel, Picture
-from mffit.report.curves import Curve, CurveLine, curves, model_lines
+from mffit.report.curves import curves, model_lines
 from mffit.report.drawing.records import ZERO, Axis, Bars, Guide, Look, Panel, Sheet, Trace, in_rows, listed
 from mffit.report.figures import fit
 
@@ -67,20 +64,6 @@ def differences(found: Comparison) -> Sheet:
         guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )
     return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Overlay:
-    """Measured points and the file's curves, as the figure of a fit needs them."""
-
-    points: Points
-    curves: Sequence[Curve]
-    lines: Mapping[Curve, CurveLine]
-    channels: Sequence[ChannelRow]
-
-    def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
-        """No rows: a comparison weights all readings alike."""
-        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
 
 
 READ = "{word}: readings, and as lines those that the file would give on the rig. The colour is the angle that is held."
@@ -152,7 +135,9 @@ def _overlay(found: Comparison) -> Overlay | None:
     measured = [name for name in channels_of(points) if name in points.measured]
     return Overlay(
         points=points,
-        curves=members,
+        curves=tuple(members),
         lines=model_lines(found.simulation, points, members, measured),
-        channels=[ChannelRow.of_readings(name, points.channel(name), points.u(name)) for name in measured],
+        channels=tuple(
+            ChannelRow.of_readings(name, points.channel(name), points.u(name)) for name in measured
+        ),
     )

@@ -12,7 +12,6 @@ COLOURS_OF_MAP = Count(
     17, "-", "The eye tells no more apart, and marks of one colour are one element of a page."
 )
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
-MOST_FRAMES = Count(3, "-", "Most regions framed in a map; more frames would hide it.")
 MOST_ROWS = Count(
     12, "-", "Most bars of a picture, and rows of a table in a terminal where a file or page has all."
 )
@@ -20,21 +19,15 @@ MOST_ROWS = Count(
 FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
 SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
-STEPS_OF_LINE = Count(61, "-", "Points of a model's line; it looks smooth.")
-NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture of the alignment.")
 HELD_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "What curves hold, as shares of the tested camber, sideslip and slip."
 )
-LARGEST_SLIP_TO_DRAW = Real(0.2, "-", "Longitudinal slip to which the force of a sister tyre is drawn.")
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 LARGEST_GAP_SCALE = Real(
     20.0, "-", "Longest colour scale of a diagnosis in units of noise, so that structure stays visible."
 )
 NEIGHBOUR_SHIFT = Real(
     0.026, "-", "Distance of points with equal angles in a map, over the range of its axis."
-)
-MOST_LEFT_OUT_ONE_BY_ONE = Count(
-    5, "-", "Readings of one file that one rule leaves out, listed one by one; more share a line of the page."
 )
 MOST_REASONS = Count(
     2, "-", "Sentences against a result, or of warnings, for which one screen has room; --explain has all."

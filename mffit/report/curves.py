@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import STEPS_OF_LINE
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.report import constants
@@ -180,7 +181,7 @@ def model_lines(
     grid = _along_curves(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
     here, there = (simulation.readings(p, channels) for p in (grid, mirrored))
-    steps = constants.STEPS_OF_LINE
+    steps = STEPS_OF_LINE
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * steps, (i + 1) * steps)
@@ -194,7 +195,7 @@ def model_lines(
 
 def _along_curves(points: Points, curves: Sequence[Curve]) -> Points:
     """Points at equal distances along each curve's range."""
-    steps = constants.STEPS_OF_LINE
+    steps = STEPS_OF_LINE
     columns: dict[str, list[np.ndarray]] = {name: [] for name in VARIED}
     for curve in curves:
         for name, values in columns.items():

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.points import Points
-from mffit.report import constants
 from mffit.report.catalogue import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 
@@ -59,7 +59,7 @@ class DiagnosisView:
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""
         found = self.diagnosis.unexplained_where or self.diagnosis.where
-        return [region for region in found if region.channel == channel][: constants.MOST_FRAMES]
+        return [region for region in found if region.channel == channel][:NAMED_IN_SENTENCE]
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:

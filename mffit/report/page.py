@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mffit import rounding
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import shortened
 from mffit.made import COMPUTING, libraries, made
 from mffit.points.left_out import together
@@ -87,7 +88,7 @@ def draw(folder: Path, planned: Planned) -> PagePicture | None:
 def _environment() -> Environment:
     found = environment("mffit.report")
     found.filters["shortened"] = shortened
-    found.filters["together"] = partial(together, most=int(constants.MOST_LEFT_OUT_ONE_BY_ONE))
+    found.filters["together"] = partial(together, most=int(NAMED_IN_SENTENCE))
     for rounded in (
         rounding.number,
         rounding.with_u,

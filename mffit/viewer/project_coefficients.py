@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from mffit.config.by_hand import may_be_free, unsettable
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
 from mffit.fit.wheel.vertical import OF_WHEEL_SPEED
@@ -47,22 +48,28 @@ def movers(fitted: FitResult) -> dict[str, list[str]]:
     names = [number.name for number in search.numbers if number.name in BY_NAME]
     if not names:
         return {}
-    information = {channel: rows**2 for channel, rows in _weighted_slopes(search, names).items()}
-    whole = sum(information.values())
-    sweeps = search.problem.points.sweep
-    by_sweep = np.zeros((sweeps.max(initial=0) + 1, len(names)))
-    np.add.at(by_sweep, sweeps, whole)
+    sweeps, sweep_names = search.problem.points.sweep, search.problem.points.sweep_names
+    by_channel, by_sweep = {}, np.zeros((len(sweep_names), len(names)))
+    for channel, rows in _weighted_slopes(search, names).items():
+        by_channel[CHANNELS[channel].ascii] = (rows**2).sum(axis=0)
+        np.add.at(by_sweep, sweeps, rows**2)
     total = by_sweep.sum(axis=0)
-    out = {}
-    for k, name in enumerate(names):
-        if not total[k] > 0.0:
-            continue
-        share = by_sweep[:, k] / total[k]
-        most = [j for j in np.argsort(-share)[: constants.MOVERS_SHOWN] if share[j] >= constants.LEAST_MOVER]
-        words = [f"{search.problem.points.sweep_names[j]} {100.0 * share[j]:.0f} %" for j in most]
-        channels = {c: float(information[c][:, k].sum() / total[k]) for c in information}
-        out[name] = [*_channels(channels), *words]
-    return out
+    return {
+        name: [
+            *_most({channel: found[k] / total[k] for channel, found in by_channel.items()}),
+            *_most(dict(zip(sweep_names, by_sweep[:, k] / total[k], strict=True))),
+        ]
+        for k, name in enumerate(names)
+        if total[k] > 0.0
+    }
+
+
+def _most(shares: Mapping[str, float]) -> list[str]:
+    """The largest shares that are not small, in words."""
+    ordered = sorted(shares, key=lambda name: -shares[name])[:NAMED_IN_SENTENCE]
+    return [
+        f"{name} {100.0 * shares[name]:.0f} %" for name in ordered if shares[name] >= constants.LEAST_MOVER
+    ]
 
 
 def beside_the_search(fitted: FitResult) -> dict[str, list[str]]:
@@ -85,16 +92,6 @@ def _weighted_slopes(search: Fitted, names: Sequence[str]) -> dict[str, np.ndarr
         used = np.isfinite(sigma) & np.isfinite(problem.points.channel(channel))
         out[channel] = slopes[channel] * np.where(used, 1.0 / sigma, 0.0)[:, None]
     return out
-
-
-def _channels(shares: dict[str, float]) -> list[str]:
-    """The channels in words, the largest first."""
-    ordered = sorted(shares, key=lambda name: -shares[name])
-    return [
-        f"{CHANNELS[c].ascii} {100.0 * shares[c]:.0f} %"
-        for c in ordered
-        if shares[c] >= constants.LEAST_MOVER
-    ]
 
 
 def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, object]:

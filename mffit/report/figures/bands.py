@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
 from mffit.fit.written.files import Files
 from mffit.points import make_points
 from mffit.quantities import CHANNELS, CONDITIONS, SIDEWAYS
@@ -67,10 +68,10 @@ def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
     """Values [rad, -] (m,) over the range of the file, and the ends of the tested range."""
     if over != "kappa":
         end = files.written[LIMITS[over]]
-        return np.linspace(-end, end, constants.STEPS_OF_LINE), tested_edges(files.tested[LIMITS[over]])
+        return np.linspace(-end, end, STEPS_OF_LINE), tested_edges(files.tested[LIMITS[over]])
     low, high = (files.written.get(key, files.tested[key]) for key in SLIP_LIMITS)
     guides = [Guide(axis="x", at=files.tested[key], look=DOTTED) for key in SLIP_LIMITS]
-    return np.linspace(low, high, constants.STEPS_OF_LINE), guides
+    return np.linspace(low, high, STEPS_OF_LINE), guides
 
 
 def model_curve(
@@ -115,7 +116,7 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
     assert files is not None
     load = float(files.by_use["normal"].tyre["FNOMIN"])
     end, other = LIMITS[over], labels.OTHER[over]
-    x = np.linspace(-files.written[end], files.written[end], constants.STEPS_OF_LINE)
+    x = np.linspace(-files.written[end], files.written[end], STEPS_OF_LINE)
     series = []
     for share in constants.HELD_SHARES[:2] if over == "gamma" else constants.HELD_SHARES:
         held = np.full_like(x, share * files.tested[LIMITS[other]])
@@ -139,7 +140,7 @@ def borrowed_force(view: BuildView) -> Sheet:
     """Fx over longitudinal slip with 95 % bands at three loads, with and without sideslip, on a straight path."""
     assert view.files is not None
     colours = three_loads(view)
-    kappa = np.linspace(-1.0, 1.0, constants.STEPS_OF_LINE) * constants.LARGEST_SLIP_TO_DRAW
+    kappa = np.linspace(-1.0, 1.0, STEPS_OF_LINE) * SLIP_BEYOND_THE_PEAK
     panels = [
         Panel(
             title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {sideslip:.0f}°",

@@ -4,30 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
-from mffit.points import Points
 from mffit.report import labels, style
-from mffit.report.build_view import BuildView, ChannelRow
-from mffit.report.curves import Curve, CurveLine
+from mffit.report.build_view import BuildView, ChannelRow, Overlay
+from mffit.report.curves import Curve
 from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
-
-
-class Overlaid(Protocol):
-    """Points with the curves and lines through them."""
-
-    @property
-    def points(self) -> Points: ...
-    @property
-    def curves(self) -> Sequence[Curve]: ...
-    @property
-    def lines(self) -> Mapping[Curve, CurveLine]: ...
-    def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
-        """Rows of readings without weight, and of the points of doubtful sweeps."""
-
 
 MARKS = {
     "no weight": Look(colour=style.CONTRAST, marker="x", size=5.0),
@@ -45,7 +29,7 @@ def varied(curves: Iterable[Curve], over: Collection[str]) -> list[Curve]:
     return [curve for curve in curves if curve.over in over]
 
 
-def model_against_points(view: Overlaid, channel: ChannelRow, over: Sequence[str] = ANGLES) -> Sheet:
+def model_against_points(view: Overlay, channel: ChannelRow, over: Sequence[str] = ANGLES) -> Sheet:
     """One panel per load, pressure and varied angle (over slip also per camber), coloured by the angle that is held."""
     conditions: dict[tuple[str, float, float, float], list[Curve]] = {}
     for curve in varied(view.curves, over):
@@ -80,7 +64,7 @@ def held_key(held: str, colours: Mapping[float, str]) -> dict[str, Look]:
 
 
 def _panel(
-    view: Overlaid, channel: ChannelRow, members: Sequence[Curve], colours: Mapping[float, str], cambers: bool
+    view: Overlay, channel: ChannelRow, members: Sequence[Curve], colours: Mapping[float, str], cambers: bool
 ) -> Panel:
     at = f", {labels.ANGLES['gamma'].symbol} = {number(members[0].camber, 0)}°" if cambers else ""
     return Panel(
@@ -92,7 +76,7 @@ def _panel(
     )
 
 
-def curve_traces(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
+def curve_traces(view: Overlay, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
     """Readings, marks on those that do not fit, and the model's line."""
     x, read = curve.varied(view.points), channel.measured[curve.index]
     line, held = view.lines[curve], labels.held(curve)

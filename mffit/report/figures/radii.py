@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from mffit.constants import STEPS_OF_LINE
 from mffit.fit import Posterior
 from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.report import constants, labels, style
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
 from mffit.report.with_band import with_band
@@ -44,7 +45,7 @@ def _panel(
 ) -> Panel:
     known = Posterior(tuple(view.radii.numbers), view.radii.covariance)
     series = []
-    read, steps = rolling.radius(channel), constants.STEPS_OF_LINE
+    read, steps = rolling.radius(channel), STEPS_OF_LINE
     speed = float(np.median(rolling.V))
     for p, colour in colours.items():
         rows = (pressure == p) & np.isfinite(read)

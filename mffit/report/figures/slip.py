@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import STRAIGHT, UPRIGHT
+from mffit.constants import STEPS_OF_LINE, STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.report import constants, labels, style
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import ZERO, Axis, Guide, Look, Panel, Sheet, Trace, in_rows
@@ -81,7 +81,7 @@ def friction_ellipse(view: BuildView) -> Sheet:
 def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: dict[float, str]) -> Panel:
     Fx, Fy = (view.felt.channel(name) for name in ("Fx", "Fy"))
     series = []
-    slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
+    slip = np.linspace(*slip_range(view), STEPS_OF_LINE)
     for curve in members:
         look = Look(colour=colours[curve.held], line="-", width=1.0)
         name = labels.held(curve)
@@ -102,7 +102,7 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
-    steps = int(constants.STEPS_OF_LINE)
+    steps = int(STEPS_OF_LINE)
     kappa, alpha = (
         grid.ravel()
         for grid in np.meshgrid(

@@ -10,6 +10,7 @@ import numpy as np
 
 from mffit.constants import UPRIGHT
 from mffit.measured import Measured
+from mffit.measured.constants import CUBIC_SIDESLIP
 from mffit.points import main_path
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
@@ -155,7 +156,7 @@ def alignment(view: BuildView) -> Sheet:
 
 def _near_zero(view: BuildView, curve: Curve) -> Trace:
     x = curve.varied(view.points)
-    near = np.abs(x) < constants.NEAR_ZERO_SIDESLIP
+    near = np.abs(x) < CUBIC_SIDESLIP
     return Trace(
         name=f"rolling {'forwards' if curve.forward else 'backwards'}",
         x=x[near],
