@@ -236,7 +236,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         headlines=headlines(result),
         purposes=purposes(result),
         sections=_by_section(view),
-        statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
+        statuses=[s for s in STATUS_ORDER if any(row.found.status == s for row in view.rows)],
         channels=CHANNELS,
         places=PLACES,
         epsilon_values=wording.epsilon_values(result.measured),
@@ -257,5 +257,5 @@ def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:
     """The rows of the coefficient table by section; values of other sections come last."""
     out: dict[str, list[CoefficientRow]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
     for row in view.rows:
-        out[SECTION_TITLES.get(row.section, OTHER_SECTIONS)].append(row)
+        out[SECTION_TITLES.get(row.known.section, OTHER_SECTIONS)].append(row)
     return {title: rows for title, rows in out.items() if rows}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from mffit.report.lines import CurveLine, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
 from tir import Tyre
-from tir.parameters import BY_NAME
+from tir.parameters import BY_NAME, Parameter
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
@@ -37,6 +38,8 @@ STATUS_ORDER = (
     "converted",
     "default",
 )
+NOT_DECIDED = ("base", "converted", "default", "given", "range")
+"""Statuses of values that neither the data nor a model of them decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,34 +65,40 @@ class ChannelRow(NamedChannel):
         return finite_median(self.u)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CoefficientRow:
+class CoefficientRow(NamedTuple):
     """One row of the coefficient table."""
 
-    name: str
-    section: str
-    description: str
-    unit: str
-    value: float
-    stderr: float | None
-    lower: float | None
-    upper: float | None
-    at_bound: bool
-    stage: str
-    status: str
-    correlation: str  #: the strongest one in words; empty if it does no harm
-    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
+    known: Parameter
+    found: Coefficient
+
+    @property
+    def unit(self) -> str:
+        """Empty without one."""
+        return "" if self.known.unit == "-" else self.known.unit
+
+    @property
+    def bounds(self) -> tuple[float | None, float | None]:
+        """Those set by hand, else the plausible ones."""
+        return self.found.bounds or (self.known.lower, self.known.upper)
 
     @property
     def place(self) -> float | None:
         """Place of the value between its bounds, 0 to 1; None without bounds."""
-        if self.lower is None or self.upper is None or not self.upper > self.lower:
+        lower, upper = self.bounds
+        if lower is None or upper is None or not upper > lower:
             return None
-        return float(np.clip((self.value - self.lower) / (self.upper - self.lower), 0.0, 1.0))
+        return float(np.clip((self.found.value - lower) / (upper - lower), 0.0, 1.0))
 
     @property
     def held(self) -> bool:
-        return self.status in ("base", "converted", "default", "given", "range") and not self.by_hand
+        """Whether neither data nor the engineer decided the value."""
+        return self.found.status in NOT_DECIDED and not self.found.by_hand
+
+    @property
+    def correlation(self) -> str:
+        """The strongest one in words; empty if it does no harm."""
+        other = self.found.correlated_with
+        return f"{words.of_number(other)} {self.found.correlation:+.2f}" if other else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,26 +195,4 @@ def view_of(result: BuildResult) -> BuildView:
 
 def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[CoefficientRow, ...]:
     """The fit's coefficients with section, unit and bounds from the parameter table."""
-    rows = []
-    for name, c in coefficients.items():
-        known = BY_NAME[name]
-        rows.append(
-            CoefficientRow(
-                name=name,
-                section=known.section,
-                description=known.description,
-                unit="" if known.unit == "-" else known.unit,
-                value=c.value,
-                stderr=c.stderr,
-                lower=c.bounds[0] if c.bounds else known.lower,
-                upper=c.bounds[1] if c.bounds else known.upper,
-                at_bound=c.at_bound,
-                stage=c.stage,
-                status=c.status,
-                correlation=f"{words.of_number(c.correlated_with)} {c.correlation:+.2f}"
-                if c.correlated_with
-                else "",
-                by_hand=c.by_hand,
-            )
-        )
-    return tuple(rows)
+    return tuple(CoefficientRow(BY_NAME[name], found) for name, found in coefficients.items())

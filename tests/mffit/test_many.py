@@ -114,9 +114,9 @@ def _rewritten(out: Path, name: str, content: bytes) -> None:
 
 
 def another_method(project: Path, out: Path) -> None:
-    text = (out / "small.tir").read_bytes()
-    assert b"! provenance: method: " in text
-    _rewritten(out, "small.tir", text.replace(b"! provenance: method: ", b"! provenance: method: 9"))
+    text = (out / "result.json").read_bytes()
+    assert b'"method": ' in text
+    _rewritten(out, "result.json", text.replace(b'"method": ', b'"method": 9', 1))
 
 
 @pytest.mark.parametrize(

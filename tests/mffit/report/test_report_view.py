@@ -10,7 +10,7 @@ import pytest
 from report_toys import TRUE, R, made_points, made_result, programme
 
 import tir
-from mffit.report.build_view import coefficient_rows, view_of
+from mffit.report.build_view import CoefficientRow, coefficient_rows, view_of
 from mffit.report.curves import curves
 from mffit.report.lines import model_lines
 from mffit.rig import Simulation
@@ -28,12 +28,17 @@ def test_line_includes_the_faults_that_are_known():
 
 
 def test_place_between_the_bounds(result):
-    rows = {row.name: row for row in coefficient_rows(result.fit.coefficients)}
-    row = rows["PKY1"]
-    row = dataclasses.replace(row, lower=-30.0, upper=-10.0)
-    for value, place in ((-30.0, 0.0), (-25.0, 0.25), (-10.0, 1.0), (-40.0, 0.0), (0.0, 1.0)):
-        assert dataclasses.replace(row, value=value).place == pytest.approx(place)
-    assert dataclasses.replace(row, lower=None).place is None
+    rows = {row.known.name: row for row in coefficient_rows(result.fit.coefficients)}
+    known = dataclasses.replace(rows["PKY1"].known, lower=-30.0, upper=-10.0)
+    found = rows["PKY1"].found
+
+    def place(known, value, **given):
+        return CoefficientRow(known, dataclasses.replace(found, value=value, **given)).place
+
+    for value, at in ((-30.0, 0.0), (-25.0, 0.25), (-10.0, 1.0), (-40.0, 0.0), (0.0, 1.0)):
+        assert place(known, value) == pytest.approx(at)
+    assert place(known, -25.0, bounds=(-30.0, -20.0)) == pytest.approx(0.5)
+    assert place(dataclasses.replace(known, lower=None), -25.0) is None
     assert [name for name, row in rows.items() if row.held] == ["QBZ1", "PHY2"]
 
 
