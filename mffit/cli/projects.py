@@ -9,6 +9,7 @@ import click
 
 from mffit.cli.console import Voice, voiced
 from mffit.cli.options import PATH, out_option, path_centre, unloaded_radius
+from mffit.errors import InputError
 
 if TYPE_CHECKING:
     from mffit.recordings import DiscPath
@@ -72,7 +73,6 @@ def init(
     **tyre: float | None,
 ) -> None:
     """Write a commented tyre.toml and empty CSV templates, with --from a project for recordings, or a sample."""
-    from mffit.errors import InputError
     from mffit.init_project import copy_sample, init_project
 
     *files, folder = paths
@@ -105,7 +105,6 @@ def init(
 
 def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
     """The path of a disc from the options; None without one."""
-    from mffit.errors import InputError
     from mffit.recordings import DiscPath
 
     if not disc and radius is None and centre is None:

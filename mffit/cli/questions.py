@@ -8,6 +8,7 @@ import click
 
 from mffit.cli.console import Voice, voiced
 from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
+from mffit.errors import InputError
 
 
 @click.command()
@@ -52,7 +53,6 @@ def align(
     Uses forward and backward points at zero angles; the correction is in degrees of the rig's axis.
     """
     from mffit import pipeline
-    from mffit.errors import InputError
     from mffit.report import text
     from mffit.results import as_json
 
@@ -153,7 +153,6 @@ def plan(
     Shows what the present sweeps identify, and the shortest list of runs that would add most.
     """
     from mffit import pipeline
-    from mffit.errors import InputError
     from mffit.report import text
     from mffit.results import as_json
 

@@ -61,12 +61,13 @@ def fleet(
             _estimated([s for s, rig in zip(specimens, rig_of, strict=True) if rig == k])
             for k in range(max(rig_of) + 1)
         )
+        together = [iter(() if rig is None else rig.tyres) for rig in rigs]
         rows = []
         for specimen, rig in zip(specimens, rig_of, strict=True):
             progress(f"comparing {specimen.name}")
-            rows.append(_row(specimen, rig))
-    shown = _with_estimates(rows, rigs)
-    found = Fleet(shown, rigs, (*fleet_notes(shown, rigs), *note_on_sharing(specimens, rig_of)))
+            tyre = None if specimen.information is None else next(together[rig])
+            rows.append(_row(specimen, rig, tyre))
+    found = Fleet(tuple(rows), rigs, (*fleet_notes(rows, rigs), *note_on_sharing(specimens, rig_of)))
     if out is not None:
         progress("writing the page")
         write_fleet(found, Path(out))
@@ -102,10 +103,18 @@ def _plainly_named(found: Sequence[Information]) -> list[Information]:
     ]
 
 
-def _row(specimen: Specimen, rig: int) -> Row:
-    alone = _estimated([specimen])
-    tyre = alone.tyres[0] if alone is not None else None
-    return Row(specimen, rig, _compared(specimen.tyre, tyre, turn_slip=specimen.on_disc), _epsilon(tyre))
+def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
+    """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
+    own = _estimated([specimen])
+    alone = None if own is None else own.tyres[0]
+    return Row(
+        specimen,
+        rig,
+        numbers=_compared(specimen.tyre, alone, turn_slip=specimen.on_disc),
+        alone=_epsilon(alone),
+        together=_epsilon(together),
+        strain={} if together is None else together.strain,
+    )
 
 
 def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
@@ -118,19 +127,6 @@ def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dic
 def _epsilon(found: TyreEstimate | None) -> Quantity | None:
     number = found.number("PECP1") if found is not None else None
     return None if number is None else Quantity(*number, "-")
-
-
-def _with_estimates(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> tuple[Row, ...]:
-    """The rows with the joint estimates of each rig."""
-    left = [list(rig.tyres) if rig is not None else [] for rig in rigs]
-    out = []
-    for row in rows:
-        if row.specimen.information is None:
-            out.append(row)
-            continue
-        tyre = left[row.rig].pop(0)
-        out.append(replace(row, together=_epsilon(tyre), strain=tyre.strain))
-    return tuple(out)
 
 
 def write_fleet(found: Fleet, out: Path) -> None:

@@ -11,6 +11,7 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
+from mffit import planning
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
@@ -20,7 +21,6 @@ from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
-from mffit.planning.plan import plan as found_plan
 from mffit.planning.prospect import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -86,7 +86,7 @@ def plan_of(
     """:func:`plan` for a finished build."""
     config = result.config
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        return found_plan(
+        return planning.plan(
             config,
             result.points,
             result.measured,
@@ -105,22 +105,18 @@ def _direct_method(result: BuildResult) -> Direct:
 
     def direct(config: Config, points: Points) -> DirectU | None:
         try:
-            _, measured = measure(config, points, base)
+            measured = measure(config, points, base)[1]
         except InputError:
             return None
         raw = measured.epsilon_gamma
         if raw is None:
             return None
         bias = finite_spin_bias(config, points, model, base)
-        if bias is None:
-            return DirectU(stated=raw.u, held=raw.u)
-        measured = measured.debiased(bias)
-        assert measured.epsilon_gamma is not None
-        assert measured.epsilon_gamma_debiased is not None
-        if config.spin.pecp1 == "debiased":
-            u = measured.epsilon_gamma_debiased.u
-            return DirectU(stated=u, held=u)
-        return DirectU(stated=measured.epsilon_gamma.u, held=raw.u)
+        known = measured if bias is None else measured.debiased(bias)
+        if known.epsilon_gamma_debiased is not None and config.spin.pecp1 == "debiased":
+            return DirectU(known.epsilon_gamma_debiased.u, known.epsilon_gamma_debiased.u)
+        assert known.epsilon_gamma is not None
+        return DirectU(stated=known.epsilon_gamma.u, held=raw.u)
 
     return direct
 

@@ -55,36 +55,27 @@ def shown(plan: Plan, u: float) -> str:
     return f"{_u(u)}{unit}"
 
 
+ESTIMATES = {
+    EPSILON: f"{EPS} of the direct method as a build states it%s: its own budget, computed from your points and from the "
+    "readings that the fitted rig would give at the new points",
+    JOINT: 'PECP1 of the joint fit of tyre and rig (spin.pecp1 = "model"), from its posterior, linearised at the present '
+    "solution",
+    BANDS: "the 95 % band of the fitted curves on a straight path: rms over the tested sideslip and camber at three loads, from "
+    "the posterior, linearised at the present solution",
+    FILE: "the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and slip at three loads, at "
+    "which the wheel has been steered, leaned or driven so far. What was not measured counts with its prior",
+}
+OF_COEFFICIENT = "the standard error in the file, from the posterior, linearised at the present solution"
+
+
 def promise(plan: Plan) -> str:
     """What the numbers mean, and for which estimate they hold."""
     kind = plan.goal.kind
-    if kind == EPSILON:
-        debiased = plan.config.spin.pecp1 == "debiased"
-        which = " (debiased, without the line of finite spin)" if debiased else ""
-        estimate = (
-            f"The prediction is for {EPS} of the direct method as a build states it{which}: its own budget, computed from your "
-            "points and from the readings that the fitted rig would give at the new points."
-        )
-    elif kind == JOINT:
-        estimate = (
-            'The prediction is for PECP1 of the joint fit of tyre and rig (spin.pecp1 = "model"), from its posterior, linearised '
-            "at the present solution."
-        )
-    elif kind == BANDS:
-        estimate = (
-            "The prediction is for the 95 % band of the fitted curves on a straight path: rms over the tested sideslip and "
-            "camber at three loads, from the posterior, linearised at the present solution."
-        )
-    elif kind == FILE:
-        estimate = (
-            "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and "
-            "slip at three loads, at which the wheel has been steered, leaned or driven so far. What was not measured counts "
-            "with its prior."
-        )
-    else:
-        estimate = "The prediction is for the standard error in the file, from the posterior, linearised at the present solution."
+    debiased = plan.config.spin.pecp1 == "debiased"
+    which = " (debiased, without the line of finite spin)" if debiased else ""
+    estimate = ESTIMATES.get(kind, OF_COEFFICIENT).replace("%s", which)
     size = "" if kind in (BANDS, FILE) else " are standard uncertainties (k = 1) and"
-    return f"{estimate} All numbers{size} assume the noise of your present points."
+    return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 
 def estimates(plan: Plan) -> str:

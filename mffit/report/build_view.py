@@ -36,6 +36,8 @@ STATUS_ORDER = (
     "converted",
     "default",
 )
+NOT_DECIDED = ("base", "converted", "default", "given", "range")
+"""Statuses of values that neither the data nor a model of them decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,9 +84,7 @@ class CoefficientRow(NamedTuple):
 
     @property
     def held(self) -> bool:
-        return (
-            self.found.status in ("base", "converted", "default", "given", "range") and not self.found.by_hand
-        )
+        return self.found.status in NOT_DECIDED and not self.found.by_hand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
