@@ -15,14 +15,6 @@ from tir.parameters import BY_NAME
 
 DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
     Picture(
-        name="gap",
-        title="Rms gap of each channel and chi-squared before and after, all points and held-out conditions",
-        shows="Measured minus simulated: grey bars are the simulation as given, blue bars include the effects below. The dashed "
-        "line is the gap that noise alone would leave. Held out means predicted by a fit that had not seen those conditions: "
-        "only an effect that reduces this gap, too, is more than a better fit.",
-        draw=gap.gap_bars,
-    ),
-    Picture(
         name="curves",
         title="The worst and the typical sweep: measured, simulated as given and with what was found",
         shows="The sweeps with the largest and with the median misfit of the simulation, in units of the noise. Dashed lines are "

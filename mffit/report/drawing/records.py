@@ -59,7 +59,6 @@ class Bars:
     lengths: np.ndarray
     places: np.ndarray  #: on the vertical axis
     colours: Sequence[str]
-    height: float = 0.62  #: in units of the vertical axis
 
     def columns(self) -> dict[str, np.ndarray]:
         """Columns (n,) of the table behind the picture."""

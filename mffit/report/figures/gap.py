@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Sequence
-from operator import attrgetter, methodcaller
+from collections.abc import Sequence
 
 import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95
-from mffit.diagnosis import Gap
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
@@ -39,55 +37,7 @@ GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
 FOUND = Look(colour=style.ACCENT, line="-", width=1.2)
 LEAST_GAIN = 1.0
 """Where the logarithmic axis of gains begins."""
-FLOOR = Look(colour=style.CONTRAST, line="--", width=1.2)
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
-
-
-def gap_bars(view: DiagnosisView) -> Sheet:
-    """Rms of every channel and chi2 per degree of freedom, before and after, fitted and held out."""
-    panels = [
-        _bars(
-            view,
-            methodcaller("rms", channel.name),
-            channel.noise,
-            f"{channel.symbol}: rms gap",
-            f"measured − simulated [{channel.unit}]",
-        )
-        for channel in view.channels
-    ]
-    chi2 = _bars(view, attrgetter("chi2_per_dof"), 1.0, "χ² per degree of freedom", "1 = nothing but noise")
-    key = {"as given": Look(colour=style.FAINT, opacity=1.0)}
-    if view.changed:
-        key["with what was found"] = Look(colour=style.ACCENT, opacity=1.0)
-    return Sheet(rows=[[*panels, chi2]], height=1.2 if view.changed else 0.6, key={**key, "noise": FLOOR})
-
-
-def _bars(view: DiagnosisView, size: Callable[[Gap], float], floor: float, title: str, label: str) -> Panel:
-    """Bars before and after, for all points and for those held out; the dashed line is the noise."""
-    found, checked = view.diagnosis, view.diagnosis.validation
-    pairs = {"all points": (size(found.gap_before), size(found.gap_after))}
-    if view.changed:
-        pairs["held out"] = (size(checked.gap_before), size(checked.gap_after))
-    before, after = (np.array([pair[k] for pair in pairs.values()]) for k in (0, 1))
-    places, apart = np.arange(float(len(pairs))), 0.19 if view.changed else 0.0
-    sides = [("as given", before, places - apart, style.FAINT)]
-    if view.changed:
-        sides.append(("with what was found", after, places + apart, style.ACCENT))
-    return Panel(
-        title=title,
-        x=Axis(label=label, low=0.0, high=1.25 * max([*before, *after, float(np.nan_to_num(floor))])),
-        y=listed([*pairs]),
-        series=[
-            Bars(name=name, lengths=values, places=at, colours=[colour] * len(values), height=0.34)
-            for name, values, at, colour in sides
-        ],
-        guides=[Guide(axis="x", at=floor, look=FLOOR)] if np.isfinite(floor) else [],
-        notes=[
-            Note(x=value, y=place, text=f"{value:.3g}")
-            for _, values, at, _ in sides
-            for value, place in zip(values, at, strict=True)
-        ],
-    )
 
 
 def curves_before_after(view: DiagnosisView) -> Sheet:

@@ -64,9 +64,10 @@ def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
 
 def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
-    assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"curves", "gap", "evidence", "gap_maps"}
-    assert set(page.tables) == {"curves", "gap", "evidence", "gap_maps"}
-    assert page.tables["gap"].count("held out") == 2 * (len(view_of(misaligned).channels) + 1)
+    assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"curves", "evidence", "gap_maps"}
+    assert set(page.tables) == {"curves", "evidence", "gap_maps"}
+    assert page.text.count("held out") >= 2
+    assert "noise alone" in page.text
     assert misaligned.headline in page.text
     assert "alpha_0_deg" not in page.text
     assert page.text.lower().count("sideslip axis misaligned") >= 3  # card, heading, number
