@@ -29,7 +29,7 @@ def overview(view: BuildView) -> Sheet:
 
 
 def _overview(view: BuildView, over: str) -> Panel:
-    channel, load = view.channels[0], view.config.tyre.nominal_load
+    channel, load = view.channels[0], view.build.config.tyre.nominal_load
     (curve,) = (
         c
         for c in view.curves

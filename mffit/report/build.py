@@ -136,7 +136,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "means. Points include camber and speeds that the lines leave out.",
         section="slip",
         draw=radii.radii,
-        when=lambda view: bool(view.radii.rms),
+        when=lambda view: bool(view.build.fit.radii.rms),
     ),
     Picture(
         name="bands",
@@ -147,7 +147,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "covers what the formula allows, not what a tyre may do.",
         section="bands",
         draw=bands.bands,
-        when=lambda view: view.files is not None,
+        when=lambda view: view.build.fit.files is not None,
     ),
     Picture(
         name="borrowed_Fx",
@@ -157,7 +157,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "similar tyres.",
         section="sister",
         draw=bands.borrowed_force,
-        when=lambda view: view.files is not None and view.build.fit.lent is not None,
+        when=lambda view: view.build.fit.files is not None and view.build.fit.lent is not None,
     ),
     Picture(
         name="residuals",

@@ -8,17 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.config import Config
-from mffit.fit import Coefficient, Posterior
-from mffit.fit.wheel.vertical import Vertical
-from mffit.fit.written.files import Files
-from mffit.measured import Measured
+from mffit.fit import Coefficient
 from mffit.points import Points
 from mffit.report.catalogue import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
-from tir import Tyre
 from tir.parameters import BY_NAME, Parameter
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
@@ -106,18 +101,12 @@ class BuildView(Overlay):
     """A build, and what its pictures draw."""
 
     build: BuildResult
-    config: Config
     felt: (
         Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
     )
     conditions: tuple[CurveCondition, ...]
-    measured: Measured
     rows: tuple[CoefficientRow, ...]
-    model: Tyre  #: the fitted model
-    posterior: Posterior  #: covariance of what was fitted
-    files: Files | None  #: None if no file was written
     file_names: Mapping[str, str]  #: by use
-    radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         single = [o.row for o in self.build.fit.outliers if o.channel == channel]
@@ -146,11 +135,11 @@ class BuildView(Overlay):
 
     @property
     def on_disc(self) -> bool:
-        return self.measured.epsilon_gamma is not None
+        return self.build.measured.epsilon_gamma is not None
 
     @property
     def several_files(self) -> bool:
-        return self.files is not None and len(self.files.by_use) > 1
+        return self.build.fit.files is not None and len(self.build.fit.files.by_use) > 1
 
 
 def view_of(result: BuildResult) -> BuildView:
@@ -171,18 +160,12 @@ def view_of(result: BuildResult) -> BuildView:
     ]
     return BuildView(
         build=result,
-        config=result.config,
         points=points,
         felt=points if np.all(points.free_rolling) else fit.simulation.felt(points),
         channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
         curves=found,
         lines=model_lines(fit.simulation, points, found, fit.model),
         conditions=tuple(conditions(points)),
-        measured=result.measured,
         rows=tuple(CoefficientRow(BY_NAME[name], found) for name, found in fit.coefficients.items()),
-        model=fit.tyre,
-        posterior=fit.posterior,
-        files=fit.files,
         file_names={use: name for use, name in result.files.items() if use in result.uses},
-        radii=fit.radii,
     )

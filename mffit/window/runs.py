@@ -7,7 +7,6 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -34,48 +33,6 @@ def out_of(path: Path) -> Path:
     return path.parent / "out"
 
 
-def fit(path: Path, progress: Progress) -> dict[str, Any]:
-    """What the page shows of a build that writes nothing."""
-    from mffit import pipeline, viewer
-
-    return viewer.project_data(pipeline.build(path, progress=progress))
-
-
-def build(path: Path, progress: Progress) -> dict[str, Any]:
-    """As ``mffit build``, and what the page shows of it."""
-    from mffit import pipeline, viewer
-
-    return viewer.project_data(pipeline.build(path, out_of(path), progress=progress))
-
-
-def diagnose(path: Path, progress: Progress) -> None:
-    """As ``mffit diagnose``."""
-    from mffit import pipeline
-
-    pipeline.diagnose(path, out=out_of(path) / "diagnosis", progress=progress)
-
-
-def plan(path: Path, progress: Progress) -> None:
-    """As ``mffit plan``."""
-    from mffit import pipeline
-
-    pipeline.plan(path, out=out_of(path) / "plan", progress=progress)
-
-
-def compare(path: Path, progress: Progress) -> None:
-    """As ``mffit compare`` of the base file and the last build."""
-    from mffit import config, pipeline
-
-    base = config.load(path).tyre.base
-    if base is None:
-        raise InputError("names no base file to compare with; add base under [tyre]", file=path)
-    pipeline.compare(path.parent / base, out_of(path), out=out_of(path) / "comparison", progress=progress)
-
-
-RUNS: Mapping[str, Callable[[Path, Progress], dict[str, Any] | None]] = {
-    run.__name__: run for run in (fit, build, diagnose, plan, compare)
-}
-"""What can be run, by name."""
 PAGES = {
     "build": ("Report", "report.html"),
     "diagnose": ("Diagnosis", "diagnosis/diagnosis.html"),
@@ -83,6 +40,29 @@ PAGES = {
     "compare": ("Comparison with the base file", "comparison/compare.html"),
 }
 """By run, the title of the page that it writes and its place in the folder of the results."""
+RUNS = ("fit", *PAGES)
+"""What can be run: a build that writes nothing, and the commands of these names."""
+
+
+def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | None:
+    """Run it in this process; returns what the page shows of a fit or a build."""
+    from mffit import config, pipeline, viewer
+
+    out = out_of(path)
+    match kind:
+        case "fit" | "build":
+            written = out if kind == "build" else None
+            return viewer.project_data(pipeline.build(path, written, progress=progress))
+        case "diagnose":
+            pipeline.diagnose(path, out=out / "diagnosis", progress=progress)
+        case "plan":
+            pipeline.plan(path, out=out / "plan", progress=progress)
+        case "compare":
+            base = config.load(path).tyre.base
+            if base is None:
+                raise InputError("names no base file to compare with; add base under [tyre]", file=path)
+            pipeline.compare(path.parent / base, out, out=out / "comparison", progress=progress)
+    return None
 
 
 class Run:
@@ -137,7 +117,7 @@ def _work(kind: str, path: Path, sender: Connection) -> None:
     try:
         try:
             sender.send(("progress", BEGUN))
-            data = RUNS[kind](path, lambda sentence: sender.send(("progress", sentence)))
+            data = carry_out(kind, path, lambda sentence: sender.send(("progress", sentence)))
             outcome = RunOutcome("done", data=data)
         except (InputError, TirError) as error:
             outcome = RunOutcome("refused", str(error))

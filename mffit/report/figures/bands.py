@@ -29,7 +29,7 @@ def tested_edges(tested: float) -> list[Guide]:
 
 def bands(view: BuildView) -> Sheet:
     """The channels with 95 % bands over camber, over sideslip and over slip if it was run, at three loads on a straight path."""
-    files = view.files
+    files = view.build.fit.files
     assert files is not None
     colours = three_loads(view)
     sideways = [
@@ -46,9 +46,9 @@ def bands(view: BuildView) -> Sheet:
 
 def three_loads(view: BuildView) -> dict[float, str]:
     """Colours of the smallest, the nominal and the largest load of the file."""
-    assert view.files is not None
-    written = view.files.written
-    return style.ramp([written["FZMIN"], float(view.model["FNOMIN"]), written["FZMAX"]])
+    assert view.build.fit.files is not None
+    written = view.build.fit.files.written
+    return style.ramp([written["FZMIN"], float(view.build.fit.tyre["FNOMIN"]), written["FZMAX"]])
 
 
 def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
@@ -57,8 +57,8 @@ def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
-    assert view.files is not None
-    x, guides = _ends(view.files, over)
+    assert view.build.fit.files is not None
+    x, guides = _ends(view.build.fit.files, over)
     at = x if over == "kappa" else np.degrees(x)
     series = [model_curve(view, name, at, load, colour, **{over: x}) for load, colour in colours.items()]
     return Panel(title=CHANNELS[name].short_axis, x=labels.angle_axis(over), series=series, guides=guides)
@@ -86,11 +86,13 @@ def model_curve(
     kappa: np.ndarray | float = 0.0,
 ) -> Trace:
     """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
-    tyre = Simulation.of(view.model, turn_slip=view.on_disc)
+    tyre = Simulation.of(view.build.fit.tyre, turn_slip=view.on_disc)
     alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
-    where = make_points(alpha, gamma, load, kappa=kappa, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
+    where = make_points(
+        alpha, gamma, load, kappa=kappa, p=float(view.build.fit.tyre["NOMPRES"]), V=10.0, phi_t=0.0
+    )
     line = tyre.readings(where, (channel,))[channel]
-    half = view.posterior.band(tyre, where, (channel,))[channel]
+    half = view.build.fit.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
     return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)
 
@@ -105,14 +107,14 @@ MODEL = Look(colour=style.INK, marker=".", size=2.0)
 
 def files_on_a_straight_path(view: BuildView) -> Sheet:
     """Fy and Mz of the files over camber and over sideslip at nominal load, the model as dots, with the ends of the tests."""
-    assert view.files is not None
+    assert view.build.fit.files is not None
     panels = [_panel_of_files(view, channel, over) for channel in SIDEWAYS for over in LIMITS]
-    key = {"fitted model": MODEL, **{view.file_names[use]: LOOKS[use] for use in view.files.by_use}}
+    key = {"fitted model": MODEL, **{view.file_names[use]: LOOKS[use] for use in view.build.fit.files.by_use}}
     return Sheet(rows=[panels], height=2.1, key=key)
 
 
 def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
-    files = view.files
+    files = view.build.fit.files
     assert files is not None
     load = float(files.by_use["normal"].tyre["FNOMIN"])
     end, other = LIMITS[over], labels.OTHER[over]
@@ -126,7 +128,7 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
             force = getattr(file.tyre(load, alpha, gamma, turn_slip=use == "turn-slip"), channel)
             name = f"{view.file_names[use]}, {at}"
             series.append(Trace(name=name, x=np.degrees(x), y=force, look=LOOKS[use]))
-        model = getattr(view.model(load, alpha, gamma, turn_slip=True), channel)
+        model = getattr(view.build.fit.tyre(load, alpha, gamma, turn_slip=True), channel)
         series.append(Trace(name=f"fitted model, {at}", x=np.degrees(x)[::5], y=model[::5], look=MODEL))
     return Panel(
         title=f"{CHANNELS[channel].short_axis}, {labels.LOAD.of(load)}",
@@ -138,7 +140,7 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
 
 def borrowed_force(view: BuildView) -> Sheet:
     """Fx over longitudinal slip with 95 % bands at three loads, with and without sideslip, on a straight path."""
-    assert view.files is not None
+    assert view.build.fit.files is not None
     colours = three_loads(view)
     kappa = np.linspace(-1.0, 1.0, STEPS_OF_LINE) * SLIP_BEYOND_THE_PEAK
     panels = [
@@ -151,7 +153,7 @@ def borrowed_force(view: BuildView) -> Sheet:
             ],
         )
         for sideslip in (
-            share * np.degrees(view.files.tested["ALPMAX"]) for share in constants.HELD_SHARES[:2]
+            share * np.degrees(view.build.fit.files.tested["ALPMAX"]) for share in constants.HELD_SHARES[:2]
         )
     ]
     return Sheet(rows=[panels], height=2.1, key=key_of_loads(colours))

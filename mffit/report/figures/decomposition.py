@@ -24,7 +24,7 @@ PARTS = {
 
 def parts(view: BuildView) -> Sheet:
     """Raw, odd and even curve of every channel over each angle, at the load nearest to the nominal one."""
-    nominal = view.config.tyre.nominal_load
+    nominal = view.build.config.tyre.nominal_load
     pure = pure_curves(view)
     load = min((c.load for c in pure), key=lambda value: abs(value - nominal))
     panels = []
@@ -81,7 +81,7 @@ def _by_load(
 
 def pure_curves(view: BuildView) -> list[Curve]:
     """Forward sweeps over one angle with the other at zero, at the pressure nearest to the nominal one."""
-    nominal = view.config.tyre.nominal_pressure
+    nominal = view.build.config.tyre.nominal_pressure
     pressure = min((c.pressure for c in view.curves), key=lambda value: abs(value - nominal), default=0.0)
     pure = [c for c in view.curves if c.forward and c.over != "kappa" and abs(c.held) < UPRIGHT]
     return [c for c in pure if c.pressure == pressure]

@@ -105,7 +105,7 @@ def overview(view: BuildView) -> Sheet:
 def _nearest(view: BuildView, over: str) -> list[Curve]:
     """Forward curves over an angle or slip at the load and pressure nearest to the nominal ones."""
     tyre, upright = (
-        view.config.tyre,
+        view.build.config.tyre,
         [c for c in view.curves if c.over == over and c.forward and not c.camber],
     )
     for name, nominal in (("load", tyre.nominal_load), ("pressure", tyre.nominal_pressure)):

@@ -30,11 +30,11 @@ LINE = Look(colour=style.MUTED, line="-", width=1.0)
 
 def radii(view: BuildView) -> Sheet:
     """A panel per radius that was fitted."""
-    rolling = view.radii.rolling
+    rolling = view.build.fit.radii.rolling
     assert rolling is not None
     pressure = np.round(levels.level_values(rolling.p, levels.PRESSURE), -3)
     colours = style.ramp(np.unique(pressure).tolist())
-    panels = [_panel(view, rolling, channel, pressure, colours) for channel in view.radii.rms]
+    panels = [_panel(view, rolling, channel, pressure, colours) for channel in view.build.fit.radii.rms]
     key = {"measured": READ, "file": LINE}
     key |= {CONDITIONS["p_kPa"].of(p / 1e3): Look(colour=c, line="-", width=3.0) for p, c in colours.items()}
     return Sheet(rows=[panels], height=2.1, key=key)
@@ -43,7 +43,7 @@ def radii(view: BuildView) -> Sheet:
 def _panel(
     view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
 ) -> Panel:
-    known = Posterior(tuple(view.radii.numbers), view.radii.covariance)
+    known = Posterior(tuple(view.build.fit.radii.numbers), view.build.fit.radii.covariance)
     series = []
     read, steps = rolling.radius(channel), STEPS_OF_LINE
     speed = float(np.median(rolling.V))
@@ -64,7 +64,7 @@ def _panel(
         def of(tyre: Any, at: RollingParts = at) -> Any:
             return radius(vars(tyre), at, channel)
 
-        line, half = with_band(view.model.values, known, of)
+        line, half = with_band(view.build.fit.tyre.values, known, of)
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
         lined, dotted = replace(LINE, colour=colour), replace(READ, colour=colour)
         series += [

@@ -31,7 +31,7 @@ ZEROS = (Guide(axis="x", at=0.0), ZERO)
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
     upright = [c for c in varied(view.curves, SLIP) if c.forward and abs(c.camber) < UPRIGHT]
-    nominal = view.config.tyre.nominal_pressure
+    nominal = view.build.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
     found: dict[float, list[Curve]] = {}
     for curve in upright:
@@ -119,7 +119,7 @@ def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarra
 
 
 def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
-    tyre = SimpleNamespace(**view.model.values)
+    tyre = SimpleNamespace(**view.build.fit.tyre.values)
     return outputs_of(("Fx", "Fy"), tyre, where, turn_slip=view.on_disc)
 
 
@@ -158,7 +158,7 @@ def _path(
         F = outputs_of(("Fx", "Fy"), p, where, turn_slip=view.on_disc)
         return across_x * F[0] + across_y * F[1]
 
-    _, half = with_band(view.model.values, view.posterior, moved_across)
+    _, half = with_band(view.build.fit.tyre.values, view.build.fit.posterior, moved_across)
     return Trace(name=name, x=Fy, y=Fx, half=across_x * half, half_x=across_y * half, look=look)
 
 

@@ -62,8 +62,8 @@ BACKWARDS = Look(colour=style.CONTRAST, line="--", marker="v", size=4.2, hollow=
 def camber_reduction(view: BuildView) -> Sheet:
     """Three panels: eps_gamma among published tyres, the budget of its uncertainty, eps_gamma over load."""
     panels = [
-        _among_published(view.config.tyre.name, view.measured),
-        _budget(view.measured),
+        _among_published(view.build.config.tyre.name, view.build.measured),
+        _budget(view.build.measured),
         _over_load(view),
     ]
     key = {
@@ -121,7 +121,7 @@ def _budget(measured: Measured) -> Panel:
 
 
 def _over_load(view: BuildView) -> Panel:
-    measured, nominal = view.measured, view.config.tyre.nominal_load
+    measured, nominal = view.build.measured, view.build.config.tyre.nominal_load
     found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
     load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
     series = [Trace(name="this tyre", x=load, y=value, half=u, look=replace(OWN, size=4.5, width=1.4))]

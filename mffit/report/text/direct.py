@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
-from mffit.measured.result import FINITE_SPIN
+from mffit.measured.result import FINITE_SPIN, SetupResult
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -134,26 +134,8 @@ def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
 def setups_table(measured: Measured) -> str:
     """What the zeros of every set-up give by themselves at the nominal load; empty if there is one on one path."""
     rows = measured.nominal.setups if measured.nominal else ()
-    if not rows:
-        return ""
-    head = (
-        "set-up",
-        "path centre",
-        DIRECT["epsilon_gamma"].ascii,
-        DIRECT["F_phit"].column(DIRECT["F_phit"].ascii),
-        CONDITIONS["alpha_deg"].column(DIRECT["alpha_M"].ascii),
-    )
-    cells = [
-        (
-            row.name or "-",
-            row.path,
-            stated(row.epsilon_gamma),
-            stated(row.F_phit),
-            stated(row.alpha_M, scale=math.degrees(1.0)),
-        )
-        for row in rows
-    ]
-    return table(head, cells, left=2)
+    own = [(row.name or "-", row.path) for row in rows]
+    return _zeros(("set-up", "path centre"), own, rows, ("epsilon_gamma", "F_phit")) if rows else ""
 
 
 def _improve_first(budget: Sequence[Contribution], total: float) -> str:
@@ -173,17 +155,28 @@ def _improve_first(budget: Sequence[Contribution], total: float) -> str:
 
 def _per_load(rows: Sequence[LoadResult]) -> str:
     load = CONDITIONS["Fz_N"]
+    return _zeros((load.column(load.word),), [(number(row.load, 0),) for row in rows], rows, PER_LOAD, left=0)
+
+
+def _zeros(
+    first: Sequence[str],
+    own: Sequence[tuple[str, ...]],
+    rows: Sequence[LoadResult | SetupResult],
+    names: Sequence[str],
+    left: int = 2,
+) -> str:
+    """A table of results by name and of alpha_M, behind columns of each row's own."""
     head = (
-        load.column(load.word),
-        *(DIRECT[name].column(DIRECT[name].ascii) for name in PER_LOAD),
+        *first,
+        *(DIRECT[name].column(DIRECT[name].ascii) for name in names),
         CONDITIONS["alpha_deg"].column(DIRECT["alpha_M"].ascii),
     )
     cells = [
         (
-            number(row.load, 0),
-            *(stated(getattr(row, name)) for name in PER_LOAD),
+            *cells,
+            *(stated(getattr(row, name)) for name in names),
             stated(row.alpha_M, scale=math.degrees(1.0)),
         )
-        for row in rows
+        for cells, row in zip(own, rows, strict=True)
     ]
-    return table(head, cells, left=0)
+    return table(head, cells, left=left)

@@ -199,14 +199,14 @@ def test_budget_bars_are_ordered_and_below_the_total(view):
     panel = spin.camber_reduction(view).panels[1]
     bars = list(panel.series[0].lengths)
     assert bars == sorted(bars, reverse=True)
-    assert max(bars) <= view.measured.epsilon_gamma.u
-    assert panel.guides[0].at == view.measured.epsilon_gamma.u
+    assert max(bars) <= view.build.measured.epsilon_gamma.u
+    assert panel.guides[0].at == view.build.measured.epsilon_gamma.u
 
 
 def test_line_over_load_is_the_one_the_file_carries(view):
     series = spin.camber_reduction(view).panels[2].series
     line = next(one for one in series if one.name.startswith("PECP1"))
-    assert line.y == pytest.approx(view.measured.pecp1)
+    assert line.y == pytest.approx(view.build.measured.pecp1)
 
 
 def test_alignment_has_a_panel_per_load_run_both_ways(view):
@@ -321,8 +321,9 @@ def test_page_and_picture_are_made_of_the_same_figure():
 
 @pytest.mark.parametrize("name", ["front-1", "a very long name of a tyre that somebody gave it"])
 def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
-    tyre = view.config.tyre.model_copy(update={"name": name})
-    renamed = dataclasses.replace(view, config=view.config.model_copy(update={"tyre": tyre}))
+    tyre = view.build.config.tyre.model_copy(update={"name": name})
+    config = view.build.config.model_copy(update={"tyre": tyre})
+    renamed = dataclasses.replace(view, build=dataclasses.replace(view.build, config=config))
     with pictures._settings():
         for one in build.planned(renamed):
             sheet = one.make()

@@ -119,9 +119,9 @@ def test_the_friction_limit_is_dotted_where_no_sweep_combined_as_much(view):
 def test_a_band_is_what_the_coefficient_moves(view):
     where = {"Fz": 1400.0, "kappa": np.linspace(-0.2, 0.2, 9), "alpha": 0.05, "Vx": 16.0, "pressure": 250e3}
     known = Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]]))
-    found = with_band(view.model.values, known, lambda p: outputs_of(("Fx",), p, where)[0])
+    found = with_band(view.build.fit.tyre.values, known, lambda p: outputs_of(("Fx",), p, where)[0])
     ends = [
-        view.model.replace(PDX1=view.model["PDX1"] + side * U["PDX1"])(
+        view.build.fit.tyre.replace(PDX1=view.build.fit.tyre["PDX1"] + side * U["PDX1"])(
             1400.0, 0.05, 0.0, where["kappa"], Vx=16.0, p=250e3, turn_slip=False
         ).Fx
         for side in (-1.0, 1.0)
