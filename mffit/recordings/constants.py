@@ -37,12 +37,6 @@ ROLLING_RADIUS_RANGE = Series(
 
 # Summaries of a test
 LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are not taken for the summary of a test.")
-SET_POINT_TOLERANCE = Real(
-    2.0,
-    "-",
-    "Distance of a recorded level from its set-point, in tolerances of a level: 16 % of the load, which programmes step by a "
-    "quarter.",
-)
 
 # Disc or belt
 ZERO_OF_A_DISC = Real(

@@ -22,7 +22,6 @@ from mffit.points.stretch import MOVE
 from mffit.recordings.directions import rolls_backward
 from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
-from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
@@ -130,7 +129,6 @@ def sniff(
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
     of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
-    of_summaries += against_summary(summaries, reading)
     two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
     of_summaries += [
         moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)
