@@ -70,11 +70,6 @@ BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compar
 COLD_TREAD = Real(
     10.0, "K", "First sweeps are dropped if the tread is this much colder than in the middle one."
 )
-COLDER_BEGINNING = Real(
-    3.0,
-    "K",
-    "A recording begins cold if its first sweeps are this much colder than later ones: grip changes by 1 %.",
-)
 FEWEST_SWEEPS = Count(3, "-", "Fewest sweeps that show what is usual and its scatter.")
 
 # Means and lag of moving sweeps
@@ -86,9 +81,6 @@ NEAR_ZERO = Real(
     0.25,
     "-",
     "Fy over the largest of its sweep, or Fx over the load, below which the curve is nearly straight.",
-)
-EVEN_RATE = Real(
-    0.5, "-", "Relative deviation from the usual rate of sideslip up to which a sample shows the lag."
 )
 
 # Definition of slip

@@ -12,6 +12,7 @@ import numpy as np
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.config.globs import is_pattern, matches
+from mffit.config.loading import STAND_IN
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.clock import spread
@@ -31,9 +32,6 @@ from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted
 from tir.conventions import FLIPPED
-
-STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
-"""Placeholder for a tyre that is not known yet; no result of reading depends on it."""
 
 
 class SniffedRecording(NamedTuple):

@@ -129,19 +129,6 @@ def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
     return said
 
 
-def load_file(path: str | Path, *, axes: str) -> Sweeps:
-    """Read one file without a configuration; pressure and speed are NaN if it does not have them.
-
-    Parameters
-    ----------
-    path : file with the contract's headings, forces in the contact frame
-    axes : "iso", "sae" or "adapted-sae"
-    """
-    columns = read_columns(read(Path(path)), {})
-    given = Circumstances(axes=axes, file=str(path))
-    return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
-
-
 def _refusal(config: Config, index: int, sentence: str, key: str) -> InputError:
     """The error about a key of a [[sweep]]."""
     line = config.line_of(f"sweep.{index}.{key}")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config.loading import checked
+from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
 from mffit.output import new_files
 from mffit.pipeline.intake import project_of
@@ -20,7 +20,7 @@ from mffit.recordings.directions import rolls_backward
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, Guess, guesses
 from mffit.recordings.project_file import Stated, slug, tyre_found
-from mffit.recordings.sniffed import STAND_IN, ChosenFile, Sniffed, axes_of, sniff
+from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, sniff
 from mffit.recordings.summary import RunSummary, apart, bad_runs, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
