@@ -46,4 +46,3 @@ ZERO_OF_A_DISC = Real(
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
 NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
-FEWEST_FOR_PATTERN = Count(4, "-", "Fewest recordings that are named by one pattern instead of one by one.")
