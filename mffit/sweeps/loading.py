@@ -12,9 +12,8 @@ import numpy as np
 from mffit.config import Config, setup_names
 from mffit.config.exclusion import ExcludeTable
 from mffit.config.models import SweepTable
-from mffit.constants import LIKENESS_OF_MISSPELT
+from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
 from mffit.errors import InputError
-from mffit.sweeps import constants
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
@@ -115,13 +114,13 @@ def load(config: Config) -> Sweeps:
 
 
 def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
-    """Warnings with their files, each kind once: of more than two files that differ in nothing but numbers, that of the first."""
+    """Warnings with their files, each kind once: of more than three that differ in nothing but numbers, that of the first."""
     alike: dict[str, list[tuple[Path, str]]] = {}
     for path, sentence in warnings:
         alike.setdefault(NUMBER.sub("0", sentence.removeprefix(str(path))), []).append((path, sentence))
     said = []
     for kind in alike.values():
-        if len(kind) > constants.MOST_WARNINGS_OF_A_KIND:
+        if len(kind) > NAMED_IN_SENTENCE:
             files = dict.fromkeys(path.name for path, _ in kind[1:])
             said.append(f"{kind[0][1]}; {len(kind) - 1} more of this kind, in {some(list(files))}")
         else:

@@ -16,7 +16,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import (
     DIRECTIONS,
     StepLength,
-    _correlation,
+    _noise,
     _fitted,
     relaxation,
     relaxation_sentences,
@@ -180,8 +180,9 @@ def test_without_steps_the_result_says_what_to_run(truth):
 def test_correlated_residuals_count_as_fewer_and_white_ones_as_they_are():
     """The mean of a first-order process with correlation r has (1 + r) / (1 - r) times the variance of white noise."""
     white = np.random.default_rng(3).standard_normal(4000)
-    assert _correlation(white) == pytest.approx(1.0, abs=0.1)
-    assert _correlation(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(9.0, rel=0.25)
+    assert _noise(white, 0) == pytest.approx(1.0, abs=0.1)
+    red = lfilter([1.0], [1.0, -0.8], white)
+    assert _noise(red, 0) == pytest.approx(3.0 * np.std(red), rel=0.12)
 
 
 def test_the_sentences_give_every_length_with_its_load(found):
