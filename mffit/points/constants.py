@@ -17,7 +17,6 @@ SLIP = Real(
     "-",
     "Longitudinal slips of one level differ by less: a wheel rolls freely up to it, a sweep is averaged over it.",
 )
-SMALLEST_LEVEL = Real(0.02, "-", "Fewest values of a level over those of the largest level.")
 LEVEL_FLANK = Real(
     0.3, "-", "Density over that half a tolerance away below which values are a flank of that level."
 )
