@@ -11,9 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
@@ -24,7 +25,7 @@ from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_mode
 from mffit.points import Points, levels
 from mffit.points.constants import LONGEST_STEP
 from mffit.points.lag import rolled_distance
-from mffit.points.mean import mean_and_error
+from mffit.points.mean import autoregression
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -225,7 +226,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         return design @ x[count:], np.column_stack([x[-1] * slope, design])
 
     sigma, u, move = radius, math.inf, math.inf
-    noise = _noise(read - model(np.array([n.start for n in free]))[0], len(free))
+    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free))
     for _ in range(constants.REFIT_STEPS):
         end = solve(_problem(model, read, noise), free)
         x = np.array(list(end.values.values()))
@@ -234,7 +235,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         u = math.sqrt(float(end.covariance[0, 0]))
         if abs(move) < constants.REFIT_TOLERANCE * sigma:
             break
-        noise = _noise(read - model(x)[0], len(free))
+        noise = _Noise.of(read - model(x)[0], len(free))
     u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
@@ -284,23 +285,35 @@ def _response(
     return force[direction.force], slope[:, None] * np.column_stack(by)
 
 
+class _Noise(NamedTuple):
+    """Noise of readings in their order, in which each remembers those before it."""
+
+    memory: np.ndarray  #: shares (k,) of the readings before that the next one keeps
+    size: float  #: standard deviation of what is new in a reading
+
+    @classmethod
+    def of(cls, residual: np.ndarray, numbers: int) -> _Noise:
+        """The noise in what so many fitted numbers leave."""
+        memory, new = autoregression(residual - residual.mean())
+        return cls(memory, math.sqrt(new * len(residual) / max(len(residual) - numbers, 1)) or 1.0)
+
+    def whitened(self, x: np.ndarray) -> np.ndarray:
+        """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""
+        new = lfilter(np.r_[1.0, -self.memory], 1.0, x, axis=0)[len(self.memory) :]
+        return np.asarray(new / self.size)
+
+
 def _problem(
-    model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, noise: float
+    model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, noise: _Noise
 ) -> LeastSquaresProblem:
     """The problem of a model of readings (n,) with a noise."""
     none = np.zeros(0)
 
     def linear(x: np.ndarray) -> Linear:
         found, slope = model(x)
-        return Linear((found - read) / noise, slope / noise, none, np.zeros((0, len(x))))
+        return Linear(noise.whitened(found - read), noise.whitened(slope), none, np.zeros((0, len(x))))
 
-    return LeastSquaresProblem(lambda x: ((model(x)[0] - read) / noise, none), linear)
-
-
-def _noise(residual: np.ndarray, numbers: int) -> float:
-    """Standard deviation of independent noise that would make means as uncertain as what so many numbers leave."""
-    n = len(residual)
-    return mean_and_error(residual)[1] * n / math.sqrt(max(n - numbers, 1)) or 1.0
+    return LeastSquaresProblem(lambda x: (noise.whitened(model(x)[0] - read), none), linear)
 
 
 def _stiffness(direction: Direction, values: Mapping[str, Any], load: Any, pressure: Any) -> Any:
