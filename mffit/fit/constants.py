@@ -210,8 +210,6 @@ USUAL_RUN_SCATTER = Real(
     0.02, "-", "Scatter of grip and stiffness among runs, from which the search for it starts."
 )
 LEAST_RUN_SCATTER = Real(1e-4, "-", "Smallest scatter of grip and stiffness among runs: less does not show.")
-RUN_SCATTER_STEPS = Count(25, "-", "Most steps of the search for this scatter.")
-RUN_SCATTER_TOLERANCE = Real(0.01, "-", "Relative change of the scatter that ends this search.")
 FEWEST_RUNS = Count(3, "-", "Fewest runs whose grip and stiffness can differ from one another.")
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
 NAMED_COEFFICIENTS = Count(

@@ -48,18 +48,21 @@ class Fitted:
         return self.problem.simulation
 
 
+def uncertain(number: FreeNumber) -> Uncertain:
+    """A number at its start with its prior; one without has half the width of the values that tyres have."""
+    if np.isfinite(number.spread):
+        return Uncertain(number.name, number.expected - number.start, number.spread)
+    width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
+    return Uncertain(number.name, 0.0, 0.5 * width)
+
+
 def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | None = None) -> LinearisedFit:
     """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
 
-    A number at a bound stays there. One without a prior has half the width of the values that tyres have.
+    A number at a bound stays there.
     """
-    numbers = []
-    for number in fitted.problem.starting_here(fitted.numbers):
-        if number.name not in fitted.at_bound:
-            known = np.isfinite(number.spread)
-            width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
-            spread = number.spread if known else 0.5 * width
-            numbers.append(Uncertain(number.name, number.expected - number.start if known else 0.0, spread))
+    inner = [number for number in fitted.numbers if number.name not in fitted.at_bound]
+    numbers = [uncertain(number) for number in fitted.problem.starting_here(inner)]
     held = {**fitted.held, **fitted.held_rig}
     numbers += [Uncertain(name, 0.0, u) for name, u in held.items() if u > 0.0]
     problem = of or fitted.problem

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.constants import UPRIGHT
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
@@ -31,8 +31,6 @@ class Nuisance:
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
-    about: tuple[str, ...] = ()
-    """Channels that it is about, where the others see it only at second hand: Mz uses the slip stiffness to weigh slips."""
     per_run: bool = (
         False  #: whether every run (sweep) has numbers of its own, which scatter about those of a perfect rig
     )
@@ -49,7 +47,7 @@ class Nuisance:
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
         return tuple(_number(name, scatter[name], run) for name in self.numbers for run in runs)
 
-    def setting(self, config: Any) -> bool | None:
+    def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
         given = getattr(config.fit, self.key)
         if given is False:
@@ -180,7 +178,6 @@ NUISANCES = (
         numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
         lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
-        about=("Fx", "Fy"),
     ),
     Nuisance(
         id="run-scale",
