@@ -13,7 +13,7 @@ from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.joint import LeftOutGroups, JointFit, beyond_chance, in_most
+from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, in_most
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, minimum
