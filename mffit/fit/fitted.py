@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
@@ -81,7 +80,7 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
     free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
-    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
     return problem.with_values(solution.values).simulation
 
 

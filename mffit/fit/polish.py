@@ -19,7 +19,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, SHAPES_OF_FX
-from mffit.least_squares import FreeNumber, Solution, minimum, solve
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, minimum, solve
 from mffit.points import Points
 from mffit.progress import Progress
 from mffit.quantities import CHANNELS, column
@@ -139,7 +139,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
-        tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
+        tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)
         near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
         problem = problem.with_values(near.values)
@@ -157,7 +157,7 @@ def _strides(n: int) -> Iterator[int]:
 
 def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProblem, Solution]:
     numbers = problem.starting_here(numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
     return problem.with_values(solution.values), solution
 
 

@@ -45,8 +45,7 @@ def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
     if nuisance.lacking(points):
         return ()
     along = {kind.name: correlation_ratio(points, name) for name, kind in LEVELS.items()}
-    along = {setting: r for setting, r in along.items() if r > constants.RUNS_ALONG}
-    growth = _growth(fitted, nuisance) if along else {}
+    growth = _growth(fitted, nuisance)
     out = []
     for setting, r in along.items():
         worst = max(_determined_by(setting, growth), key=lambda name: growth[name], default=None)

@@ -11,13 +11,16 @@ from scipy.optimize import minimize
 from scipy.special import bdtrc, gammaincc
 
 from mffit.constants import PREDICTION_FALSE_ALARM
-from mffit.fit import constants
 from mffit.fit.fitted import uncertain
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.linearised.constants import POINTS_EXAMINED
 from mffit.linearised.mixed import LeftOutReadings, Mixed, Variances
+from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
+
+NO_SCATTER = 0.005
+"""Scatter among the groups over the usual one that does not show."""
 
 HELD = -60.0
 """Logarithm of the variance of a number that is held."""
@@ -74,6 +77,7 @@ class JointFit:
     sigma: np.ndarray  #: (c, n) uncertainties of the readings as weights
     channels: tuple[str, ...]  #: (c,)
     looked_at: np.ndarray  #: (n,) rows of the points: of very many, some
+    usual: np.ndarray  #: (q,) scatter of the own numbers from which the search for it starts
 
     @classmethod
     def of(
@@ -106,6 +110,7 @@ class JointFit:
             sigma=np.array([*problem.sigma.values()]),
             channels=problem.channels,
             looked_at=looked_at,
+            usual=np.array([BY_NAME[name].spread for name in own]),
         )
 
     def explained(self, held: Collection[str] = ()) -> Explained:
@@ -116,11 +121,9 @@ class JointFit:
             found = self.model.evidence(Variances(common, 2.0 * x, 0.0))
             return -found.value, -2.0 * found.own
 
-        least, usual = (
-            float(np.log(size)) for size in (constants.LEAST_RUN_SCATTER, constants.USUAL_RUN_SCATTER)
-        )
-        q = self.model.own.shape[1]
-        found = minimize(loss, np.full(q, usual), jac=True, method="L-BFGS-B", bounds=[(least, 0.0)] * q)
+        start = np.log(self.usual)
+        bounds = [(x + float(np.log(NO_SCATTER)), 0.0) for x in start.tolist()]
+        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
         return Explained(-float(found.fun), Variances(common, 2.0 * found.x, 0.0))
 
     def alike(self, held: Collection[str] = ()) -> Explained:

@@ -11,7 +11,6 @@ import numpy as np
 from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.errors import InputError
-from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, in_most
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
@@ -185,8 +184,6 @@ def _of_runs(
     """
     points = model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
-    if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
-        return Verdict(nuisance, False, _TOO_FEW), {}
     joint = model.joint(sweeps)
     differ, alike = joint.explained(), joint.alike()
     halves = halves_of_runs(points)
@@ -287,17 +284,10 @@ def _without(model: NearSolution, dropped: Nuisance) -> NearSolution:
     return solved(NearSolution(model.problem.with_values(gone), numbers, kept))
 
 
-def solved(model: NearSolution, most: int | None = None) -> NearSolution:
-    """The model fitted again from where it is, in ``most`` steps at most if this is given."""
+def solved(model: NearSolution) -> NearSolution:
+    """The model fitted again from where it is."""
     numbers = model.problem.starting_here(model.numbers)
-    slips = "Fx" in model.problem.sigma
-    usual = constants.REFIT_STEPS_UNDER_SLIP if slips else constants.REFIT_STEPS
-    found = minimum(
-        model.problem.free([number.name for number in numbers]),
-        numbers,
-        max_steps=most or usual,
-        tolerance=constants.POLISH_TOLERANCE if slips else constants.REFIT_TOLERANCE,
-    )
+    found = minimum(model.problem.free([number.name for number in numbers]), numbers)
     return model._replace(problem=model.problem.with_values(found.values))
 
 

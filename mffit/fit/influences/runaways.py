@@ -71,14 +71,11 @@ def _needless(
         inner = [number for number in there.numbers if number.name not in held]
         return float(np.sum(there._replace(numbers=inner).left_out(group).density))
 
-    def settled(there: NearSolution) -> NearSolution:
-        return solved(there, most=constants.REFIT_STEPS)
-
-    model = settled(model._replace(problem=model.problem.thinned(stride)))
+    model = solved(model._replace(problem=model.problem.thinned(stride)))
     first = predicted(model)
     found: list[str] = []
     for name in names:
-        back = settled(model._replace(problem=model.problem.with_values({name: plan.expected[name]})))
+        back = solved(model._replace(problem=model.problem.with_values({name: plan.expected[name]})))
         if predicted(back) >= first:
             found, model = [*found, name], back
     return found

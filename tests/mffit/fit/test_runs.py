@@ -158,7 +158,7 @@ def test_the_key_decides(scattered, given, modelled):
 def test_two_runs_cannot_show_a_scatter(scattered):
     search = scattered[0].fit.search
     few = search.problem.select(np.flatnonzero(search.problem.points.sweep < 2))
-    with pytest.raises(InputError, match="2 runs cannot differ"):
+    with pytest.raises(InputError, match="2 runs do not show how runs differ"):
         choose(with_keys(scattered[0], run_scale=True), replace(search, problem=few))
 
 
@@ -166,7 +166,7 @@ def joint(run, slope, own, residual):
     """Readings of one channel whose shared numbers have priors that do not pull."""
     model = Mixed(-residual, 1e4 * slope, own, [np.flatnonzero(run == k) for k in np.unique(run)])
     names = tuple(f"number {k}" for k in range(slope.shape[1]))
-    return JointFit(names, model, np.ones((1, len(run))), ("Fy",), np.arange(len(run)))
+    return JointFit(names, model, np.ones((1, len(run))), ("Fy",), np.arange(len(run)), np.full(2, 0.3))
 
 
 @pytest.fixture
