@@ -118,7 +118,6 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 # Passes of the fit
 POINTS_OF_A_STAGE = Count(600, "-", "Most points of a first pass; the polish uses all.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
-RESTART_MISFIT = Real(1.3, "-", "Misfit over stated noise above which alternative starting values are tried.")
 STAGE_TOLERANCE = Real(1e-3, "-", "Relative gain that ends an early pass of a search.")
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")

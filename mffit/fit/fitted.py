@@ -38,7 +38,6 @@ class Fitted:
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
     cost: float  #: sum of squares of data, priors and broken limits
-    attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 
     @property

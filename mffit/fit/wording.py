@@ -306,9 +306,6 @@ def warnings(
         f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
         for word, origin in untested.items()
     ]
-    if fitted.attempts:
-        attempts = ", ".join(fitted.attempts)
-        out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
     out += _at_bounds(plain, fitted)
     out += by_hand_warnings(fitted, coverage)
     out += [doubt.sentence for doubt in doubts]
