@@ -122,10 +122,7 @@ def zeros_by_path(
     slope = _slope(C_alpha, group)
     found = []
     for phi_t, setup, part in by_path(points, group, path_curvature(config.rig)):
-        forward, backward = (
-            _at_zero(points, part, way, "Fy", f"noise of the {word} zeros", way * slope)
-            for way, word in WAYS.items()
-        )
+        forward, backward = (force_at_zero(points, part, way, slope) for way in WAYS)
         moments = [
             way * moment
             for way in WAYS
@@ -139,6 +136,11 @@ def zeros_by_path(
         moment = sum(moments) / len(moments) if moments else None
         found.append(PathZeros(phi_t, setup, part, forward, backward, moment, side))
     return found
+
+
+def force_at_zero(points: Points, group: LoadGroup, way: int, slope: float) -> UFloat | None:
+    """Side force [N] at zero sideslip and camber, rolling one way, with a cornering stiffness [N/rad]; None if it was not run."""
+    return _at_zero(points, group, way, "Fy", f"noise of the {WAYS[way]} zeros", way * slope)
 
 
 def u_of(points: Points, channel: str) -> np.ndarray:
@@ -188,7 +190,7 @@ def polynomial(x: np.ndarray, y: np.ndarray, u: np.ndarray, degree: int) -> tupl
     return errors @ A.T @ (y / u), errors
 
 
-def force_at_zero(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
+def forces_of_sweeps(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
     """By sweep, the mean force [N] of its zeros (m,), moved to zero sideslip with a stiffness [N/rad]."""
     rows = rows[np.isfinite(points.Fy[rows])]
     force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
@@ -200,7 +202,7 @@ def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, confi
     u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
     out = []
     for direction, word in WAYS.items():
-        found = force_at_zero(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
+        found = forces_of_sweeps(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
         least, most = (f(found, key=lambda k: found[k], default=None) for f in (min, max))
         if least is None or most is None or found[most] - found[least] <= ALARM * u_difference:
             continue

@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
+from mffit.constants import FALSE_ALARM, HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
-from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, overturning_slope, pooled, signatures
+from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning_slope, pooled, signatures
 
 of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
@@ -42,7 +42,7 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="reversed-file",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    limits=(FALSE_ALARM,),
     sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
     'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
 )
@@ -101,7 +101,7 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="overturning-moment-reversed",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    limits=(FALSE_ALARM,),
     outcome=Outcome.WARNED,
     sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
     "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
@@ -130,8 +130,8 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
     id="moments-about-another-point",
     limits=(
         constants.LEVER_OF_OTHER_MOMENT_POINT,
-        constants.SMALL_ANGLE,
-        constants.FORCE_RANGE_OF_MOMENT_POINT,
+        UPRIGHT,
+        FALSE_ALARM,
         constants.FEWEST,
     ),
     sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
@@ -139,14 +139,10 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
 )
 def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     """Lever arm of Mx over Fy of the upright wheel, per unloaded radius."""
-    upright = np.abs(points.gamma) < constants.SMALL_ANGLE.rad
-    used = np.isfinite(points.Mx) & np.isfinite(points.Fy) & upright
-    if np.sum(used) < constants.FEWEST:
-        return
-    if np.ptp(points.Fy[used]) < constants.FORCE_RANGE_OF_MOMENT_POINT * np.median(points.Fz[used]):
-        return
-    lever = float(np.polyfit(points.Fy[used], points.Mx[used], 1)[0])
-    if abs(lever) < constants.LEVER_OF_OTHER_MOMENT_POINT * config.tyre.unloaded_radius:
+    used = np.isfinite(points.Fy) & (np.abs(points.gamma) <= UPRIGHT.rad)
+    found = line(points.Fy, points.Mx, used)
+    lever = found.value
+    if not abs(lever) - found.clear > constants.LEVER_OF_OTHER_MOMENT_POINT * config.tyre.unloaded_radius:
         return
     declared = config.rig.moments
     other = {"contact": "wheel-centre", "wheel-centre": "contact"}[declared]
@@ -191,7 +187,7 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
 
 @of_all_files(
     id="nominal-load-of-other-loads",
-    limits=(constants.BEYOND_LOADS,),
+    limits=(constants.BEYOND_NOMINAL,),
     sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
     "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
 )
@@ -202,7 +198,7 @@ def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
         return
     of_levels = levels.level_values(loads, levels.LOAD)
     lowest, highest = float(of_levels.min()), float(of_levels.max())
-    if max(nominal / highest, lowest / nominal) > constants.BEYOND_LOADS:
+    if max(nominal / highest, lowest / nominal) > constants.BEYOND_NOMINAL:
         key = "tyre.nominal_load"
         facts = {"nominal": nominal, "lowest": lowest, "highest": highest}
         yield Finding(facts, file=config.path, line=config.line_of(key), key=key)

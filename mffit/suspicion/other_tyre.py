@@ -13,6 +13,7 @@ from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.slopes import at_zero
 
 
 class MeasuredRadius(NamedTuple):
@@ -73,7 +74,7 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 @rule(
     id="other-radius",
     subject=Subject.ALL_FILES,
-    limits=(constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
+    limits=(constants.SMALLEST_RADIUS, constants.RADIUS_OF_ANOTHER_TYRE),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )
@@ -87,7 +88,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
         if not len(values):
             continue
         middle = float(np.median(values))
-        if not constants.SMALLEST_RADIUS <= middle / declared <= constants.LARGEST_RADIUS:
+        if not constants.SMALLEST_RADIUS <= middle / declared <= 1.0 + constants.RADIUS_OF_ANOTHER_TYRE:
             facts = {
                 "words": radius.words,
                 "radius": middle,
@@ -101,8 +102,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
 
 def _rolls_upright(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
-    upright = np.abs(points.gamma) <= constants.SMALL_ANGLE.rad
-    return np.asarray(points.free_rolling & upright & (np.abs(points.alpha) <= constants.SMALL_ANGLE.rad))
+    return np.asarray(points.free_rolling & at_zero(points))
 
 
 class _Cell(NamedTuple):
@@ -127,7 +127,7 @@ def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, 
 
 def _forces(points: Points, one: int, other: int) -> str:
     """Side force of the second file over that of the first at equal conditions, for a sentence; "" if none are equal."""
-    enough = np.abs(points.alpha) >= constants.SMALL_ANGLE.rad
+    enough = np.abs(points.alpha) >= constants.SIDESLIP_OF_SLOPES.rad
     used = points.select(points.free_rolling & enough)
     kinds = {
         "alpha": levels.SIDESLIP, "gamma": levels.CAMBER, "Fz": levels.LOAD, "p": levels.PRESSURE,

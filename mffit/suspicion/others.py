@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +23,8 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.explanation import explanation
 from mffit.suspicion.groups import Group, groups
-from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
 from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
 
 
@@ -181,7 +181,7 @@ def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
     id="doubtful-sweep",
     subject=Subject.SWEEP,
     when=(When.AFTER,),
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.EXPLAINED_BY_ONE_NUMBER),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, EXPLAINED_SHARE),
     outcome=Outcome.WARNED,
     sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
     "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
@@ -238,7 +238,7 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
         channel=name,
         rms=rms(e),
         ratio=float(np.sqrt(chi2 / number)),
-        share=max(rms(e) - constants.SURE_ERRORS * uncertain, 0.0) / size,
+        share=max(rms(e) - constants.DOUBTFUL_SIGMA * uncertain, 0.0) / size,
         chance=float(chdtrc(number, chi2)),
         vague=uncertain / size,
     )
@@ -263,8 +263,8 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     part = _part(campaign.points, group, found)
     gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
     undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
-    away = _Away(part, fitted.simulation, found, {name: size[name] * load for name in found})
-    best = explaining(undone, gross, away.after, dict.fromkeys(found, constants.GROSS_SHARE))
+    away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
+    best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
     return View(
         group=group,
@@ -275,7 +275,7 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     )
 
 
-def _part(points: Points, group: Group, found: Mapping[str, LeftOutReadings]) -> Points:
+def _part(points: Points, group: Group, found: Errors) -> Points:
     """The points of a group with those readings only that are judged."""
     part = points.select(group.index)
     readings = {
@@ -287,33 +287,17 @@ def _part(points: Points, group: Group, found: Mapping[str, LeftOutReadings]) ->
     return part.replace(**readings)
 
 
-class _Away(NamedTuple):
-    """How far a sweep is from the prediction of all others when a mistake in it is undone."""
-
-    part: Points
-    simulation: Simulation
-    found: Mapping[str, LeftOutReadings]
-    size: Mapping[str, float]
-
-    def after(self, changed: Points) -> dict[str, Away]:
-        """By channel, for the points without the mistake."""
-        here, there = (self.simulation.readings(p, tuple(self.found)) for p in (self.part, changed))
-        out = {}
-        for name, one in self.found.items():
-            predicted = np.full(len(self.part), np.nan)
-            known = np.isfinite(self.part.channel(name))
-            predicted[known] = self.part.channel(name)[known] - one.error
-            predicted += there[name] - here[name]
-            measured = changed.channel(name)
-            known &= np.isfinite(measured)
-            if np.any(known):
-                moved = one._replace(error=(measured - predicted)[known])
-                if len(moved.error) != len(one.error):
-                    continue
-                e = _error(name, moved, self.size[name])
-                least = min(rms(measured[known]), rms(predicted[known]))
-                out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
-        return out
+def _away(
+    part: Points, simulation: Simulation, found: Errors, size: Mapping[str, float], changed: Points
+) -> dict[str, Away]:
+    """By channel, how far a sweep is from the prediction of all others if it is read as ``changed``."""
+    out = {}
+    for name, error in moved(part, found, simulation, changed).items():
+        measured = changed.channel(name)[np.isfinite(part.channel(name))]
+        e = _error(name, found[name]._replace(error=error), size[name])
+        least = min(rms(measured), rms(measured - error))
+        out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
+    return out
 
 
 def _doubt(
@@ -321,7 +305,7 @@ def _doubt(
     group: Group,
     simulation: Simulation,
     part: Points,
-    found: Mapping[str, LeftOutReadings],
+    found: Errors,
     errors: Sequence[Error],
 ) -> Doubt | None:
     """The doubt about a group, if chance does not explain its errors."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Rule, Subject, When
 
 
@@ -75,7 +75,7 @@ def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
 
 def outliers_sentence(found: Sequence[Outlier]) -> str:
     """The warning about all outliers, the worst by name."""
-    worst = sorted(found, key=lambda o: -o.ratio)[: constants.MOST_NAMED]
+    worst = sorted(found, key=lambda o: -o.ratio)[:NAMED_IN_SENTENCE]
     named = "; ".join(
         f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
         for o in worst

@@ -44,6 +44,7 @@ class Outcome(StrEnum):
     CONTRADICTION = "the declaration is contradicted"
     WARNED = "a warning"
     DISTRUSTED = "the result is not to be trusted"
+    GRADED = "the result is not to be trusted, or a warning where chance is unlikely but not excluded"
     LEFT_OUT = "left out, with a warning"
 
 

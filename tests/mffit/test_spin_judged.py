@@ -85,7 +85,6 @@ def test_spin_and_build_have_one_list_of_rules(tmp_path, capsys):
     }
     assert {rule.id for rule in RULES if rule.subject is Subject.DIRECT} == {
         "contradictory-sideslip-zeros",
-        "doubtful-sideslip-zeros",
         "unpublished-camber-reduction",
     }
 
