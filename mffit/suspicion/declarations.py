@@ -16,7 +16,7 @@ from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.rule import Finding, rule
 from mffit.suspicion.slopes import Signatures, contradictions, signatures
 from tir.conventions import FLIPPED
 
@@ -31,7 +31,6 @@ class Alternative(NamedTuple):
 
 @rule(
     id="declaration-contradicted",
-    subject=Subject.ALL_FILES,
     limits=(constants.SMALLEST_CAMBER_THRUST,),
     sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
 )

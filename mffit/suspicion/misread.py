@@ -18,7 +18,7 @@ from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.rereadings import MISTAKES, Away, Mistake, explaining
-from mffit.suspicion.rule import Outcome, Subject, When, rule
+from mffit.suspicion.rule import Outcome, When, rule
 
 LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
@@ -52,8 +52,7 @@ def misread(
 
 @rule(
     id="misread-sweep",
-    when=(When.DIAGNOSIS,),
-    subject=Subject.SIMULATION,
+    when=When.DIAGNOSIS,
     limits=(
         constants.GROSS_SHARE,
         constants.MISREAD_OVER_WORST,

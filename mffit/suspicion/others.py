@@ -25,7 +25,7 @@ from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
-from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
+from mffit.suspicion.rule import Finding, Outcome, When, rule
 
 
 class FittedModel(NamedTuple):
@@ -107,11 +107,19 @@ class View(NamedTuple):
         }
 
 
-def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
+def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
+    """Sweeps that do not fit the others, judged by what all others predict; one beyond plausibility is refused."""
+    seen = views(campaign)
+    for beyond in (known_mistake, implausible_sweep):
+        for finding in beyond.find(seen):
+            raise beyond.refusal(finding)
+    return tuple(doubtful_sweep.find(seen))
+
+
+def views(campaign: JudgedSweeps) -> tuple[View, ...]:
     """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
 
-    Only errors above the share ``least`` of the usual size are suspected. The search ends at the first sweep that a known
-    mistake explains.
+    The search ends at the first sweep that a known mistake explains.
     """
     points = campaign.points
     found = groups(points)
@@ -122,7 +130,7 @@ def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
         for c in campaign.fitted.left.channels
     }
     out: list[View] = []
-    for group in _suspects(campaign, found, size, least):
+    for group in _suspects(campaign, found, size):
         view = _view(campaign, group, size)
         if view is not None:
             out.append(view)
@@ -133,8 +141,7 @@ def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
 
 @rule(
     id="known-mistake",
-    subject=Subject.SWEEP,
-    when=(When.FIRST, When.AFTER),
+    when=When.AFTER,
     limits=(
         PREDICTION_FALSE_ALARM,
         constants.GROSS_SHARE,
@@ -156,8 +163,7 @@ def known_mistake(seen: Sequence[View]) -> Iterator[Finding]:
 
 @rule(
     id="implausible-sweep",
-    subject=Subject.SWEEP,
-    when=(When.AFTER,),
+    when=When.AFTER,
     limits=(PREDICTION_FALSE_ALARM, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
@@ -179,8 +185,7 @@ def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
 
 @rule(
     id="doubtful-sweep",
-    subject=Subject.SWEEP,
-    when=(When.AFTER,),
+    when=When.AFTER,
     limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, EXPLAINED_SHARE),
     outcome=Outcome.WARNED,
     sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
@@ -199,9 +204,7 @@ def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
             yield v.doubt
 
 
-def _suspects(
-    campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float], least: float
-) -> list[Group]:
+def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
     """Groups that the others do not predict, if runs did not differ, and that are odder than is usual; the worst first.
 
     With what the formula misses, which hides what only one sweep shows, and without it, as the numbers of the fit predict them.
@@ -220,7 +223,7 @@ def _suspects(
             }
             usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
             for k, e in errors.items():
-                if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
+                if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual:
                     worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]

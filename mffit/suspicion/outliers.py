@@ -10,7 +10,7 @@ import numpy as np
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.suspicion.rule import Outcome, Rule, Subject, When
+from mffit.suspicion.rule import Outcome, Rule, When
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +86,7 @@ def outliers_sentence(found: Sequence[Outlier]) -> str:
 
 OUTLYING = Rule(
     id="outlying-reading",
-    when=(When.AFTER,),
-    subject=Subject.READINGS,
+    when=When.AFTER,
     looks_at="Residual, and its distance from the neighbours' residuals in the sweep; the weights of the fit have the limits",
     outcome=Outcome.LEFT_OUT,
     sentence="readings that do not fit their sweep have no weight ({number}): {named}; correct or remove what is wrong",

@@ -6,7 +6,6 @@ Numbers in another unit can be plausible one by one and impossible together.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +14,9 @@ from mffit.config import Config
 from mffit.points import Points
 from mffit.suspicion import constants
 from mffit.suspicion.rereadings import MISTAKES
-from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.rule import Finding, rule_of_files
 from mffit.suspicion.slopes import slope
 
-of_file = partial(rule, subject=Subject.FILE)
 WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(constants.SMALLEST_CAMBER_THRUST))
 """Slope over load and camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
 CAMBER_THAT_SHOWS_FORCE = float(constants.SMALLEST_FRICTION / constants.SMALLEST_CAMBER_THRUST)
@@ -27,7 +25,7 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 """Signs of the rig's axes, which do not matter for sizes."""
 
 
-@of_file(
+@rule_of_files(
     id="dead-channel",
     limits=(constants.FEWEST,),
     sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
@@ -44,7 +42,7 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
             yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
 
 
-@of_file(
+@rule_of_files(
     id="lone-load",
     limits=(constants.BEYOND_NOMINAL, constants.FEWEST),
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
@@ -59,7 +57,7 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, line=int(part.line[row]) or None, column="Fz_N")
 
 
-@of_file(
+@rule_of_files(
     id="wild-force",
     limits=(constants.LARGEST_FRICTION, constants.FEWEST),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
@@ -139,7 +137,7 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
     return [found for test in IMPOSSIBLE for found in test(part, config)]
 
 
-@of_file(
+@rule_of_files(
     id="impossible-file",
     limits=(
         constants.BEYOND_NOMINAL,

@@ -18,7 +18,7 @@ from scipy.special import stdtrit
 from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
+from mffit.suspicion.rule import Finding, Outcome, Rule
 
 
 class SlopeWithError(NamedTuple):
@@ -163,8 +163,8 @@ def contradictions(found: Signatures) -> list[str]:
     return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
 
 
-_sign = partial(Rule, subject=Subject.SIGN, limits=(FALSE_ALARM,), outcome=Outcome.CONTRADICTION)
-_size = partial(Rule, subject=Subject.SIZE, outcome=Outcome.CONTRADICTION)
+_sign = partial(Rule, limits=(FALSE_ALARM,), outcome=Outcome.CONTRADICTION)
+_size = partial(Rule, outcome=Outcome.CONTRADICTION)
 NO_TYRE = (
     _sign(
         id="force-rises-with-sideslip",
@@ -224,4 +224,4 @@ NO_TYRE = (
     ),
 )
 """What no tyre does."""
-SIGNS = tuple(rule for rule in NO_TYRE if rule.subject is Subject.SIGN)
+SIGNS = tuple(rule for rule in NO_TYRE if rule.limits == (FALSE_ALARM,))

@@ -20,7 +20,7 @@ from scipy.special import chdtr, chdtrc, ndtr
 
 from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
-from mffit.measured import SideslipZeros
+from mffit.measured import LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
@@ -29,8 +29,8 @@ from mffit.rig import Readings
 from mffit.scatter import finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
-from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
-from mffit.suspicion.unpublished import CamberReduction, causes
+from mffit.suspicion.rule import Outcome, Rule, When, rule
+from mffit.suspicion.unpublished import causes
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,8 @@ class JudgedMeasurement:
     """What the rules of trust look at that need no fit."""
 
     points: Points
-    camber_reduction: CamberReduction | None = None
+    nominal: LoadResult | None = None  #: at the nominal load
+    radius_counts: bool = True  #: False if r_e was measured along the path, so that an error of R cancels
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
 
 
@@ -171,8 +172,8 @@ class Trust:
 SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
 NONE_KNOWN = "no known effect explains it"
-of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
-of_measurement = partial(rule, subject=Subject.DIRECT, when=(When.MEASURED,))
+of_model = partial(rule, when=When.AFTER)
+of_measurement = partial(rule, when=When.MEASURED)
 
 
 @of_model(
@@ -363,12 +364,12 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
 )
 def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Measured camber reduction factor against those of published tyres."""
-    found, furthest = (
-        measured.camber_reduction,
-        constants.CERTAIN_SIGMA * constants.SPREAD_OF_PUBLISHED_EPSILON,
-    )
-    if found is not None and abs(found.value - constants.USUAL_PUBLISHED_EPSILON) > furthest:
-        yield {"value": found.value, "u": found.u, "causes": causes(found)}
+    row, furthest = measured.nominal, constants.CERTAIN_SIGMA * constants.SPREAD_OF_PUBLISHED_EPSILON
+    if row is None or row.epsilon_gamma is None:
+        return
+    value, u, _ = row.epsilon_gamma
+    if abs(value - constants.USUAL_PUBLISHED_EPSILON) > furthest:
+        yield {"value": value, "u": u, "causes": causes(row, radius_counts=measured.radius_counts)}
 
 
 @of_model(
@@ -441,7 +442,7 @@ def judge(found: JudgedMeasurement) -> Trust:
         )
 
     if not isinstance(found, FinishedFit):
-        rules = [rule for rule in OF_TRUST if rule.subject is Subject.DIRECT]
+        rules = [rule for rule in OF_TRUST if rule.when is When.MEASURED]
         return Trust(said(*rules, doubtful=False), said(*rules, doubtful=True))
     if strange := said(of_another_tyre, doubtful=False):
         return Trust(reasons=strange, over_noise=found.over_noise)

@@ -42,12 +42,10 @@ def fit_with_nuisances(
     start: Mapping[str, float],
     plan: FitPlan,
     progress: Progress,
-    before_restarts: Callable[[NuisanceFit], object],
 ) -> NuisanceFit:
     """The staged fit, then the influences that it should model, then the joint polish with these.
 
     Alternative starting values are tried only if these influences do not explain why the first fit ends far above the noise.
-    ``before_restarts`` is called before they are tried; it may refuse the data.
     """
 
     staged: dict[
@@ -86,7 +84,6 @@ def fit_with_nuisances(
         if found.choice.modelled and not restart_worthwhile(found.full, plan):
             first.append(found)
             return True
-        before_restarts(found)
         return False
 
     fitted = best_fit(problem, start, plan, progress, explained=explained)

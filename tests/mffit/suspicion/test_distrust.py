@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from mffit.measured.result import SideslipReading, SideslipZeros
+from mffit.measured.result import LoadResult, SideslipReading, SideslipZeros
 from mffit.points import make_points
 from mffit.rig import Readings
 from mffit.suspicion import (
-    CamberReduction,
     FinishedFit,
     HeldNumber,
     JudgedMeasurement,
@@ -216,8 +215,11 @@ def test_what_check_refuses_is_a_reason():
     assert "FZMIN 500" in said
 
 
-def camber_reduction(value: float, **more) -> Trust:
-    return judged(noise(), camber_reduction=CamberReduction(value, 0.03, **more))
+def camber_reduction(value: float, radius_counts: bool = True, **of_row: float) -> Trust:
+    units = {"R": "m", "C_gamma": "N/rad", "C_alpha": "N/rad"}
+    row = {name: Quantity(x, 0.0, units[name]) for name, x in of_row.items()}
+    nominal = LoadResult(1500.0, epsilon_gamma=Quantity(value, 0.03, "-"), **row)
+    return judged(noise(), nominal=nominal, radius_counts=radius_counts)
 
 
 @pytest.mark.parametrize(("value", "trusted"), [(-0.49, False), (-0.47, True), (0.35, True), (0.37, False)])

@@ -160,16 +160,6 @@ def test_four_equal_rows_in_any_order_are_a_copy_and_three_are_not():
     assert found("copied-sweep", sweeps(SOUND, SOUND.replace(Fy=changed(FORCE, [2], 300.0)))) == 0
 
 
-def test_one_sweep_of_four_that_leans_the_other_way_is_named():
-    left, right = tyre(gamma=np.radians(5.0)), tyre(gamma=np.radians(-5.0))
-    assert found("lone-lean", sweeps(left, left, left, right)) == 1
-    assert found("lone-lean", sweeps(left, left, right)) == 0
-    assert found("lone-lean", sweeps(left, left, left, right, right)) == 0
-    assert found("lone-lean", sweeps(left, left, left, tyre(alpha=0.0, gamma=ALPHA), right)) == 0
-    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.9 * DEG))) == 1
-    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.7 * DEG))) == 0
-
-
 @pytest.mark.parametrize(("load", "cases"), [(1400.0, 1), (1450.0, 0), (2000.0, 0)])
 def test_a_nominal_load_above_all_measured_ones_is_pointed_out(load, cases):
     """The mean of a level of load decides, not one reading above it."""
@@ -267,11 +257,6 @@ def sentence(rule: str, points: Points) -> str:
             "reaches 5 times the load, where no tyre exceeds 4",
         ),
         ("one-sided-on-a-disc", tyre(alpha=ALPHA[3:]), "runs only from 0 to 6 deg"),
-        (
-            "lone-lean",
-            sweeps(*[tyre(gamma=5.0 * DEG)] * 3, tyre(gamma=-5.0 * DEG)),
-            "s3 leans 5.0 deg to the other side than all 3 other",
-        ),
         ("weak-turn-slip-force", tyre(alpha=[0.0], Fy=-7.5, phi_t=-0.76), "is 0.5 % of the load"),
         (
             "moments-about-another-point",
