@@ -60,7 +60,6 @@ LARGEST_MOMENT_ARM = Real(
     "m",
     "|Mz| over load that no tyre exceeds: trail times friction. Side forces over load exceed it at usual angles.",
 )
-LONGEST_ARM = Real(1.0, "m", "|Mx| over load that no tyre reaches.")
 
 # Every sweep against all others; shares are errors of a prediction over the usual size of the channel
 SHARE_OF_WORST_POINTS = Real(

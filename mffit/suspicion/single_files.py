@@ -103,7 +103,7 @@ def _strong(part: Points, config: Config) -> Iterator[Impossible]:
     for column, reading, largest in (
         ("Fy_N", part.Fy, constants.LARGEST_FRICTION),
         ("Mz_Nm", part.Mz, constants.LARGEST_MOMENT_ARM),
-        ("Mx_Nm", part.Mx, constants.LONGEST_ARM),
+        ("Mx_Nm", part.Mx, constants.LARGEST_FRICTION * config.tyre.unloaded_radius),
     ):
         reached = _reached(reading / part.Fz)
         if reached > largest:
@@ -147,7 +147,6 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
         constants.SMALLEST_FRICTION,
         constants.LARGEST_FRICTION,
         constants.LARGEST_MOMENT_ARM,
-        constants.LONGEST_ARM,
         constants.FEWEST,
     ),
     sentence="{said}; {looks}",

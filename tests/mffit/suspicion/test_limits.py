@@ -59,7 +59,7 @@ SINGLE_FILES = [
     ("impossible-file", tyre(Fy=-1500.0 * 125.0 * ALPHA), tyre(Fy=-1500.0 * 38.0 * ALPHA)),
     ("impossible-file", tyre(gamma=ALPHA, alpha=0.0, Fy=-18000.0 * ALPHA), tyre(gamma=ALPHA, alpha=0.0, Fy=-16500.0 * ALPHA)),
     ("impossible-file", tyre(Mz=228.0 * np.sign(ALPHA)), tyre(Mz=222.0 * np.sign(ALPHA))),
-    ("impossible-file", tyre(Mx=1510.0 * np.sign(ALPHA)), tyre(Mx=1490.0 * np.sign(ALPHA))),
+    ("impossible-file", tyre(Mx=1810.0 * np.sign(ALPHA)), tyre(Mx=1790.0 * np.sign(ALPHA))),
     ("impossible-file", tyre(Mz=228.0 * (ALPHA > 0.0)[[0, 1, 2, 4, 4, 5, 6]]), tyre(Mz=228.0 * (ALPHA > 0.0))),
     ("impossible-file", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
     ("impossible-file", tyre(alpha=ALPHA[[0, 1, 0, 1]], Fy=28.0), tyre(alpha=ALPHA[[0, 1, 0]], Fy=28.0)),
