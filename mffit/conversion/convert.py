@@ -66,7 +66,8 @@ def convert(
     values = {**start, **found, **_ranges(old, reach)}
     tyre = Tyre.from_values(values)
     misfit = tuple(_misfits(tyre, at, goal))
-    provenance = {ORIGIN: _origin(old, found), MISFIT: wording.worst(misfit)}
+    how = f"by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
+    provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
     return Conversion(tyre, old, reach, misfit, tuple(found), held(p, reach))
 
@@ -124,10 +125,6 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
         elif BY_NAME[name].section.endswith("_COEFFICIENTS"):
             out[name] = f"converted: {old.kind} has no such term"
     return out
-
-
-def _origin(old: OldFile, found: Mapping[str, float]) -> str:
-    return f"{old.path.name}, {old.kind}, by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
 
 
 def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:

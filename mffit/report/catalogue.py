@@ -36,7 +36,7 @@ class NamedChannel:
         return CHANNELS[self.name].short_axis
 
 
-View = TypeVar("View")
+View = TypeVar("View", contravariant=True)
 Channel = TypeVar("Channel", bound=NamedChannel)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +67,6 @@ def differences(found: Comparison) -> Sheet:
     return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)
 
 
-READ = "{word}: readings, and as lines those that the file would give on the rig. The colour is the angle that is held."
 COMPARISON: tuple[ChannelPicture[Comparison, NamedChannel] | Picture[Comparison], ...] = (
     ChannelPicture(
         name="curves_{channel}",
@@ -87,27 +87,6 @@ COMPARISON: tuple[ChannelPicture[Comparison, NamedChannel] | Picture[Comparison]
     ),
 )
 """Pictures of two files."""
-OVERLAID: tuple[ChannelPicture[Overlay, ChannelRow], ...] = (
-    ChannelPicture(
-        name="fit_{channel}",
-        title="{word} measured and simulated",
-        shows=READ,
-        section="curves",
-        channels=lambda view: view.channels,
-        draw=fit.model_against_points,
-        when=lambda view, channel: bool(fit.varied(view.curves, fit.ANGLES)),
-    ),
-    ChannelPicture(
-        name="slip_{channel}",
-        title="{word} measured and simulated over longitudinal slip",
-        shows=READ,
-        section="curves",
-        channels=lambda view: view.channels,
-        draw=lambda view, channel: fit.model_against_points(view, channel, fit.SLIP),
-        when=lambda view, channel: bool(fit.varied(view.curves, fit.SLIP)),
-    ),
-)
-"""Pictures of a file and readings."""
 
 
 def write_comparison(found: Comparison, folder: Path) -> None:
@@ -115,7 +94,8 @@ def write_comparison(found: Comparison, folder: Path) -> None:
     planned = [one for picture in COMPARISON for one in picture.planned(found)]
     view = _overlay(found)
     if view is not None:
-        planned += [one for picture in OVERLAID for one in picture.planned(view)]
+        over = (one for picture in fit.OF_CHANNELS for one in picture.planned(view))
+        planned += [replace(one, section="curves") for one in over]
     page.write(
         "compare.html.j2",
         folder / "compare.html",

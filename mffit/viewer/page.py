@@ -7,7 +7,7 @@ import html
 import os
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import mffit
@@ -85,17 +85,23 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
     data = {
         "order": INPUTS,
         "controls": settings([*found.values()]),
-        "panels": [
-            {
-                "key": panel.key, "x": panel.x, "y": panel.y, "sign": panel.sign, "sweep": panel.sweep,
-                "fan": panel.fan, "turn_slip": panel.turn_slip,
-            }
-            for panel in PANELS
-        ],
+        "panels": [{"key": panel.key, **asdict(panel)} for panel in PANELS],
         "quantities": {name: on_page(MODEL[name]) for name in (*INPUTS, *OUTPUTS)},
         "tyres": [described(name, tyre, names) for name, tyre in found.items()],
-    }  # fmt: skip
-    page = Page(_filled(data, list(found)), tuple(found))
+    }
+    filled = (
+        environment("mffit.viewer")
+        .get_template("show.html.j2")
+        .render(
+            data=data,
+            names=list(found),
+            panels=PANELS,
+            quantities=MODEL,
+            models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
+            version=mffit.__version__,
+        )
+    )
+    page = Page(filled, tuple(found))
     if out is not None:
         page.write(out)
     return page
@@ -109,21 +115,6 @@ def on_page(quantity: QuantityName) -> dict[str, Json]:
         "unit": quantity.unit_behind,
         "si": in_si(quantity.unit),
     }
-
-
-def _filled(data: Mapping[str, object], names: list[str]) -> str:
-    return (
-        environment("mffit.viewer")
-        .get_template("show.html.j2")
-        .render(
-            data=data,
-            names=names,
-            panels=PANELS,
-            quantities=MODEL,
-            models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
-            version=mffit.__version__,
-        )
-    )
 
 
 def _digest(text: str) -> str:

@@ -57,11 +57,6 @@ def project_data(result: BuildResult) -> dict[str, Json]:
     )
 
 
-def model_code(turn_slip: bool, star: bool) -> str:
-    """The model of the page as a JavaScript expression; see :func:`tir.codegen.javascript.javascript`."""
-    return javascript(MODELLED, turn_slip=turn_slip, star=star)
-
-
 def project_html(
     name: str,
     data: dict[str, Json] | None,
@@ -85,7 +80,7 @@ def project_html(
         .render(
             content={"project": data, "window": window},
             name=name,
-            model=model_code(turn_slip, star),
+            model=javascript(MODELLED, turn_slip=turn_slip, star=star),
             turn_slip=turn_slip,
             window=window,
             version=mffit.__version__,

@@ -88,7 +88,7 @@ def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> 
     def change(document: Any) -> None:
         entries = _exclude(document)
         for file, ranges in _by_file(readings).items():
-            kept = _without(ranges, _all_ranges(entries, file))
+            kept = _without(ranges, [part for e in entries if e["file"] == file for part in _ranges(e)])
             if not kept:
                 continue
             own = next((e for e in entries if e["file"] == file and e.get("why") == why), None)
@@ -169,10 +169,6 @@ def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]
 
 def _ranges(entry: Mapping[str, Any]) -> tuple[LineRange, ...]:
     return line_ranges(str(entry["lines"]))
-
-
-def _all_ranges(entries: Iterable[Mapping[str, Any]], file: str) -> list[LineRange]:
-    return [part for entry in entries if entry["file"] == file for part in _ranges(entry)]
 
 
 def _lines(ranges: Sequence[LineRange]) -> str:

@@ -93,10 +93,6 @@ def _compute(operation: str, arguments: tuple[Any, ...]) -> float | bool:
         return _number(UFUNCS[operation](*arguments))
 
 
-def _is_node(x: Any) -> bool:
-    return isinstance(x, Node)
-
-
 def _is(x: Any, value: float) -> bool:
     return not isinstance(x, Node) and x == value
 
@@ -124,7 +120,11 @@ def _multiply(graph: Graph, a: Any, b: Any) -> Any:
         return b
     if _is(a, -1.0):
         return graph.apply("negative", b)
-    if not isinstance(a, Node) and _made_by(b, "where") and not any(map(_is_node, b.arguments[1:])):
+    if (
+        not isinstance(a, Node)
+        and _made_by(b, "where")
+        and not any(isinstance(x, Node) for x in b.arguments[1:])
+    ):
         return graph.apply("where", b.arguments[0], *(a * x for x in b.arguments[1:]))
     if _is_sign_of(a, b) or _is_sign_of(b, a):
         return graph.apply("absolute", a if _is_sign_of(b, a) else b)

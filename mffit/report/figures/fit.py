@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow, Overlay
+from mffit.report.catalogue import ChannelPicture
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
@@ -52,6 +53,29 @@ def model_against_points(view: Overlay, channel: ChannelRow, over: Sequence[str]
             key |= held_key(labels.OTHER[name], colours[name])
     remark = "Hollow triangles and dashed lines are runs backwards." if "backward" in key else ""
     return Sheet(rows=in_rows(*groups), height=1.6, key=key, remark=remark)
+
+
+OF_CHANNELS: tuple[ChannelPicture[Overlay, ChannelRow], ...] = (
+    ChannelPicture(
+        name="fit_{channel}",
+        title="Model and points of {word} at every load, pressure and camber",
+        shows="{channel}: points, and the model as lines. The colour is the angle that is held.",
+        section="fit",
+        channels=lambda view: view.channels,
+        draw=model_against_points,
+        when=lambda view, channel: bool(varied(view.curves, ANGLES)),
+    ),
+    ChannelPicture(
+        name="slip_{channel}",
+        title="Model and points of {word} over longitudinal slip at every load, pressure and camber",
+        shows="{channel} over longitudinal slip: points, and the model as lines. The colour is the sideslip.",
+        section="slip",
+        channels=lambda view: view.channels,
+        draw=lambda view, channel: model_against_points(view, channel, SLIP),
+        when=lambda view, channel: bool(varied(view.curves, SLIP)),
+    ),
+)
+"""Pictures of a fit, and of a file over readings."""
 
 
 def held_key(held: str, colours: Mapping[float, str]) -> dict[str, Look]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mffit.report.build import BUILD
-from mffit.report.compare import COMPARISON, OVERLAID
+from mffit.report.compare import COMPARISON
 from mffit.report.diagnosis import DIAGNOSIS
 from mffit.report.fleet import FLEET
 from mffit.report.plan import PLAN
@@ -16,7 +16,7 @@ DOCS = Path(__file__).parents[3] / "docs"
 TABLES = {
     "build": BUILD,
     "diagnosis": DIAGNOSIS,
-    "compare": (*COMPARISON, *OVERLAID),
+    "compare": COMPARISON,
     "fleet": FLEET,
     "plan": (PLAN,),
 }
