@@ -7,6 +7,7 @@ loaded from the cache of the user, or compiled if it is not there, once per mach
 from __future__ import annotations
 
 import contextlib
+import math
 from functools import cache
 
 from tir import constants
@@ -35,10 +36,11 @@ class Meter:
 
     def kernel(self) -> Kernel | None:
         """The kernel if it is loaded or has become worth it; else None."""
-        if self.loaded is None and self.left <= 0.0 and kernel.available():
-            self.left = float("inf")  # there is one attempt
-            with contextlib.suppress(*WITHOUT_KERNEL):
-                self.load()
+        if self.loaded is None and self.left <= 0.0:
+            self.left = math.inf  # there is one attempt
+            if kernel.available():
+                with contextlib.suppress(*WITHOUT_KERNEL):
+                    self.load()
         return self.loaded
 
     def load(self) -> None:
