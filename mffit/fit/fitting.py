@@ -42,7 +42,7 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, outliers
+from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
 from tir import Tyre
 
 
@@ -159,29 +159,23 @@ def _fitted_and_judged(
     """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
     the build."""
 
-    def judged(found: NuisanceFit, when: When) -> tuple[LinearisedFit, tuple[Doubt, ...]]:
-        progress("predicting each sweep from the others")
+    found = with_doubt(fit_with_nuisances(config, problem, start, plan, progress))
+    progress("predicting each sweep from the others")
 
-        def refit(without: np.ndarray) -> FittedModel:
-            fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
-            sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
-            for name, weights in sigma.items():
-                weights[without] = problem.sigma[name][without]
-            return FittedModel(
-                fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without)
-            )
+    def refit(without: np.ndarray) -> FittedModel:
+        fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
+        sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
+        for name, weights in sigma.items():
+            weights[without] = problem.sigma[name][without]
+        return FittedModel(
+            fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without)
+        )
 
-        left = left_by(found.full)
-        fitted = FittedModel(found.full.simulation, left)
-        with as_declared(config):
-            campaign = JudgedSweeps(problem.points, axis_signs(config), fitted, refit)
-            return left, after_the_fit(campaign, when)
-
-    found = fit_with_nuisances(
-        config, problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
-    )
-    found = with_doubt(found)
-    return found, *judged(found, When.AFTER)
+    left = left_by(found.full)
+    fitted = FittedModel(found.full.simulation, left)
+    with as_declared(config):
+        doubts = after_the_fit(JudgedSweeps(problem.points, axis_signs(config), fitted, refit))
+    return found, left, doubts
 
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Measured) -> float | None:

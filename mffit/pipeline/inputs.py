@@ -15,7 +15,6 @@ from mffit.fit.known import given_values
 from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading
-from mffit.recordings import with_recognised
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from tir import Tyre
@@ -30,9 +29,8 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
     continuous : see :func:`mffit.points.read`
     """
     with formats.reading_once():
-        config, recognised = with_recognised(config)
         found = points.read(config, continuous=continuous)
-    return found._replace(warnings=(*recognised, *found.warnings, *before_the_fit(found.points, config)))
+    return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
 
 
 def read_base(config: Config) -> Tyre | None:

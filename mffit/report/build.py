@@ -12,18 +12,15 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, published
+from mffit.report import page, words
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
     bands,
     decomposition,
-    files,
     fit,
-    overview,
     radii,
     residuals,
-    sister,
     slip,
     spin,
     structure,
@@ -50,7 +47,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         shows="Every channel at the load and pressure nearest to the nominal ones: readings, and the model as lines. The colour "
         "is the angle that is held, dark to light from its smallest to its largest value.",
         section="top",
-        draw=overview.overview,
+        draw=fit.overview,
         when=lambda view: bool(view.curves),
     ),
     Picture(
@@ -60,13 +57,13 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "and over sideslip at three cambers. Dotted verticals are the ends of the tested range. Dashed curves have turn slip "
         "off: without spin the formula cannot reproduce exactly how camber reduces grip.",
         section="files",
-        draw=files.files_on_a_straight_path,
+        draw=bands.files_on_a_straight_path,
         when=lambda view: view.several_files,
     ),
     Picture(
         name="camber_reduction",
         title="Camber reduction factor beside published tyres, its uncertainty budget and its course over load",
-        shows=f"Left: this tyre among the six that have been published ({published.SOURCE}). Middle: the contribution of each "
+        shows=f"Left: this tyre among the six that have been published ({spin.SOURCE}). Middle: the contribution of each "
         "source to u(eps_gamma); the orange line is the combined uncertainty with correlations. Right: eps_gamma at every load "
         "and the line that the file carries.",
         section="spin",
@@ -133,24 +130,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         when=slip.combined,
     ),
     Picture(
-        name="weights",
-        title="Weights of combined slip over longitudinal slip at every load",
-        shows="Weights of combined slip with 95 % bands: G_xa is the share of the longitudinal force that sideslip leaves, G_yk "
-        "the share of the side force that slip leaves. The points are the measured force over the model's force without the "
-        "other slip, shown where that force is large enough.",
-        section="slip",
-        draw=slip.weights,
-        when=slip.combined,
-    ),
-    Picture(
-        name="trail",
-        title="Pneumatic trail and residual moment over sideslip at several longitudinal slips",
-        shows="Pneumatic trail and residual moment of the model with 95 % bands, rolling freely and at two longitudinal slips.",
-        section="slip",
-        draw=slip.trail,
-        when=slip.combined,
-    ),
-    Picture(
         name="radii",
         title="Loaded radius and rolling radius over load at every pressure",
         shows="Radii of the freely rolling wheel: means over the sweeps, and the file with 95 % bands from the scatter of these "
@@ -177,7 +156,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "and the largest load of the file. The bands contain the uncertainty of both ratios and the scatter of the shapes among "
         "similar tyres.",
         section="sister",
-        draw=sister.borrowed_force,
+        draw=bands.borrowed_force,
         when=lambda view: view.files is not None and view.build.fit.lent is not None,
     ),
     Picture(
@@ -239,6 +218,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         statuses=[s for s in STATUS_ORDER if any(row.found.status == s for row in view.rows)],
         channels=CHANNELS,
         places=PLACES,
+        of_number=words.of_number,
         epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
         of_residuals=of_residuals,

@@ -14,10 +14,8 @@ from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
 from mffit.measured import Measured
 from mffit.points import Points
-from mffit.report import words
-from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, CurveKey, conditions, curves
-from mffit.report.lines import CurveLine, model_lines
+from mffit.report.catalogue import NamedChannel
+from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
 from tir import Tyre
@@ -66,19 +64,14 @@ class ChannelRow(NamedChannel):
 
 
 class CoefficientRow(NamedTuple):
-    """One row of the coefficient table."""
+    """A coefficient in the table of parameters, and as the fit leaves it."""
 
     known: Parameter
     found: Coefficient
 
     @property
-    def unit(self) -> str:
-        """Empty without one."""
-        return "" if self.known.unit == "-" else self.known.unit
-
-    @property
     def bounds(self) -> tuple[float | None, float | None]:
-        """Those set by hand, else the plausible ones."""
+        """Those of its fit, or else its usual range."""
         return self.found.bounds or (self.known.lower, self.known.upper)
 
     @property
@@ -91,14 +84,7 @@ class CoefficientRow(NamedTuple):
 
     @property
     def held(self) -> bool:
-        """Whether neither data nor the engineer decided the value."""
         return self.found.status in NOT_DECIDED and not self.found.by_hand
-
-    @property
-    def correlation(self) -> str:
-        """The strongest one in words; empty if it does no harm."""
-        other = self.found.correlated_with
-        return f"{words.of_number(other)} {self.found.correlation:+.2f}" if other else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +99,7 @@ class BuildView:
     )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
-    lines: Mapping[CurveKey, CurveLine]
+    lines: Mapping[Curve, CurveLine]
     conditions: tuple[CurveCondition, ...]
     measured: Measured
     rows: tuple[CoefficientRow, ...]
@@ -184,15 +170,10 @@ def view_of(result: BuildResult) -> BuildView:
         lines=model_lines(fit.simulation, points, found, fit.model),
         conditions=tuple(conditions(points)),
         measured=result.measured,
-        rows=coefficient_rows(fit.coefficients),
+        rows=tuple(CoefficientRow(BY_NAME[name], found) for name, found in fit.coefficients.items()),
         model=fit.tyre,
         posterior=fit.posterior,
         files=fit.files,
         file_names={use: name for use, name in result.files.items() if use in result.uses},
         radii=fit.radii,
     )
-
-
-def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[CoefficientRow, ...]:
-    """The fit's coefficients with section, unit and bounds from the parameter table."""
-    return tuple(CoefficientRow(BY_NAME[name], found) for name, found in coefficients.items())

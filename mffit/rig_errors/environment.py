@@ -206,9 +206,7 @@ WARM_UP = _of_forces(
     shown_in=("%", 100.0),
     unit="-",
     meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
-    formula=lambda share, force, at: (
-        force * (1.0 - share * np.exp(-at.distance_km / constants.WARM_UP_DISTANCE))
-    ),
+    formula=lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
     spread=0.03,
     lower=-0.5,
     upper=0.5,
