@@ -62,7 +62,7 @@ def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | 
     inner = [number for number in fitted.numbers if number.name not in fitted.at_bound]
     numbers = [uncertain(number) for number in fitted.problem.starting_here(inner)]
     held = {**fitted.held, **fitted.held_rig}
-    numbers += [Uncertain(name, 0.0, u) for name, u in held.items() if u > 0.0]
+    numbers += [Uncertain(name, 0.0, u, held=True) for name, u in held.items() if u > 0.0]
     problem = of or fitted.problem
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without)
 

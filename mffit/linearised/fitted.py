@@ -18,7 +18,7 @@ from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
 from mffit.rig import Simulation
-from mffit.rig_errors import error_of
+from mffit.rig_errors import ZEROS, error_of
 from mffit.scatter import rms, robust
 
 
@@ -40,7 +40,7 @@ class LinearisedChannel:
     """The same with the coefficients as they are; its common numbers are the weights, then errors of the rig as declared."""
     declared: np.ndarray  #: logarithms of the variances of these errors
     missed: np.ndarray
-    """(m,) weights of the functions beside the errors of the rig, the coefficients as they are [unit of the channel]."""
+    """(m,) weights of the functions with the coefficients and the zeros of the rig as they are [unit of the channel]."""
     turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
     sweeps: np.ndarray  #: number of the sweep of every group of ``model``
 
@@ -125,6 +125,7 @@ class Uncertain(NamedTuple):
     name: str
     expected: float
     spread: float  #: standard deviation
+    held: bool = False  #: whether the fit took it as exact
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,10 +223,28 @@ def _channel(
         variances=with_further(of_functions, np.zeros(turn.shape[1])),
         alone=alone,
         declared=declared,
-        missed=alone.posterior(with_further(of_functions, declared)).mean[: missed.shape[1]],
+        missed=_missed(alone, [sight.numbers[i] for i in of_rig], of_functions),
         turn=turn,
         sweeps=np.unique(part.sweep),
     )
+
+
+def _missed(alone: Mixed, rig: Sequence[Uncertain], given: Variances) -> np.ndarray:
+    """Weights (m,) of the functions beside the errors of the rig, of which the zeros and what the fit took as exact stay.
+
+    No reading tells a zero from a constant that the formula misses: readings are then foretold with the zeros that are stated.
+    """
+    functions = len(given.common)
+    stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
+    expected, spread = (np.array([getattr(number, name) for number in rig]) for name in ("expected", "spread"))
+    columns = alone.common[:, functions:]
+    model = replace(
+        alone,
+        residual=alone.residual + columns[:, stays] @ expected[stays],
+        common=np.hstack([alone.common[:, :functions], columns[:, ~stays]]),
+    )
+    found = model.posterior(with_further(given, 2.0 * np.log(spread[~stays])))
+    return np.asarray(found.mean[:functions])
 
 
 def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np.ndarray:
