@@ -43,7 +43,7 @@ class ExplainingColumns:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """Which numbers describe the errors of a channel: a scale for each campaign, smooth structure beside them, and these."""
+    """Which numbers describe the errors of a channel: a scale, smooth structure beside them, and these."""
 
     span: MemorySpan | None = None  #: of their memory; None without one
     independent: bool = False  #: whether a part without memory is beside it
@@ -53,7 +53,7 @@ class Description:
 
     @property
     def shapes(self) -> tuple[Callable[[float], tuple[float, float]], ...]:
-        """Log prior and its slope of every number behind the scales, as functions of its coordinate."""
+        """Log prior and its slope of every number behind the scale, as functions of its coordinate."""
         memory = [_arcsine] * (self.span is not None) + [_uniform] * self.independent
         return (*[_half_cauchy] * (1 + self.growth + self.offsets), *memory)
 
@@ -61,7 +61,7 @@ class Description:
 class Numbers(NamedTuple):
     """The numbers of a description."""
 
-    log_scale: np.ndarray  #: of every campaign
+    log_scale: float
     smooth: float  #: amplitude of smooth structure over the usual one
     growth: float = 0.0  #: over the usual one
     offsets: float = 0.0  #: of runs over the usual ones
@@ -107,7 +107,6 @@ class ScatterOfChannel:
     stated: np.ndarray  #: standard uncertainty
     residual: np.ndarray  #: measured minus simulated
     size: np.ndarray  #: readings in proportion to which the noise may grow
-    campaign: np.ndarray  #: numbers of the campaigns, from 0
     chains: Mapping[MemorySpan, Sequence[np.ndarray]]  #: along which errors may have a memory
     sweep: np.ndarray
     named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
@@ -118,14 +117,14 @@ class ScatterOfChannel:
 
     def numbers(self, x: np.ndarray, by: Description) -> Numbers:
         """The numbers at coordinates: logarithms of sizes, log odds of shares."""
-        c = 1 + int(self.campaign.max())
-        left = iter(x[c:].tolist())
+        log_scale, *rest = x.tolist()
+        left = iter(rest)
         smooth = math.exp(next(left))
         growth = math.exp(next(left)) if by.growth else 0.0
         offsets = math.exp(next(left)) if by.offsets else 0.0
         memory = _share(next(left)) if by.span else 0.0
         return Numbers(
-            x[:c], smooth, growth, offsets, Memory(memory, _share(next(left)) if by.independent else 0.0)
+            log_scale, smooth, growth, offsets, Memory(memory, _share(next(left)) if by.independent else 0.0)
         )
 
     def uncertainty(self, at: Numbers) -> np.ndarray:
@@ -134,7 +133,7 @@ class ScatterOfChannel:
 
     def _squares(self, at: Numbers) -> np.ndarray:
         """Variances (3, m) at weight 1: as stated and scaled, growing, always there."""
-        stated = np.exp(at.log_scale)[self.campaign] * self.stated
+        stated = math.exp(at.log_scale) * self.stated
         growing = at.growth * constants.USUAL_GROWTH * self.size
         return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
 
@@ -149,7 +148,7 @@ class ScatterOfChannel:
 
     def likeliest(self, by: Description, near: np.ndarray | None = None) -> Described:
         """The numbers of a description and its probability (Laplace approximation); the search begins ``near`` if given."""
-        model, c, shapes = self._model(by), 1 + int(self.campaign.max()), by.shapes
+        model, shapes = self._model(by), by.shapes
         wide = math.log(constants.STATED_NOISE_FACTOR)
         first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
 
@@ -158,25 +157,24 @@ class ScatterOfChannel:
             squares = self._squares(at)
             total = squares.sum(axis=0)
             found = model.evidence(np.sqrt(total / self.weight), self._sizes(at), at.memory)
-            by_scale = np.bincount(self.campaign, found.u * squares[0] / total, minlength=c)
-            slopes = [*(by_scale - x[:c] / wide**2), np.sum(found.sizes[first:last])]
+            slopes = [found.u @ (squares[0] / total) - x[0] / wide**2, np.sum(found.sizes[first:last])]
             slopes += [found.u @ (squares[1] / total)] if by.growth else []
             slopes += [np.sum(found.sizes[last:])] if by.offsets else []
             shares = [at.memory.correlation, at.memory.independent][: (by.span is not None) + by.independent]
             slopes += [found.memory[k] * s * (1.0 - s) for k, s in enumerate(shares)]
-            priors = np.array([shape(value) for shape, value in zip(shapes, x[c:].tolist(), strict=True)])
+            priors = np.array([shape(value) for shape, value in zip(shapes, x[1:].tolist(), strict=True)])
             slope = np.array(slopes)
-            slope[c:] += priors[:, 1]
-            value = found.value - 0.5 * float(x[:c] @ x[:c]) / wide**2 + float(np.sum(priors[:, 0]))
+            slope[1:] += priors[:, 1]
+            value = found.value - 0.5 * float(x[0]) ** 2 / wide**2 + float(np.sum(priors[:, 0]))
             return -value, -slope
 
-        start, bounds = np.zeros(c + len(shapes)), [(-LARGEST, LARGEST)] * (c + len(shapes))
+        start, bounds = np.zeros(1 + len(shapes)), [(-LARGEST, LARGEST)] * (1 + len(shapes))
         if by.span is not None:
-            start[c + 1 + by.growth + by.offsets] = constants.USUAL_LOG_ODDS_OF_MEMORY
+            start[2 + by.growth + by.offsets] = constants.USUAL_LOG_ODDS_OF_MEMORY
         if near is not None:
             start[: len(near)] = near
         if by.span is not None:
-            bounds[c + 1 + by.growth + by.offsets] = (-LARGEST, LARGEST_MEMORY)
+            bounds[2 + by.growth + by.offsets] = (-LARGEST, LARGEST_MEMORY)
         found = minimize(
             falling,
             start,
@@ -212,7 +210,6 @@ class ScatterOfChannel:
                 "stated",
                 "residual",
                 "size",
-                "campaign",
                 "sweep",
                 "named",
                 "smooth",
@@ -241,20 +238,17 @@ def learned(
     residual: np.ndarray,
     explained: ExplainingColumns,
     size: np.ndarray,
-    campaign: np.ndarray | None = None,
 ) -> Noise:
     """The noise with the scatter that the residual shows.
 
-    It may grow in proportion to ``size`` (c n,), and each campaign (n,) has a scale of its own.
+    It may grow in proportion to ``size`` (c n,).
     """
     u, weight, scatter = noise.u.copy(), np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}
-    of = np.zeros(len(residual), dtype=int) if campaign is None else np.tile(campaign, len(noise.channels))
     for name, rows in noise.by_channel(np.arange(len(residual))).items():
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
-        _, number = np.unique(of[rows], return_inverse=True)
         stated, turn = noise.stated[rows], None if noise.turn is None else noise.turn[rows]
         chains = {MemorySpan.SWEEP: chains_of(noise.chain[rows])}
         for span, chain in noise.longer.items():
@@ -265,7 +259,6 @@ def learned(
             stated=stated,
             residual=np.nan_to_num(residual[rows]),
             size=np.abs(np.nan_to_num(size[rows])),
-            campaign=number,
             chains=chains,
             sweep=noise.chain[rows],
             named=_condensed(explained.named[rows], stated),
@@ -282,7 +275,7 @@ def learned(
         at = channel.numbers(found.x, found.by)
         u[rows], weight[rows] = channel.uncertainty(at), channel.weight
         scatter[name] = Scatter(
-            scale=math.exp(float(np.mean(at.log_scale[channel.campaign]))),
+            scale=math.exp(at.log_scale),
             growth=float(constants.USUAL_GROWTH) * at.growth,
             memory=at.memory.correlation,
             independent=at.memory.independent,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 import tir
 from mffit.errors import InputError
 from mffit.output import output_folder
-from tir.codegen.c99 import taken
+from tir.codegen.c99 import Code, taken
 
 
 def write_c(
@@ -47,37 +48,35 @@ def write_c(
         The file cannot be read.
     """
     path, out = Path(path), Path(out)
+    known = as_c(path, name, turn_slip, limits=limits, tunable=tunable, lag=transient)
+    with output_folder(out, by="export", protected=[path]) as folder:
+        (folder / f"{known.name}.h").write_text(known.code.header, encoding="ascii", newline="\n")
+        (folder / f"{known.name}.c").write_text(known.code.source, encoding="ascii", newline="\n")
+    return [out / f"{known.name}.h", out / f"{known.name}.c"]
+
+
+class CodeOfFile(NamedTuple):
+    """A property file as C code."""
+
+    tyre: tir.Tyre
+    name: str  #: prefix of the functions
+    turn_slip: bool
+    code: Code
+
+
+def as_c(path: Path, given: str | None, turn_slip: bool | None, **switches: bool) -> CodeOfFile:
+    """The code of a property file, with a ``given`` name or one made from that of the file.
+
+    Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
+    USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of C.
+    """
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
-    name = identifier(path, name, other_mode(tyre, on))
-    code = c_of(tyre, path, name, turn_slip=on, limits=limits, tunable=tunable, lag=transient)
-    with output_folder(out, by="export", protected=[path]) as folder:
-        (folder / f"{name}.h").write_text(code.header, encoding="ascii", newline="\n")
-        (folder / f"{name}.c").write_text(code.source, encoding="ascii", newline="\n")
-    return [out / f"{name}.h", out / f"{name}.c"]
-
-
-def identifier(path: Path, given: str | None = None, mode: str = "") -> str:
-    """The prefix of the functions: the given name, or else the file's name with underscores for other characters.
-
-    It gets ``tyre_`` in front if it does not begin with a letter or is a word of C, and ``mode`` behind it.
-    """
-    if given is not None:
-        return given
+    mode = "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
     name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
-    return name if re.match(r"[A-Za-z]", name) and not taken(name) else f"tyre_{name}"
-
-
-def other_mode(tyre: tir.Tyre, turn_slip: bool) -> str:
-    """What a name gets behind it if turn slip is not as the file's USE_MODE says; else nothing."""
-    if turn_slip == tyre.turn_slip:
-        return ""
-    return "_turn_slip" if turn_slip else "_normal"
-
-
-def c_of(tyre: tir.Tyre, path: Path, name: str, **switches: bool) -> tir.codegen.c99.Code:
-    """The tyre as C code; raises InputError with the file if C does not allow a name or a value."""
+    name = name if re.match(r"[A-Za-z]", name) and not taken(name) else f"tyre_{name}"
+    name = name if given is None else given
     try:
-        return tir.export_c(tyre, name=name, **switches)
+        return CodeOfFile(tyre, name, on, tir.export_c(tyre, name=name, turn_slip=on, **switches))
     except tir.TirError as error:
         raise InputError(error.sentence, file=path) from error

@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mffit
-import tir
 from mffit.errors import InputError
 from mffit.export import compiler, variables
-from mffit.export.c import c_of, identifier, other_mode
+from mffit.export.c import CodeOfFile, as_c
 from mffit.output import output_folder
 from mffit.templates import environment
 from tir.mode import words
@@ -76,10 +75,8 @@ def write_fmu(
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
-    tyre = tir.read(path)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
-    name = identifier(path, name, other_mode(tyre, on))
-    files = _texts(tyre, path, name, fmi, on, limits, transient)
+    known = as_c(path, name, turn_slip, limits=limits, tunable=True, lag=transient)
+    name, files = known.name, _texts(known, path.name, fmi, limits=limits, transient=transient)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)
     with output_folder(out, by="export", protected=[path]) as folder:
@@ -87,20 +84,18 @@ def write_fmu(
     return out / f"{name}.fmu"
 
 
-def _texts(
-    tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool, transient: bool
-) -> dict[str, bytes]:
-    """The files of the archive by their path in it."""
-    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits, tunable=True, lag=transient)
+def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: bool) -> dict[str, bytes]:
+    """The files of the archive by their path in it; ``file`` is the name of the property file."""
+    tyre, name, turn_slip, code = known
     given, found = variables.inputs(tyre, transient=transient), variables.outputs(transient=transient)
     turned = variables.parameters(tyre, transient=transient)
     use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
         "name": name,
-        "title": f"{path.stem}, {words(turn_slip)}",
+        "title": f"{Path(file).stem}, {words(turn_slip)}",
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
-        "description": f"Tyre {path.name}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W; {LATE}",
+        "description": f"Tyre {file}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W; {LATE}",
         "transient": transient,
         "inputs": given,
         "outputs": found,

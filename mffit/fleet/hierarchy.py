@@ -9,7 +9,7 @@ maximisation.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -168,7 +168,7 @@ class _Tyres:
         for k, mine in enumerate(self.mine):
             x, covariance = self._own(found, k, with_mean=True)
             names = tuple(self.own[j] for j in mine)
-            strain = self._strain(k, tau, found, common)
+            strain = self._strain(k, found, common)
             tyres.append(TyreEstimate(names, self.centre[mine] + x, covariance, strain))
         return Hierarchy(
             tyres=tuple(tyres),
@@ -190,16 +190,17 @@ class _Tyres:
         """Whether an error of the rig is common to two or more tyres, or there is only one tyre."""
         return len(self.found) == 1 or sum(name in one.names for one in self.found) > 1
 
-    def _strain(
-        self, k: int, tau: np.ndarray, found: MixedPosterior, common: Sequence[int]
-    ) -> dict[str, float]:
+    def _strain(self, k: int, found: MixedPosterior, common: Sequence[int]) -> dict[str, float]:
         """How tyre ``k`` moves the errors of the rig. The covariances without and with it differ by that of the move."""
         if len(self.found) < 2:
             return {}
-        others = replace(self.model, groups=[rows for j, rows in enumerate(self.model.groups) if j != k])
-        without = others.posterior(self.given(tau))
-        moved = found.mean - without.mean
-        variance = np.sum(without.root**2, axis=1) - np.sum(found.root**2, axis=1)
+        rows = self.model.groups[k]
+        x, own, error = self.model.common[rows], self.model.own[rows], self.model.residual[rows]
+        told = x - own @ (found.own[k] @ (own.T @ x))  # what its readings tell of the common numbers
+        share = found.root.T @ (x.T @ told) @ found.root  # of what is known of them
+        without = np.linalg.inv(np.eye(len(share)) - share)
+        moved = found.root @ without @ (found.root.T @ (told.T @ (error - x @ found.mean)))
+        variance = np.sum((found.root @ (without @ share)) * found.root, axis=1)
         return {
             self.shared[i]: float(moved[i] / np.sqrt(variance[i]))
             for i in common

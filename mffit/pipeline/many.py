@@ -77,11 +77,7 @@ def _outcomes(wanted: Sequence[Job], jobs: int, dask: str | None) -> Outcomes:
     """Outcomes of the builds as they finish."""
     if dask:
         return on_cluster(wanted, dask, build_one)
-    return in_processes(wanted, jobs, build_one) if jobs > 1 else _in_turn(wanted)
-
-
-def _in_turn(wanted: Sequence[Job]) -> Outcomes:
-    yield from map(build_one, wanted)
+    return in_processes(wanted, jobs, build_one) if jobs > 1 else (build_one(job) for job in wanted)
 
 
 def build_one(job: Job) -> BuildOutcome:

@@ -126,7 +126,7 @@ def temperature_of(tyre: Tyre) -> dict[str, float]:
 def fitted_to(tyre: Tyre, config: Config) -> bool:
     """Whether a build fitted the file to the present sweeps."""
     of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
-    return bool(of_file) and of_file == _inputs(config)
+    return bool(of_file) and of_file == _of_inputs(input_hashes(config))
 
 
 def known_of_model(
@@ -167,12 +167,8 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
     return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
 
 
-def _inputs(config: Config) -> dict[str, str]:
-    """Hashes of the inputs as entries of the provenance, whose names are ASCII without colons."""
-    return _of_inputs(input_hashes(config))
-
-
 def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:
+    """Hashes of the inputs as entries of the provenance, whose names are ASCII without colons."""
     return {f"input {quote(name, safe=PLAIN)}": known[:DIGITS] for name, known in hashes.items()}
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from mffit.csv_tables import write_csv
+from mffit.csv_tables import csv_text
 from mffit.errors import InputError, shortened
 from mffit.quantities import CONDITIONS
 from mffit.sweeps.channels import BY_NAME
 from mffit.sweeps.formats import read
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
+from tir.writing import replace_file
 
 PATH = "phi_t_per_m"
 """Column of the path curvature."""
@@ -108,7 +108,6 @@ def write_table(found: pd.DataFrame, out: Path, conditions: Path) -> None:
     """
     if out.suffix.lower() != ".csv":
         raise InputError("is written as CSV; name a file that ends in .csv with --out", file=out)
-    new = out.with_name(f".{out.name}-{os.getpid()}")
     try:
         if out.exists():
             if out.samefile(conditions):
@@ -116,13 +115,10 @@ def write_table(found: pd.DataFrame, out: Path, conditions: Path) -> None:
             if not _is_prediction(out):
                 raise InputError("is there already and no prediction; name another file with --out", file=out)
         out.parent.mkdir(parents=True, exist_ok=True)
-        write_csv(found, new)
-        new.replace(out)
+        replace_file(out, csv_text(found).encode())
     except OSError as error:
         sentence = f"cannot be written ({error.strerror}); name another file with --out"
         raise InputError(sentence, file=out) from None
-    finally:
-        new.unlink(missing_ok=True)
 
 
 def _is_prediction(path: Path) -> bool:

@@ -19,9 +19,10 @@ def test_figures_are_those_of_the_method(project):
         f"METHOD is {METHOD}, the stored figures are of {before['method']}: {STORE}"
     )
     found = compared(project, before["figures"][project], figures(project))
-    worst = "; ".join(f"{row.key} {row.old} -> {row.new}" for row in found.changes[:5])
-    assert not found.changes, (
-        f"{len(found.changes)} of {found.numbers} figures of {project} differ from those of method {METHOD}: {worst}. If the "
+    changes = [row for row in found if row.size > 1.0]
+    worst = "; ".join(f"{row.key} {row.old} -> {row.new}" for row in changes[:5])
+    assert not changes, (
+        f"{len(changes)} of {len(found)} figures of {project} differ from those of method {METHOD}: {worst}. If the "
         f"change is meant, raise METHOD in mffit/made.py (once per release) and {STORE}"
     )
-    assert found.numbers > 200
+    assert len(found) > 200

@@ -230,11 +230,10 @@ def test_nothing_is_left_of_a_file_that_could_not_be_finished(
     assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == 0
     before = Path("found.csv").read_text()
 
-    def fails(table: pd.DataFrame, path: Path) -> None:
-        path.write_text("alpha")
+    def fails(*_: object) -> None:
         raise failure
 
-    monkeypatch.setattr("mffit.prediction.conditions.write_csv", fails)
+    monkeypatch.setattr("os.replace", fails)
     assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == (
         2 if isinstance(failure, OSError) else 130
     )
