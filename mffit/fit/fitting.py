@@ -24,7 +24,7 @@ from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import at_reference
 from mffit.fit.influences.nuisance_wording import nuisance_sentences, unmodelled_sentences
 from mffit.fit.influences.temperature import at_temperature
-from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_doubt
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
@@ -165,7 +165,7 @@ def _fitted_and_judged(
     """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
     the build."""
 
-    found = with_doubt(fit_with_nuisances(config, problem, start, plan, progress))
+    found = fit_with_nuisances(config, problem, start, plan, progress)
     progress("predicting each sweep from the others")
 
     def refit(without: np.ndarray) -> FittedModel:
