@@ -58,11 +58,6 @@ SISTER_SLIP = Real(
     "Slip up to which the limits of Fx are checked for a drawn sister tyre: about the slip of the peak.",
 )
 
-# Other campaigns of the same tyre
-UNKNOWN_RATIO_OF_GRIPS = Real(
-    0.1, "-", "Relative uncertainty of the ratio of two surfaces' grips where nothing was run on both."
-)
-
 # Radii
 LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
@@ -198,20 +193,10 @@ LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the ang
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
 
 # Relaxation lengths from steps
-MOST_KEPT_NOISE = Real(
-    0.995,
-    "-",
-    "Largest share of the noise that the next sample keeps: beyond it, offset and gain of a run of steps are lost in it.",
-)
 LEAST_MOVE_OF_A_STEP = Real(
     0.02,
     "-",
     "Move between two samples, over the largest one of a run of steps, that is part of a step rather than noise of the setting.",
-)
-MEAN_OF_STEPS = Real(
-    0.15,
-    "-",
-    "Distance over which samples of a run of steps are averaged, over the unloaded radius: half the shortest relaxation lengths.",
 )
 CARCASS_TERM_SPREAD = Series(
     (0.2, 0.1, 0.3),
