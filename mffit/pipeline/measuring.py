@@ -76,8 +76,8 @@ def align(
     if source.suffix == ".toml":
         config = configuration.load(source)
         points, _ = ingestion.load(config)
-        found = direct.at_the_axis(config, points, decomposition.split(points))
-        return direct.align(points, axes=config.rig.axes, measured=found, resolution_deg=resolution_deg)
+        points, stiffness = direct.at_the_axis(config, points, decomposition.split(points))
+        return direct.align(points, axes=config.rig.axes, measured=stiffness, resolution_deg=resolution_deg)
     points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
     return direct.align(points, axes=axes or "iso", resolution_deg=resolution_deg)
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Literal, NamedTuple
 
+from mffit.constants import CAMBER_OF_SLOPES
 from mffit.errors import InputError
-from mffit.measured.constants import CUBIC_CAMBER
 from mffit.planning import constants
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import DECLARED
@@ -51,7 +51,7 @@ _SHARES = constants.SWEEP_SHARES
 _ZEROS = tuple(
     LineOfPoints("alpha", (-1.0, -0.5, 0.0, 0.5, 1.0), constants.ZERO_ANGLE, way) for way in (1, -1)
 )
-_SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CUBIC_CAMBER),)
+_SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CAMBER_OF_SLOPES),)
 _SIDESLIP = (LineOfPoints("alpha", _SHARES),)
 _CAMBER = (LineOfPoints("gamma", _SHARES),)
 _DRIVE = (LineOfPoints("kappa", _SHARES),)

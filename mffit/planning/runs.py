@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Config, SweepTable, setup_names
+from mffit.constants import CAMBER_OF_SLOPES
 from mffit.measured import measured_path_radius
-from mffit.measured.constants import CUBIC_CAMBER
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
@@ -114,7 +114,7 @@ class _Programme:
             "kappa": largest_slip(points),
         }
         if not self.largest["gamma"] > levels.CAMBER.tolerance:
-            self.largest["gamma"] = CUBIC_CAMBER.rad
+            self.largest["gamma"] = CAMBER_OF_SLOPES.rad
 
     def loads_of(self, addition: Addition) -> list[float]:
         """Loads [N] at which an addition is run."""
@@ -132,7 +132,7 @@ class _Programme:
         near = np.abs(np.log(self.main.Fz / load)) < levels.LOAD.tolerance
         there = near & _beyond(self.main.alpha, levels.SIDESLIP)
         run_already = np.round(np.abs(np.degrees(self.main.gamma[there])))
-        most = max(np.degrees(self.largest["gamma"]), float(CUBIC_CAMBER))
+        most = max(np.degrees(self.largest["gamma"]), float(CAMBER_OF_SLOPES))
         return [angle for angle in addition.held_deg if angle not in run_already and angle <= most]
 
     def line(self, line: LineOfPoints, addition: Addition, load: float, p: float, held_deg: float) -> Points:
