@@ -6,9 +6,6 @@ from tir.constant import Count, Real, Series
 
 # Weights
 HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard deviations lose weight (Huber).")
-FULL_WEIGHT = Real(
-    0.99, "-", "Weights below this, over that of most readings, are listed as reduced; rounding is above it."
-)
 OUTLIER_NEIGHBOURS = Series((-2, -1, 1, 2), "-", "Offsets of the rows with which a reading is compared.")
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")
 
@@ -33,9 +30,6 @@ LARGEST_CAMBER_REDUCTION = Real(
 )
 CONDITIONS_OF_A_MISFIT = Count(
     500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
-)
-EXACT_CONVERSION = Real(
-    1e-6, "-", "Difference over the largest force up to which a converted base has the same forces: rounding."
 )
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
@@ -186,11 +180,7 @@ SPIN_CORRECTION_OF_MODEL = Real(
 
 # Numbers of the tyre's state and of the rig
 LEAST_TEMPERATURE_RANGE = Real(3.0, "K", "Temperatures that move by less say nothing beyond their noise.")
-NUISANCE_SPREAD = Real(
-    10.0, "-", "Prior of such a number over its usual size: keeps it finite and does not pull."
-)
 LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the angle moving in either sense.")
-MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
 
 # Relaxation lengths from steps
 LEAST_MOVE_OF_A_STEP = Real(

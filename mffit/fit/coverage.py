@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.fit.stages import STAGES, Stage
 from mffit.points import Points, levels
-from tir.parameters import BY_NAME, Need, Parameter
+from tir.parameters import BY_NAME, Parameter
 
 NEEDLESS = "left-out sweeps are not predicted clearly better with these terms"
 
@@ -29,57 +29,68 @@ class StageCoverage:
     by_hand: tuple[str, ...] = ()  #: those of the held ones that the engineer holds
 
 
+LACKING = {
+    "camber": "no camber was run",
+    "coupled": "no sweep combines sideslip and camber",
+    "kappa": "no sweep varies longitudinal slip",
+    "combined": "no sweep combines longitudinal slip and sideslip",
+    "side_force": "no sweep combines longitudinal slip and side force, from sideslip or camber",
+    "both_sides": "sideslip was run to one side only, which does not show how the other one differs: run sideslip of the other "
+    "sign",
+    "speeds": "{needed} speeds are needed, {run} run",
+    "sideslips": "{needed} sideslips are needed, {run} run",
+    "curvature": "the path is straight, so spin is not excited",
+    "loads": "{needed} loads are needed, {run} run",
+    "pressures": "{needed} pressures are needed, {run} run",
+    "pressure_loads": "pressures were run at {where} only, which does not separate the pressure effect on cornering stiffness "
+    "from that on the load of its peak",
+}
+"""By the word of a need in the table of parameters, the sentence where it is not met."""
+
+
 @dataclass(frozen=True, slots=True)
 class Design:
-    """Numbers of levels of the set-points of a data set."""
+    """What was run."""
 
-    loads: int
-    pressures: int
-    pressure_loads: (
-        int  #: loads at which more than one pressure was run, a wheel that only rolls straight on apart
-    )
-    cambers: int
-    coupled: bool  #: sideslip and camber together
-    speeds: int
-    sideslips: int
-    slip: bool  #: longitudinal slip was run
-    combined: bool  #: longitudinal slip and sideslip together
-    side_force: bool  #: longitudinal slip where there is side force, of sideslip or of camber
-    both_sides: bool  #: sideslip to both sides
+    run: Mapping[str, int]
+    """How often each need of the table is met: levels of a set-point, or 0 and 1."""
     both_flanks: bool  #: sideslip towards both flanks of the tyre: to both sides, or with the tyre turned on its rim or backwards
     measured: tuple[str, ...]  #: channels with readings
-    curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
     symmetric: bool
 
 
 def design(points: Points, side: str) -> Design:
-    """The numbers of levels that were run."""
+    """What was run, of a tyre of a side."""
     curved = bool(np.any(points.phi_t != 0.0))
     held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    # A wheel that only rolls straight on shows radii over load and pressure, and no stiffness.
     load = np.where(_straight_on(points), levels.NO_LEVEL, held)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
-    both_sides = len(np.unique(np.sign(points.phi_t))) > 1
-    both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
+    both_ways = bool(
+        np.any(points.direction < 0) or np.any(points.mount < 0) or _both_signs(np.sign(points.phi_t))
+    )
     cambered = np.abs(points.gamma) > UPRIGHT.rad
     slipping = np.abs(points.alpha) > STRAIGHT.rad
-    driven = ~points.free_rolling
-    towards = np.sign(points.alpha)
+    driven, towards = ~points.free_rolling, np.sign(points.alpha)
+    run: dict[str, float | np.bool_] = {
+        "loads": len(np.unique(held[held >= 0])),
+        "pressures": levels.count(points.p, levels.PRESSURE),
+        "pressure_loads": sum(n > 1 for n in pressures_at),
+        "camber": levels.count(np.abs(points.gamma), levels.CAMBER) - 1,
+        "coupled": np.any(cambered & slipping),
+        "speeds": levels.count(points.V, levels.SPEED),
+        "sideslips": levels.count(points.alpha, levels.SIDESLIP),
+        "kappa": np.any(driven),
+        "combined": np.any(driven & slipping),
+        "side_force": np.any(driven & (slipping | cambered)),
+        "both_sides": _both_signs(towards[slipping]),
+        "curvature": curved,
+    }
     return Design(
-        loads=len(np.unique(held[held >= 0])),
-        pressures=levels.count(points.p, levels.PRESSURE),
-        pressure_loads=sum(n > 1 for n in pressures_at),
-        cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
-        coupled=bool(np.any(cambered & slipping)),
-        speeds=levels.count(points.V, levels.SPEED),
-        sideslips=levels.count(points.alpha, levels.SIDESLIP),
-        slip=bool(np.any(driven)),
-        combined=bool(np.any(driven & slipping)),
-        side_force=bool(np.any(driven & (slipping | cambered))),
-        both_sides=_both_signs(towards[slipping]),
+        run={word: int(count) for word, count in run.items()},
         both_flanks=_both_signs((towards * points.direction * points.mount)[slipping]),
         measured=points.measured,
-        curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
     )
@@ -141,7 +152,7 @@ def coverage(
 
 def _listed(stage: Stage, seen: Design) -> bool:
     there = set(seen.measured).issuperset(stage.channels) or not stage.where_measured
-    return there and (seen.slip or not stage.where_run)
+    return there and (bool(seen.run["kappa"]) or not stage.where_run)
 
 
 def why_held(name: str, points: Points, side: str) -> str:
@@ -160,39 +171,17 @@ def _missing(row: Parameter, seen: Design) -> str:
         )
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
-    return next((reason for need in row.needs if (reason := _unmet(need, seen, row))), "")
+    for need in row.needs:
+        met = seen.run[need.word] >= need.levels or (need.word == "both_sides" and _side_known(row, seen))
+        if not met:
+            run = seen.run[need.word]
+            return LACKING[need.word].format(
+                needed=need.levels, run=run, where="one load" if run else "different loads"
+            )
+    return ""
 
 
-def _sides(row: Parameter, seen: Design) -> bool:
-    """Whether an asymmetry is seen: from both sides, conicity from both flanks; on a disc a small prior decides it."""
-    small = seen.curved and row.disc_spread is not None
-    return small or seen.both_sides or (row.conicity and seen.both_flanks)
-
-
-def _unmet(need: Need, seen: Design, row: Parameter) -> str:
-    """The sentence about an unmet need of a coefficient; empty if the data meet it."""
-    run, sentence = {
-        "camber": (seen.cambers - 1, "no camber was run"),
-        "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
-        "kappa": (seen.slip, "no sweep varies longitudinal slip"),
-        "combined": (seen.combined, "no sweep combines longitudinal slip and sideslip"),
-        "side_force": (
-            seen.side_force,
-            "no sweep combines longitudinal slip and side force, from sideslip or camber",
-        ),
-        "both_sides": (
-            _sides(row, seen),
-            "sideslip was run to one side only, which does not show how the other one differs: run sideslip of the other sign",
-        ),
-        "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
-        "sideslips": (seen.sideslips, f"{need.levels} sideslips are needed, {seen.sideslips} run"),
-        "curvature": (seen.curved, "the path is straight, so spin is not excited"),
-        "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),
-        "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),
-        "pressure_loads": (
-            seen.pressure_loads,
-            f"pressures were run at {'one load' if seen.pressure_loads else 'different loads'} only, which does not "
-            "separate the pressure effect on cornering stiffness from that on the load of its peak",
-        ),
-    }[need.word]
-    return sentence if run < need.levels else ""
+def _side_known(row: Parameter, seen: Design) -> bool:
+    """Whether sideslip to one side shows an asymmetry: conicity towards both flanks; on a disc a small prior decides it."""
+    small = bool(seen.run["curvature"]) and row.disc_spread is not None
+    return small or (row.conicity and seen.both_flanks)

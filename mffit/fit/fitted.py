@@ -26,8 +26,6 @@ class Fitted:
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
-    stderr: Mapping[str, float]
-    """Standard uncertainty of every number."""
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
@@ -44,6 +42,11 @@ class Fitted:
     def simulation(self) -> Simulation:
         """The fitted tyre on the rig as fitted."""
         return self.problem.simulation
+
+    @property
+    def stderr(self) -> dict[str, float]:
+        """Standard uncertainty of every number."""
+        return self.posterior.stderr
 
 
 def uncertain(number: FreeNumber) -> Uncertain:

@@ -21,21 +21,19 @@ from mffit.fit.fitted import left_by
 from mffit.fit.influences.between_runs import between_runs
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import at_reference
-from mffit.fit.influences.nuisance_wording import nuisance_sentences, unmodelled_sentences
 from mffit.fit.influences.temperature import at_temperature
-from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances, with_doubt
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import relaxation_sentences
-from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
 from mffit.fit.start import starting_values
 from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
-from mffit.fit.wording import explanations, warnings
+from mffit.fit.wording import explanations, nuisance_sentences, unmodelled_sentences, warnings, with_remarks
 from mffit.fit.written.files import plain_use
 from mffit.linearised import LinearisedFit
 from mffit.measured import Measured
@@ -159,7 +157,7 @@ def _fitted_and_judged(
     """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
     the build."""
 
-    found = with_doubt(fit_with_nuisances(config, problem, start, plan, progress))
+    found = fit_with_nuisances(config, problem, start, plan, progress)
     progress("predicting each sweep from the others")
 
     def refit(without: np.ndarray) -> FittedModel:

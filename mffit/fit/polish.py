@@ -74,7 +74,6 @@ def _fitted(
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
-        stderr=stderr,
         problem=problem,
         numbers=tuple(problem.starting_here(numbers)),
         held=given.held,

@@ -9,7 +9,6 @@ import numpy as np
 from mffit.config.lines import line_text
 from mffit.diagnosis import Diagnosis
 from mffit.fit import FitResult
-from mffit.fit.constants import FULL_WEIGHT
 from mffit.fit.weights import stated_or_nominal
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
@@ -74,8 +73,9 @@ def _discounted(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
         states = stating(points.u(channel))
         for own in (used & states, used & ~states):  # the uncertainty of those that state none was estimated
             weight[own] = (np.min(factor[own], initial=np.inf) / factor[own]) ** 2
-        for file in np.unique(points.file[weight < FULL_WEIGHT]).tolist():
-            rows = np.flatnonzero((weight < FULL_WEIGHT) & (points.file == file))
+        reduced = weight < 1.0 - 1e-6  # rounding
+        for file in np.unique(points.file[reduced]).tolist():
+            rows = np.flatnonzero(reduced & (points.file == file))
             yield LeftOut(
                 file=points.files[file],
                 lines=line_text(points.line[rows]),

@@ -21,9 +21,8 @@ from scipy.optimize import least_squares
 import tir
 from mffit.fit.constraints import Envelope, violations
 from mffit.fit.ranges import plausible_ranges
-from mffit.fit.written.imitation import forces
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT, derive
-from mffit.fit.written.road import Road, weights
+from mffit.fit.written.road import Road, forces, weights
 from tir.parameters import BY_NAME
 
 SAMPLES = Path(__file__).parents[2] / "samples"

@@ -279,7 +279,8 @@ def tyre_at_nominal(tyre: Tyre, wanted: Nominal) -> Tyre:
 
 
 def _agreement(worst: ForceMisfit) -> str:
-    if worst.share <= constants.EXACT_CONVERSION:
+    differs = f"{worst.share:.1%}"
+    if differs == "0.0%":
         return "with the same forces"
     mode = "with" if worst.turn_slip else "without"
-    return f"but {worst.channel} {mode} turn slip differs by up to {worst.share:.1%} of its largest value"
+    return f"but {worst.channel} {mode} turn slip differs by up to {differs} of its largest value"

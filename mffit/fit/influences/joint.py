@@ -95,10 +95,9 @@ class JointFit:
         k, c = len(shared), len(problem.channels)
         size = np.array([number.spread for number in shared])
         unknown = ~np.isfinite(size)  # no limits and no prior: the readings alone know it
-        size[unknown] = UNKNOWN / np.linalg.norm(slope[:, :k][:, unknown], axis=0)
-        of_row = np.append(
-            np.tile(group, c), np.full(len(residual) - c * len(group), -1)
-        )  # -1: measured radii
+        size[unknown] = UNKNOWN / np.maximum(np.linalg.norm(slope[:, :k][:, unknown], axis=0), 1e-12)
+        radii = np.full(len(residual) - c * len(group), -1)  # measured ones belong to no group of points
+        of_row = np.append(np.tile(group, c), radii)
         return cls(
             names=tuple(number.name for number in shared),
             model=Mixed(
@@ -115,7 +114,7 @@ class JointFit:
 
     def explained(self, held: Collection[str] = ()) -> Explained:
         """The evidence if some numbers are held at their expected values, by the scatter that makes it largest."""
-        common = np.where(np.isin(self.names, [*held]), HELD, 0.0)
+        common = self._held(held)
 
         def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
             found = self.model.evidence(Variances(common, 2.0 * x, 0.0))
@@ -128,9 +127,12 @@ class JointFit:
 
     def alike(self, held: Collection[str] = ()) -> Explained:
         """The same if the groups do not differ."""
-        common = np.where(np.isin(self.names, [*held]), HELD, 0.0)
-        given = Variances(common, np.full(self.model.own.shape[1], HELD), 0.0)
+        given = Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
         return Explained(self.model.evidence(given).value, given)
+
+    def _held(self, names: Collection[str]) -> np.ndarray:
+        """Logarithm (k,) of the variances of the shared numbers."""
+        return np.where(np.isin(self.names, [*names]), HELD, 0.0)
 
     def gain(self, more: Collection[str], held: Collection[str] = ()) -> float:
         """By how much some numbers raise the logarithm of the largest likelihood, beside all others but those that are held.

@@ -17,7 +17,6 @@ from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, minimum
 from mffit.points import Points
-from mffit.rig_errors import BY_NAME
 from mffit.suspicion import parts_of_sweeps
 
 Gaps = Mapping[str, float]
@@ -80,8 +79,8 @@ class NearSolution(NamedTuple):
 def choose(config: Config, first: Fitted) -> NuisanceChoice:
     """The influences that [fit] demands, and those that explain more than chance does.
 
-    ``first`` is the fit without any. Forward steps: the influence that chance explains least is added, and one that a later step
-    makes needless is dropped. Grip and stiffness may differ from sweep to sweep meanwhile, so that no influence is taken for it.
+    ``first`` is the fit without any. Forward steps: the influence that explains most is added. Grip and stiffness may differ from
+    sweep to sweep meanwhile, so that no influence is taken for it.
     """
     points = first.problem.points
     verdicts: dict[str, Verdict] = {}
@@ -164,11 +163,6 @@ def _judged(
         rivals_of_best = {nuisance.rival for nuisance in best}
         left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals_of_best]
         model = _refitted(model, best)
-        for old in [n for n in model.chosen if n in candidates and n not in best]:
-            numbers = _numbers(n for n in model.chosen if n is old or n.after == old.id)
-            if numbers and not beyond_chance(model.joint(group).gain(numbers), len(numbers)):
-                tried[old.id] = (_WITHIN_CHANCE, here.gaps, here.gaps)
-                model = _without(model, old)
     return _verdicts(
         config, model, candidates, demanded, base.gaps, model.left_out(group).gaps, tried, enough=enough
     ), model
@@ -274,14 +268,6 @@ def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
     points = model.problem.points
     numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free(points, {}))]
     return solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
-
-
-def _without(model: NearSolution, dropped: Nuisance) -> NearSolution:
-    """The model without an influence and those that need it, fitted again."""
-    kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
-    gone = {name: BY_NAME[name].undisturbed for n in model.chosen if n not in kept for name in n.numbers}
-    numbers = [number for number in model.numbers if number.name not in gone]
-    return solved(NearSolution(model.problem.with_values(gone), numbers, kept))
 
 
 def solved(model: NearSolution) -> NearSolution:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -36,16 +37,11 @@ class Nuisance:
     )
 
     def free(self, points: Points, scatter: Mapping[str, float]) -> tuple[FreeNumber, ...]:
-        """The numbers with their limits and priors.
-
-        The prior does not pull; that of a number of every run is its ``scatter`` among the runs, by name.
-        """
+        """The numbers with their limits; the prior of a number of every run is its ``scatter`` among the runs, by name."""
         if not self.per_run:
-            return tuple(
-                _number(name, constants.NUISANCE_SPREAD * BY_NAME[name].spread) for name in self.numbers
-            )
+            return tuple(_number(name) for name in self.numbers)
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
-        return tuple(_number(name, scatter[name], run) for name in self.numbers for run in runs)
+        return tuple(_number(name, run, scatter[name]) for name in self.numbers for run in runs)
 
     def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
@@ -57,7 +53,7 @@ class Nuisance:
         return given is True or given == self.id
 
 
-def _number(name: str, spread: float, run: str = "") -> FreeNumber:
+def _number(name: str, run: str = "", spread: float = math.inf) -> FreeNumber:
     error, value = BY_NAME[name], BY_NAME[name].undisturbed
     return FreeNumber(number_of(name, run), value, error.lower, error.upper, expected=value, spread=spread)
 

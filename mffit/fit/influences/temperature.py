@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from mffit.fit import agreement, constants
+from mffit.fit import agreement
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.influences.between_runs import without_runs
@@ -18,6 +17,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.written.misfit import FileFigures
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.scatter import ALARM
 from tir.temperature import SCALED_BY
 
 
@@ -82,5 +82,5 @@ def _moved(found: NuisanceFit) -> dict[str, tuple[float, float, float]]:
     sizes: dict[str, float] = {
         name: abs(here - there) / u if u else 0.0 for name, (there, here, u) in moved.items()
     }
-    named: Any = sorted(sizes, key=lambda name: -sizes[name])
-    return {name: moved[name] for name in named if sizes[name] > constants.MOVED_COEFFICIENT}
+    named = sorted(sizes, key=lambda name: -sizes[name])
+    return {name: moved[name] for name in named if sizes[name] > ALARM}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -60,13 +59,11 @@ def fit_with_nuisances(
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, known, choice, others, fitted)
-    return NuisanceFit(plain, full, choice, refit, known)
-
-
-def with_doubt(found: NuisanceFit) -> NuisanceFit:
-    """The fits, the plain one with its distance from the full one."""
-    plain = _doubted(found.plain, found.full) if found.at_temperature else found.full
-    return replace(found, plain=plain)
+    # The shift of all its coefficients together from those at one temperature is one more error of known size.
+    shift = np.array(
+        [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
+    )
+    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, refit, known)
 
 
 def _polished(
@@ -88,17 +85,3 @@ def _polished(
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
     return polish(here.with_noise_of_misfit(), plan)
-
-
-def _doubted(plain: Fitted, full: Fitted) -> Fitted:
-    """The plain fit, its uncertainty with the shift of its coefficients from those at one temperature.
-
-    The shift of all coefficients together is one more error of known size.
-    """
-    names = plain.posterior.names
-    shift = {name: plain.values[name] - full.values[name] for name in names if name in full.values}
-    return replace(
-        plain,
-        posterior=plain.posterior.shifted(np.array([shift.get(name, 0.0) for name in names])),
-        stderr={name: math.hypot(u, shift.get(name, 0.0)) for name, u in plain.stderr.items()},
-    )

@@ -16,12 +16,11 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import EXACT, FreeNumber, inverse, of_model, solve
+from mffit.least_squares import EXACT, FreeNumber, inverse, minimum, of_model, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
 from tir import Quantity
-from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 from tir.parameters import TABLE
 
@@ -51,21 +50,12 @@ def radius_coefficients(
 
     ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept, and of the two only
     the ``free`` ones change.
-
-    Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Gauss-Newton steps are exact to rounding.
     """
     names = tuple(free)[: len(r_e)]
     loads, target = np.array(list(r_e)), np.array(list(r_e.values()))
-    found = {name: float(values[name]) for name in names}
-    if not names:
-        return {}
-    for _ in range(3):
-        numbers = traced(found)
-        Re = effective_radius({**values, **numbers}, loads, speed)
-        slope = np.broadcast_to(gradient(Re, list(numbers.values())), (len(loads), len(names)))
-        change = np.linalg.lstsq(slope, target - plain(Re), rcond=None)[0]
-        found = {name: found[name] + float(d) for name, d in zip(names, change, strict=True)}
-    return found
+    radius = of_model(lambda free: effective_radius({**values, **free}, loads, speed), names, target, 1e-6)
+    numbers = [FreeNumber(name, float(values[name])) for name in names]
+    return minimum(radius, numbers, tolerance=1e-12).values
 
 
 @dataclass(frozen=True, slots=True)

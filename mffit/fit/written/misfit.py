@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit.rig.zeros import BESIDE_ZERO
-from mffit.fit.written.imitation import forces
-from mffit.fit.written.road import Road, inside, weights
+from mffit.fit.written.road import Road, forces, inside, weights
 from mffit.scatter import rms
 from tir import Tyre
 from tir.derivatives import gradient, traced

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
+from mffit.fit.constraints import limits
 from mffit.fit.ranges import envelope
 from mffit.fit.stages import ODD_TERMS, STAGES
-from mffit.fit.written.imitation import ForcesToReproduce, Imitation, Lines, force, goal
-from mffit.fit.written.road import Road, camber_lines, road_grid, weights
-from mffit.least_squares import FreeNumber
+from mffit.fit.written.road import Road, camber_lines, force, forces, road_grid, weights
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, minimum
+from mffit.rig import Readings
+from tir.derivatives import gradient, plain, traced
 from tir.parameters import BY_NAME
 
+MISFIT_UNIT = {"Fy": constants.MISFIT_UNIT_FY, "Mz": constants.MISFIT_UNIT_MZ}
+"""By channel, unit of the residual over nominal load [N/N, m]."""
 CAMBER_STIFFNESS = ("PKY6", "PKY7")
 CAMBER_FORCE = ("PKY3", "PKY5", "PDY3", "PVY3", "PVY4", "PEY4", "PEY5", *CAMBER_STIFFNESS)
 CAMBER_MOMENT = (
@@ -49,33 +55,85 @@ def derive(
     hand : coefficients that are held in every file, and bounds that every file keeps
     weight : "everything" or "road", see :func:`mffit.fit.written.road.weights`
     """
-    goals = _goals(values, road_grid(tested, written, float(values["FNOMIN"])), tested, both_on, weight)
+    road = road_grid(tested, written, float(values["FNOMIN"]))
+    uses = [(False, 0.0)] if both_on is None else [(True, both_on), (True, 0.0), (False, 0.0)]
+    goals = [
+        ForcesToReproduce(turn_slip, phi_t, forces(values, road, turn_slip=True, phi_t=phi_t))
+        for turn_slip, phi_t in uses
+    ]
     free = _free(both=both_on is not None, symmetric=symmetric)
     free = {channel: hand.without_held(names) for channel, names in free.items()}
     found = dict(values)
     for channel, names in free.items():
-        limits = (envelope(written), _lines(values, written) if channel == "Fy" else None)
+        imitation = _Imitation(channel, found, values, goals, road, weights(road, tested, weight), written)
         numbers = _numbers({name: float(values[name]) for name in names}, hand)
-        found |= Imitation(channel, found, goals, *limits).solve(numbers).values
+        found |= minimum(imitation.of(names), numbers, tolerance=constants.REFIT_TOLERANCE).values
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
 
 
-def _goals(
-    values: Mapping[str, Any],
-    road: Road,
-    tested: Mapping[str, float],
-    both_on: float | None,
-    kind: str,
-) -> tuple[ForcesToReproduce, ...]:
-    weight = weights(road, tested, kind)
-    without = goal(values, road, weight, turn_slip=False)
-    if both_on is None:
-        return (without,)
-    return (
-        goal(values, road, weight, turn_slip=True, phi_t=both_on),
-        goal(values, road, weight, turn_slip=True),
-        without,
-    )
+class ForcesToReproduce(NamedTuple):
+    """Forces of the fitted model, which is meant for turn slip on, that the file is to reproduce in one use."""
+
+    turn_slip: bool  #: whether the simulation computes turn slip
+    phi_t: float  #: path curvature, ISO, of every condition [1/m]
+    forces: Readings
+
+
+class _Imitation(NamedTuple):
+    """One channel of a file, least squares over the file's ranges."""
+
+    channel: str  #: "Fy" or "Mz"
+    fixed: Mapping[str, Any]  #: every value of the file
+    model: Mapping[str, Any]  #: the same of the fitted model
+    goals: Sequence[ForcesToReproduce]
+    road: Road
+    weight: np.ndarray  #: (n,) of the conditions
+    written: Mapping[str, float]  #: ranges over which the physical limits hold
+
+    def of(self, names: Sequence[str]) -> LeastSquaresProblem:
+        """Weighted misfits and limits with some values free."""
+
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            here = self._at(dict(zip(names, x.tolist(), strict=True)))
+            return here.data, here.limits
+
+        def linear(x: np.ndarray) -> Linear:
+            return self._at(traced(dict(zip(names, x.tolist(), strict=True))))
+
+        return LeastSquaresProblem(residual, linear)
+
+    def _at(self, free: Mapping[str, Any]) -> Linear:
+        """With derivatives by the free values if they are traced."""
+        values, by = {**self.fixed, **free}, [x for x in free.values() if not isinstance(x, float)]
+        unit = MISFIT_UNIT[self.channel] * float(self.fixed["FNOMIN"])
+        factor = np.sqrt(self.weight / self.weight.sum()) / unit
+        out = [
+            force(self.channel, values, self.road, turn_slip=goal.turn_slip, phi_t=goal.phi_t)
+            for goal in self.goals
+        ]
+        aims = [getattr(goal.forces, self.channel) for goal in self.goals]
+        data = [(plain(one) - aim) * factor for one, aim in zip(out, aims, strict=True)]
+        slopes = [gradient(one, by) * factor[:, None] for one in out]
+        over, over_slope = limits(SimpleNamespace(**values), envelope(self.written), by)
+        held, held_slope = self._reversal(values, by)
+        weight = constants.LIMIT_WEIGHT_OF_DERIVED_FILE
+        return Linear(
+            np.concatenate(data),
+            np.concatenate(slopes),
+            np.concatenate([weight * over, held / unit]),
+            np.concatenate([weight * over_slope, held_slope / unit]),
+        )
+
+    def _reversal(self, values: Mapping[str, Any], by: list[Any]) -> tuple[np.ndarray, np.ndarray]:
+        """Steps of the side force along lines of camber, above 0 where it rises and the model's falls, with derivatives."""
+        if self.channel != "Fy":
+            return np.zeros(0), np.zeros((0, len(by)))
+        road, n = camber_lines(self.written)
+        falls = np.diff(force("Fy", self.model, road, turn_slip=True).reshape(-1, n)) < 0.0
+        Fy = force("Fy", values, road, turn_slip=False)
+        steps = np.diff(plain(Fy).reshape(-1, n))
+        slope = np.diff(gradient(Fy, by).reshape(*falls.shape[:1], n, len(by)), axis=1)
+        return np.where(falls, steps, 0.0).ravel(), slope.reshape(steps.size, len(by))
 
 
 def _free(*, both: bool, symmetric: bool) -> dict[str, list[str]]:
@@ -86,12 +144,6 @@ def _free(*, both: bool, symmetric: bool) -> dict[str, list[str]]:
         spin = [name for name in SPIN if both and BY_NAME[name].channel == channel]
         out[channel] = [name for name in (*camber, *spin) if name not in absent]
     return out
-
-
-def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
-    """The lines of camber and where the model's side force falls along them."""
-    road, n = camber_lines(written)
-    return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
 def _numbers(start: Mapping[str, float], hand: Hand) -> list[FreeNumber]:

@@ -1,13 +1,17 @@
-"""Conditions on a straight path over the ranges of a file, and their weights."""
+"""Conditions on a straight path over the ranges of a file, their weights, and the forces of files there."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.fit import constants
+from mffit.quantities import SIDEWAYS
+from mffit.rig import Readings
+from tir.outputs import outputs_of
 
 
 class Road(NamedTuple):
@@ -81,3 +85,21 @@ def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
     within &= (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
     return within
+
+
+def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Readings:
+    """Fy [N] and Mz [Nm] of a file on the road."""
+    found = _outputs(tuple(SIDEWAYS), values, road, turn_slip, phi_t)
+    return Readings(**dict(zip(SIDEWAYS, found, strict=True)))
+
+
+def force(channel: str, values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:
+    """One channel of a file on the road, plain or traced."""
+    return _outputs((channel,), values, road, turn_slip, phi_t)[0]
+
+
+def _outputs(
+    names: tuple[str, ...], values: Mapping[str, Any], road: Road, turn_slip: bool, phi_t: float
+) -> list[Any]:
+    path = {"phi_t": phi_t} if phi_t else {}
+    return outputs_of(names, SimpleNamespace(**values), {**road._asdict(), **path}, turn_slip=turn_slip)

@@ -44,7 +44,7 @@ def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stif
     found = held(programme(*LOADS, *PRESSURES))
     assert set(found) == {"PPY2"}
     assert found["PPY2"].startswith("pressures were run at one load only")
-    assert design(programme(*LOADS, *PRESSURES), "").pressure_loads == 1
+    assert design(programme(*LOADS, *PRESSURES), "").run["pressure_loads"] == 1
 
 
 def test_a_wheel_that_only_rolls_shows_nothing_of_the_cornering_stiffness():
@@ -56,7 +56,7 @@ def test_a_wheel_that_only_rolls_shows_nothing_of_the_cornering_stiffness():
         np.append(swept.alpha, 0.0 * Fz), np.append(swept.gamma, 0.0 * Fz), np.append(swept.Fz, Fz),
         p=np.append(swept.p, p), V=6.0, phi_t=0.0, Fy=np.zeros(rows), Mz=np.zeros(rows),
     )  # fmt: skip
-    assert design(both, "").pressure_loads == 1
+    assert design(both, "").run["pressure_loads"] == 1
     assert held(both)["PPY2"]
 
 

@@ -15,9 +15,8 @@ from mffit.config.models import NormalTable
 from mffit.diagnosis.notes import ModelFittedFirst
 from mffit.fit.comments import whole_words
 from mffit.fit.written.files import file_names, use_mode
-from mffit.fit.written.imitation import forces
 from mffit.fit.written.normal import derive
-from mffit.fit.written.road import inside, road_grid, weights
+from mffit.fit.written.road import forces, inside, road_grid, weights
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json

@@ -35,7 +35,7 @@ def test_a_sweep_whose_load_wanders_is_one_group():
         sweep_names=("a", "b", "c", "d"), files=("x",),
     )  # fmt: skip
     assert np.array_equal(parts_of_sweeps(points), sweep)
-    assert design(points, "left").loads == 2
+    assert design(points, "left").run["loads"] == 2
 
 
 def test_a_sweep_of_camber_is_one_group():
