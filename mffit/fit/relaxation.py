@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -206,22 +207,27 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     )  # fmt: skip
     simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
     radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
-    read = samples.channel(direction.force)
-    beside = np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)])
+    rolled = rolled_distance(samples.time, samples.V)
+    first_of_mean = np.flatnonzero(
+        np.diff(np.floor(rolled / (constants.MEAN_OF_STEPS * radius)), prepend=-1.0)
+    )
+    means = partial(_means, first=first_of_mean)
+    read = means(samples.channel(direction.force))
+    beside = means(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
     ends = _ends_of_steps(direction, samples, radius)
     free = [
         FreeNumber("sigma", radius, 1e-3 * radius),
         *(FreeNumber(f"share{row}", 0.5, 0.0, 1.0, 0.5, SPREAD_OF_UNIFORM) for row in ends),
     ]
-    first = _response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0]
+    first = means(_response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0])
     known, *_ = np.linalg.lstsq(np.column_stack([beside, first]), read, rcond=None)
     free += [FreeNumber(f"beside{k}", value) for k, value in enumerate(known.tolist())]
 
     def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Readings (n,) and their derivatives (n, k) by the numbers."""
+        """Means of readings (m,) and their derivatives (m, k) by the numbers."""
         count = 1 + len(ends)
         shares = dict(zip(ends, x[1:count].tolist(), strict=True))
-        response, slope = _response(direction, samples, simulation, x[0], shares)
+        response, slope = map(means, _response(direction, samples, simulation, x[0], shares))
         design = np.column_stack([beside, response])
         return design @ x[count:], np.column_stack([x[-1] * slope, design])
 
@@ -245,6 +251,11 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         Quantity(sigma, u, "m"),
         Quantity(C, u / sigma * C, "N/m"),
     )
+
+
+def _means(x: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Means (m,) or (m, k) over short distances, which begin at ``first`` (m,): finer samples say nothing of a slow process."""
+    return np.asarray((np.add.reduceat(x, first, axis=0).T / np.diff(np.r_[first, len(x)])).T)
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:

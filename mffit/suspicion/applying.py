@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 
 from mffit.config import Config
-from mffit.config.declared import as_declared
+from mffit.config.loading import as_declared
 from mffit.points import Points
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt, JudgedSweeps, views

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from mffit.config import Config
 from mffit.config.loading import checked
-from mffit.config.locate import lines_of_keys
+from mffit.config.toml_file import lines_of_keys
 from mffit.errors import InputError
 from mffit.window import constants
 from tir.writing import replace_file
