@@ -229,11 +229,6 @@ LEAST_MOVE_OF_A_STEP = Real(
     "-",
     "Move between two samples, over the largest one of a run of steps, that is part of a step rather than noise of the setting.",
 )
-MEAN_OF_STEPS = Real(
-    0.15,
-    "-",
-    "Distance over which samples of a run of steps are averaged, over the unloaded radius: half the shortest relaxation lengths.",
-)
 CARCASS_TERM_SPREAD = Series(
     (0.2, 0.1, 0.3),
     "-",

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -207,32 +206,29 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     )  # fmt: skip
     simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
     radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
-    rolled = rolled_distance(samples.time, samples.V)
-    first_of_mean = np.flatnonzero(
-        np.diff(np.floor(rolled / (constants.MEAN_OF_STEPS * radius)), prepend=-1.0)
-    )
-    means = partial(_means, first=first_of_mean)
-    read = means(samples.channel(direction.force))
-    beside = means(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
+    read = samples.channel(direction.force)
+    beside = np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)])
+    spacing = float(np.median(np.diff(rolled_distance(samples.time, samples.V))))
+    within = max(1, round(radius / spacing))
     ends = _ends_of_steps(direction, samples, radius)
     free = [
         FreeNumber("sigma", radius, 1e-3 * radius),
         *(FreeNumber(f"share{row}", 0.5, 0.0, 1.0, 0.5, SPREAD_OF_UNIFORM) for row in ends),
     ]
-    first = means(_response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0])
+    first = _response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0]
     known, *_ = np.linalg.lstsq(np.column_stack([beside, first]), read, rcond=None)
     free += [FreeNumber(f"beside{k}", value) for k, value in enumerate(known.tolist())]
 
     def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Means of readings (m,) and their derivatives (m, k) by the numbers."""
+        """Readings (n,) and their derivatives (n, k) by the numbers."""
         count = 1 + len(ends)
         shares = dict(zip(ends, x[1:count].tolist(), strict=True))
-        response, slope = map(means, _response(direction, samples, simulation, x[0], shares))
+        response, slope = _response(direction, samples, simulation, x[0], shares)
         design = np.column_stack([beside, response])
         return design @ x[count:], np.column_stack([x[-1] * slope, design])
 
     sigma, u, move = radius, math.inf, math.inf
-    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free))
+    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free), within)
     for _ in range(constants.REFIT_STEPS):
         end = solve(_problem(model, read, noise), free)
         x = np.array(list(end.values.values()))
@@ -241,7 +237,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         u = math.sqrt(float(end.covariance[0, 0]))
         if abs(move) < constants.REFIT_TOLERANCE * sigma:
             break
-        noise = _Noise.of(read - model(x)[0], len(free))
+        noise = _Noise.of(read - model(x)[0], len(free), within)
     u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
@@ -251,11 +247,6 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         Quantity(sigma, u, "m"),
         Quantity(C, u / sigma * C, "N/m"),
     )
-
-
-def _means(x: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Means (m,) or (m, k) over short distances, which begin at ``first`` (m,): finer samples say nothing of a slow process."""
-    return np.asarray((np.add.reduceat(x, first, axis=0).T / np.diff(np.r_[first, len(x)])).T)
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:
@@ -303,10 +294,14 @@ class _Noise(NamedTuple):
     size: float  #: standard deviation of what is new in a reading
 
     @classmethod
-    def of(cls, residual: np.ndarray, numbers: int) -> _Noise:
-        """The noise in what so many fitted numbers leave."""
+    def of(cls, residual: np.ndarray, numbers: int, within: int = 1) -> _Noise:
+        """The noise in what so many fitted numbers leave, larger if it still shows over ``within`` samples."""
         memory, new = autoregression(residual - residual.mean())
-        return cls(memory, math.sqrt(new * len(residual) / max(len(residual) - numbers, 1)) or 1.0)
+        white = cls(memory, math.sqrt(new) or 1.0).whitened(residual)
+        blocks = white[: len(white) // within * within].reshape(-1, within).mean(axis=1)
+        excess = max(1.0, within * float(np.var(blocks))) if len(blocks) > 1 else 1.0
+        freedom = max(len(residual) - numbers, 1)
+        return cls(memory, math.sqrt(new * excess * len(residual) / freedom) or 1.0)
 
     def whitened(self, x: np.ndarray) -> np.ndarray:
         """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""
