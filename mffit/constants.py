@@ -51,6 +51,13 @@ UPRIGHT = Real(
     "deg",
     "Camber as read within which a wheel is upright, and within which two angles are one level of a programme.",
 )
+CAMBER_OF_SLOPES = Real(
+    20.0,
+    "deg",
+    "Camber up to which a cubic describes the odd camber force and a line its sign; up to 50 deg a cubic is as biased as the "
+    "secant.",
+    "docs/method.md",
+)
 SAME_SIDESLIP = Real(0.05, "deg", "Sideslip angles within this are one set-point: zeros, mirrored points.")
 NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; it counts the others.")
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")

@@ -20,22 +20,12 @@ POINTS_FOR_PARABOLA = Count(
     5, "-", "Fewest angles near zero from which a parabola gives the zero better than a mean."
 )
 
-CUBIC_CAMBER = Real(
-    20.0,
-    "deg",
-    "Camber up to which a cubic describes the odd curve; up to 50 deg it is as biased as the secant.",
-    "docs/method.md",
-)
 CUBIC_SIDESLIP = Real(2.0, "deg", "Sideslip up to which a cubic describes the odd curve.")
 SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
 
 LARGEST_EPSILON = Real(0.9, "-", "PECP2 is not written if eps_gamma would reach this within the loads.")
-
-MONTE_CARLO_DRAWS = Count(
-    20_000, "-", "Random draws for u(eps_gamma), which is then known to better than 1 %."
-)
 
 SPIN_LOSS = Real(
     0.03,

@@ -11,7 +11,6 @@ from uncertainties import UFloat
 
 from mffit.config import Config
 from mffit.measured import constants, wording
-from mffit.measured.alignment import AxisAtLoad
 from mffit.measured.axis import (
     AlignmentVerdict,
     SetupAngle,
@@ -151,18 +150,11 @@ def _sideslip_zeros(
     return angles_of_setups(readings, evidence.config.tyre.nominal_load)
 
 
-def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
-    """Cornering stiffness and zeros by load [N] for the alignment; an inward turn-slip force is not refused."""
+def at_the_axis(config: Config, points: Points, parts: Parts) -> tuple[Points, dict[float, Quantity]]:
+    """For the alignment: the points without play, and the cornering stiffness by load [N]."""
     evidence = evidence_of(config, points, parts, None)
-    out = {}
-    for group in load_groups(evidence.points):
-        C_alpha = cornering_stiffness(evidence, group)
-        paths = zeros_by_path(evidence.points, group, C_alpha, config) if evidence.rig else []
-        # Of several set-ups on the usual path the last one is aligned.
-        usual = [path.readings for path in paths if path.phi_t == paths[0].phi_t]
-        forces = [float(force.nominal_value) for force in usual[-1]] if usual else []
-        out[group.load] = AxisAtLoad(quantity_if(C_alpha, "N/rad"), *[*forces, math.nan, math.nan][:2])
-    return out
+    found = {group.load: cornering_stiffness(evidence, group) for group in load_groups(evidence.points)}
+    return evidence.points, {load: quantity(C, "N/rad") for load, C in found.items() if C is not None}
 
 
 def _at_load(
@@ -200,7 +192,6 @@ def _on_disc(
     )
     # The secant is larger by far more than finite spin, so only the slope can be corrected.
     debiased = slope.debiased if slope is not None else None
-    draws = epsilon.draws
     row = replace(
         row,
         epsilon_gamma=quantity_if(epsilon.plain, "-"),
@@ -210,8 +201,6 @@ def _on_disc(
         epsilon_moment=epsilon_from_moments(evidence, group, found, r_e),
         setups=results_of_setups(evidence, found, C_alpha, C_gamma, r_e),
         budget=budget(epsilon.plain),
-        u_monte_carlo=draws.u,
-        interval=draws.interval,
     )
     return _AtLoad(_with_left_out(evidence, row), epsilon.plain, warmer)
 

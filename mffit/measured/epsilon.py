@@ -1,4 +1,4 @@
-"""eps_gamma of one load: plain, corrected for finite spin, by random draws and from the moments; and its law over load."""
+"""eps_gamma of one load: plain, corrected for finite spin and from the moments; and its law over load."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.constants import COVERAGE_FACTOR_95, USUAL_U_MOMENT
+from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.slopes import slope_at_zero
 from mffit.measured.stiffnesses import sweep
 from mffit.measured.turning import Turning
-from mffit.measured.uncertain import Draws, by_draws, combined
+from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros
 from mffit.rig_errors import AtZero
 
@@ -26,12 +26,6 @@ class Factor(NamedTuple):
 
     plain: UFloat  #: by (17), finite spin in its uncertainty
     debiased: UFloat  #: corrected for finite spin
-    ratio: tuple[UFloat, UFloat]  #: numerator and denominator of (17), both over the path radius [N]
-
-    @property
-    def draws(self) -> Draws:
-        """u and 95 % interval of the plain value by random draws."""
-        return by_draws(*self.ratio, self.plain)
 
 
 def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloat, warmer: float) -> Factor:
@@ -50,13 +44,12 @@ def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloa
     A secant is the published procedure, whose budget has neither finite spin nor temperature.
     """
     assert evidence.rig is not None
-    R = evidence.rig.R
     if not evidence.published:
         C_gamma = C_gamma * (1.0 - warmer * evidence.warming)
-    ratio = camber_reduction(found.force, C_gamma, r_e, R, found.sign).epsilon_gamma
+    ratio = camber_reduction(found.force, C_gamma, r_e, evidence.rig.R, found.sign).epsilon_gamma
     spin = (1.0 - ratio.nominal_value) * found.phi_t[0] ** 2
     plain = ratio if evidence.published else ratio + spin * evidence.spin_left
-    return Factor(plain, ratio - spin * evidence.spin_known, (r_e / R * C_gamma, found.sign * found.force))
+    return Factor(plain, ratio - spin * evidence.spin_known)
 
 
 def corrected(evidence: DirectEvidence, C_gamma: UFloat | None, C_alpha: UFloat | None) -> UFloat | None:
@@ -90,7 +83,7 @@ def epsilon_from_moments(
         return None
     u = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, USUAL_U_MOMENT / math.sqrt(2.0))
     i = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
-    local, spread = constants.CUBIC_CAMBER.rad, float(constants.CURVATURE_SPREAD)
+    local, spread = CAMBER_OF_SLOPES.rad, float(constants.CURVATURE_SPREAD)
     slope = slope_at_zero(evidence.points.gamma[i], parts.Mz_odd[i], u[i], local=local, curvature=spread)
     return None if slope is None else float(1.0 + r_e.n * slope.value / (found.sign * moment.n * rig.R.n))
 

@@ -113,8 +113,6 @@ class LoadResult(Brief):
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
-    u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
-    interval: tuple[float, float] | None = None  #: 95 % interval of eps_gamma from random draws
     left_out: tuple[Contribution, ...] = ()  #: lines that the published procedure leaves out of its budget
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
     setups: tuple[
@@ -256,15 +254,12 @@ class Measured(Brief):
         spin = Contribution(FINITE_SPIN, both, "-", both, value=0.0, sensitivity=1.0)
         lines = [line for line in (*row.budget, *row.left_out) if line.source != FINITE_SPIN]
         whole, corrected = math.hypot(rest, both), direct.value - bias
-        grown = whole / direct.u if direct.u else 1.0
         named = dataclasses.replace(
             row,
             epsilon_gamma=Quantity(direct.value, whole, direct.unit),
             epsilon_debiased=Quantity(corrected, math.hypot(rest, u_bias), direct.unit),
             budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
             left_out=(),
-            u_monte_carlo=None if row.u_monte_carlo is None else grown * row.u_monte_carlo,
-            interval=row.interval and _about(direct.value, grown, row.interval),
         )
         return self.with_nominal(named)
 
@@ -289,12 +284,6 @@ class Measured(Brief):
         return out
 
 
-def _about(value: float, grown: float, interval: tuple[float, float]) -> tuple[float, float]:
-    """An interval whose distances from the value have grown."""
-    low, high = interval
-    return value + grown * (low - value), value + grown * (high - value)
-
-
 KEYS = {
     "epsilon_gamma": "epsilon_gamma",
     "C_phit": "C_phit_Nm",
@@ -314,7 +303,7 @@ class AlignmentStep:
 
     load: float  #: [N]
     iteration: int
-    F_forward: float  #: mean of the forward zeros, ISO [N]
+    F_forward: float  #: force at the forward zeros, ISO [N]
     F_backward: float  #: [N]
     F_turn_slip: float  #: (6) [N]
     F_slip: float  #: (7) [N]
@@ -322,7 +311,6 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-    reported: tuple[float, float] | None = None  #: the same zeros in the report, where these differ [N]
 
     @property
     def secant(self) -> bool:

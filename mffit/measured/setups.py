@@ -19,7 +19,7 @@ from mffit.measured.evidence import DirectEvidence
 from mffit.measured.result import Measured, SetupResult, SetupScatter
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import named, quantity, quantity_if
-from mffit.measured.zeros import LoadGroup, PathZeros, force_at_zero, u_of, zeros, zeros_by_path
+from mffit.measured.zeros import LoadGroup, PathZeros, forces_of_sweeps, u_of, zeros, zeros_by_path
 from mffit.points import Points
 from mffit.rig_errors import DECLARED, AtZero
 from mffit.scatter import rms
@@ -164,7 +164,7 @@ def _of_sweeps(points: Points, path: PathZeros, slope: float) -> list[tuple[np.n
     for direction in (1, -1):
         i = zeros(points, path.group, direction)
         i = i[np.isfinite(points.Fy[i])]
-        means = force_at_zero(points, i, direction, slope)
+        means = forces_of_sweeps(points, i, direction, slope)
         if means:
             rows = [i[points.sweep[i] == k] for k in means]
             stated = rms(np.array([np.linalg.norm(u[own]) / len(own) for own in rows]))

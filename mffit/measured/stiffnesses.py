@@ -11,7 +11,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import STRAIGHT, UPRIGHT, USUAL_U_FORCE
+from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.measured import constants, wording
 from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.slopes import Secant, SlopeAtZero, secant_at, slope_at_zero
@@ -111,7 +111,7 @@ def _camber_estimates(
     i = sweep(evidence.points, odd_Fy, group, "gamma", config, direction)
     if C_alpha is not None:  # less the force of the sideslip that backlash leaves in a camber sweep
         odd_Fy = odd_Fy - direction * C_alpha.nominal_value * evidence.odd_slip
-    local, angle = constants.CUBIC_CAMBER.rad, math.radians(config.camber_stiffness.angle_deg)
+    local, angle = CAMBER_OF_SLOPES.rad, math.radians(config.camber_stiffness.angle_deg)
     return _estimates(evidence, i, evidence.points.gamma, odd_Fy, local, angle)
 
 
@@ -145,7 +145,7 @@ def _estimates(
 def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:
     """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
-    slope_possible = found.slope is not None and 2.0 * found.largest >= constants.CUBIC_CAMBER.rad
+    slope_possible = found.slope is not None and 2.0 * found.largest >= CAMBER_OF_SLOPES.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
         return found.secant, wording.slope_not_possible(load, angle)
     if wanted == "secant" and found.secant is None and found.slope is not None:

@@ -1,4 +1,4 @@
-"""Numbers that know the sources of their uncertainty: combined by least squares, and listed in a budget (JCGM 100, 101)."""
+"""Numbers that know the sources of their uncertainty: combined by least squares, and listed in a budget (JCGM 100)."""
 
 from __future__ import annotations
 
@@ -11,13 +11,10 @@ from scipy.special import chdtrc, ndtr, stdtrit
 from uncertainties import UFloat, ufloat
 
 from mffit.constants import COVERAGE_FACTOR_95
-from mffit.measured import constants
 from tir import Quantity
 
 COVERAGE = float(2.0 * ndtr(COVERAGE_FACTOR_95) - 1.0)
 """Coverage probability of expanded uncertainties and intervals (JCGM 100, 6.2.2)."""
-LEAST_DOF = 3.0
-"""Fewest degrees of freedom that are drawn, as the t distribution has no variance below (JCGM 101, 6.4.9)."""
 
 
 class Source(NamedTuple):
@@ -126,13 +123,6 @@ class Expanded(NamedTuple):
     probability: float  #: that the interval +-U covers the true value
 
 
-class Draws(NamedTuple):
-    """u(eps_gamma) and its 95 % interval by random draws (JCGM 101)."""
-
-    u: float
-    interval: tuple[float, float]  #: 2.5 % and 97.5 % quantiles
-
-
 def budget(epsilon: UFloat) -> tuple[Contribution, ...]:
     """What each source contributes to u(eps_gamma), largest first; variables of one source share a row."""
     sources: dict[str, list[Any]] = {}
@@ -176,40 +166,3 @@ def expanded(rows: Sequence[Contribution]) -> Expanded:
         else float(COVERAGE_FACTOR_95)
     )
     return Expanded(k * math.hypot(*(row.contribution for row in rows)), k, dof, round(COVERAGE, 6))
-
-
-def by_draws(r_e_C_gamma: UFloat, C_phit: UFloat, epsilon: UFloat, seed: int = 1) -> Draws:
-    """u and 95 % interval of eps_gamma = 1 + r_e C_gamma / C_phit by random draws of all independent sources.
-
-    Parameters
-    ----------
-    r_e_C_gamma : numerator, over the path radius [N]
-    C_phit : denominator, over the path radius [N]
-    epsilon : the factor; sources that it has in addition to those of the ratio add to it
-    seed : of the draws
-
-    Notes
-    -----
-    Numerator and denominator are linear in their sources, but for products of two small numbers; their ratio is not, and
-    is taken draw by draw. The radius is taken out of both, as it cancels where r_e comes from a revolution of the disc.
-    u is half the distance between the 15.87 % and 84.13 % quantiles, because a ratio has heavy tails.
-    """
-    rng, count = np.random.default_rng(seed), int(constants.MONTE_CARLO_DRAWS)
-    beside = epsilon - (1.0 + r_e_C_gamma / C_phit)
-
-    def drawn(source: Source, u: float) -> np.ndarray:
-        if source.kind == "A" and math.isfinite(source.dof):
-            return u * rng.standard_t(max(source.dof, LEAST_DOF), count)
-        return u * rng.standard_normal(count)
-
-    variables = dict.fromkeys([*r_e_C_gamma.derivatives, *C_phit.derivatives, *beside.derivatives])
-    deviations = {variable: drawn(variable.tag, variable.std_dev) for variable in variables}
-
-    def sample(number: UFloat) -> np.ndarray:
-        parts = (slope * deviations[variable] for variable, slope in number.derivatives.items())
-        return np.asarray(number.nominal_value + sum(parts, np.zeros(count)))
-
-    values = 1.0 + sample(r_e_C_gamma) / sample(C_phit) + sample(beside)
-    tail = (1.0 - COVERAGE) / 2.0
-    low, under, above, high = np.quantile(values, [tail, ndtr(-1.0), ndtr(1.0), 1.0 - tail])
-    return Draws(u=float(above - under) / 2.0, interval=(float(low), float(high)))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from mffit.measured.result import Alignment, Measured, SetupScatter, usual_ply_steer
-from mffit.rounding import as_good_as, to_uncertainty
+from mffit.rounding import to_uncertainty
 from tir import Quantity
 
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
@@ -284,15 +284,6 @@ def epsilon_values(measured: Measured) -> str:
     )
 
 
-def by_draws(measured: Measured) -> str:
-    """u(eps_gamma) and its 95 % interval by random draws; empty without draws."""
-    row = measured.nominal
-    if row is None or row.u_monte_carlo is None or row.interval is None:
-        return ""
-    low, high = (as_good_as(end, row.u_monte_carlo) for end in row.interval)
-    return f"{row.u_monte_carlo:.4f} by random draws, 95 % interval {low} to {high}"
-
-
 def expanded(measured: Measured) -> str:
     """The expanded uncertainty with its coverage factor; empty without a budget."""
     found = measured.nominal.expanded if measured.nominal else None
@@ -303,7 +294,7 @@ def expanded(measured: Measured) -> str:
 
 
 def advice(found: Alignment) -> list[str]:
-    """The next adjustment of the axis, and why these zeros differ from the report's."""
+    """The next adjustment of the axis."""
     correction, u = found.correction_deg, found.u_deg
     step = f"{correction:+.3f} +- {u:.3f} deg of the rig's own scale (k = 1)"
     if found.aligned:
@@ -323,25 +314,5 @@ def advice(found: Alignment) -> list[str]:
         out.append(
             "C_alpha is guessed from the load, so the correction is uncertain; a sideslip sweep in tyre.toml or a second "
             "iteration measures it."
-        )
-    rows = [row for row in found.last if row.reported is not None]
-    if rows:
-        said = "; ".join(
-            f"at {row.load:.0f} N "
-            + " and ".join(
-                f"{there:.1f} N {way} where it is {here:.1f} N here"
-                for way, there, here in zip(
-                    ("forwards", "backwards"),
-                    row.reported or (),
-                    (row.F_forward, row.F_backward),
-                    strict=True,
-                )
-                if math.isfinite(there)
-            )
-            for row in rows
-        )
-        out.append(
-            "The zeros above are plain means of the readings at zero, as the rig shows them. The report corrects them for the "
-            f"play of the axis and, where five angles were run near zero, takes zero from a parabola through them: {said}."
         )
     return out

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config, path_curvature
 from mffit.constants import (
+    FALSE_ALARM,
     SAME_SIDESLIP,
     STRAIGHT,
     UPRIGHT,
@@ -19,9 +19,8 @@ from mffit.constants import (
     USUAL_U_MOMENT,
 )
 from mffit.measured import constants, wording
-from mffit.measured.uncertain import named
+from mffit.measured.uncertain import combined, named
 from mffit.points import Points, levels, main_pressure
-from mffit.scatter import ALARM
 
 USUAL_U = {"Fy": USUAL_U_FORCE, "Mz": USUAL_U_MOMENT}
 WAYS = {1: "forward", -1: "backward"}
@@ -68,23 +67,6 @@ def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     return np.asarray(i[near & (size < np.min(size[near], initial=np.inf) + SAME_SIDESLIP.rad)])
 
 
-class PathInSetup(NamedTuple):
-    """The points of one load on one path in one set-up."""
-
-    phi_t: float  #: turn slip of the path [1/m]
-    setup: str  #: name of the set-up
-    group: LoadGroup
-
-
-def by_path(points: Points, group: LoadGroup, usual: float) -> list[PathInSetup]:
-    """The points of a load by path and set-up, those on the path with the ``usual`` turn slip [1/m] first."""
-    phi_t, setup = points.phi_t[group.index], points.setup[group.index]
-    found = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
-    return [
-        PathInSetup(path, points.setups[k], group.of((phi_t == path) & (setup == k))) for path, k in found
-    ]
-
-
 @dataclass(frozen=True, slots=True)
 class PathZeros:
     """The forces and the moment at zero sideslip and camber of one load, path and set-up."""
@@ -119,26 +101,30 @@ def zeros_by_path(
     points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
 ) -> list[PathZeros]:
     """The zeros of every path and set-up with forward zeros at this load, the usual path first."""
-    slope = _slope(C_alpha, group)
+    slope, usual = _slope(C_alpha, group), path_curvature(config.rig)
+    phi_t, setup = points.phi_t[group.index], points.setup[group.index]
+    paths = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
     found = []
-    for phi_t, setup, part in by_path(points, group, path_curvature(config.rig)):
-        forward, backward = (
-            _at_zero(points, part, way, "Fy", f"noise of the {word} zeros", way * slope)
-            for way, word in WAYS.items()
-        )
+    for path, k in paths:
+        part = group.of((phi_t == path) & (setup == k))
+        forward, backward = (force_at_zero(points, part, way, slope) for way in WAYS)
+        if forward is None:
+            continue
         moments = [
             way * moment
             for way in WAYS
             if (moment := _at_zero(points, part, way, "Mz", "noise of the zero moment")) is not None
         ]
-        if forward is None:
-            continue
-        side = (
-            float(np.sign(np.mean(points.alpha[zeros(points, part, 1)]))) if config.rig.backlash_deg else 0.0
-        )
         moment = sum(moments) / len(moments) if moments else None
-        found.append(PathZeros(phi_t, setup, part, forward, backward, moment, side))
+        play = float(np.sign(np.mean(points.alpha[zeros(points, part, 1)])))
+        side = play if config.rig.backlash_deg else 0.0
+        found.append(PathZeros(path, points.setups[k], part, forward, backward, moment, side))
     return found
+
+
+def force_at_zero(points: Points, group: LoadGroup, way: int, slope: float) -> UFloat | None:
+    """Side force [N] at zero sideslip and camber, rolling one way, with a cornering stiffness [N/rad]; None if it was not run."""
+    return _at_zero(points, group, way, "Fy", f"noise of the {WAYS[way]} zeros", way * slope)
 
 
 def u_of(points: Points, channel: str) -> np.ndarray:
@@ -188,7 +174,7 @@ def polynomial(x: np.ndarray, y: np.ndarray, u: np.ndarray, degree: int) -> tupl
     return errors @ A.T @ (y / u), errors
 
 
-def force_at_zero(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
+def forces_of_sweeps(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
     """By sweep, the mean force [N] of its zeros (m,), moved to zero sideslip with a stiffness [N/rad]."""
     rows = rows[np.isfinite(points.Fy[rows])]
     force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
@@ -196,14 +182,14 @@ def force_at_zero(points: Points, rows: np.ndarray, direction: int, slope: float
 
 
 def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> list[str]:
-    """Warnings about sweeps of one load, path, set-up and direction whose zeros differ by more than noise explains."""
-    u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
+    """Warnings about sweeps of one load, path, set-up and direction whose zeros differ by more than chance explains."""
+    u = math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
     out = []
     for direction, word in WAYS.items():
-        found = force_at_zero(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
-        least, most = (f(found, key=lambda k: found[k], default=None) for f in (min, max))
-        if least is None or most is None or found[most] - found[least] <= ALARM * u_difference:
-            continue
-        names = (points.sweep_names[least], points.sweep_names[most])
-        out.append(wording.zeros_disagree(group.load, word, names, (found[least], found[most])))
+        found = forces_of_sweeps(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
+        readings = [named(force, u, "zero of a sweep", "N") for force in found.values()]
+        if readings and combined(readings).chance < FALSE_ALARM:
+            least, most = (f(found, key=lambda k: found[k]) for f in (min, max))
+            names = (points.sweep_names[least], points.sweep_names[most])
+            out.append(wording.zeros_disagree(group.load, word, names, (found[least], found[most])))
     return out

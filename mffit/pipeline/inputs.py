@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import tir
-from mffit import config as configuration
 from mffit import points
 from mffit.config import Config
 from mffit.conversion import convert, is_old
@@ -94,32 +93,6 @@ def input_hashes(config: Config) -> dict[str, str]:
 
 
 def input_names(config: Config) -> list[str]:
-    """The files that a configuration names: sweeps in their order, base file, priors, and other campaigns with theirs."""
+    """The files that a configuration names: sweeps in their order, base file, priors."""
     named = (*(sweep.file for sweep in config.sweep), config.tyre.base, config.tyre.priors)
-    names = [name for name in named if name]
-    for index, row in enumerate(config.campaign):
-        folder = Path(row.toml).parent
-        theirs = input_names(other_project(config, index))
-        names += [row.toml, *((folder / name).as_posix() for name in theirs)]
-    return list(dict.fromkeys(names))
-
-
-def other_project(config: Config, index: int) -> Config:
-    """The configuration of another campaign, which names no campaigns itself."""
-    name = config.campaign[index].toml
-    path = config.folder / name
-    if not path.is_file():
-        raise wrong_campaign(
-            config, index, f"there is no file {path}; name the tyre.toml of the other campaign"
-        )
-    other = configuration.load(path)
-    if other.campaign:
-        raise wrong_campaign(config, index, f"{name} names campaigns itself; name all of them here")
-    return other
-
-
-def wrong_campaign(config: Config, index: int, sentence: str) -> InputError:
-    """An error about an entry of ``[[campaign]]``."""
-    return InputError(
-        sentence, file=config.path, line=config.line_of(f"campaign.{index}.toml"), key="campaign.toml"
-    )
+    return list(dict.fromkeys(name for name in named if name))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
@@ -20,7 +19,6 @@ from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.suspicion import (
-    CamberReduction,
     Doubt,
     FinishedFit,
     JudgedMeasurement,
@@ -57,7 +55,8 @@ def judged(
         held=left.held,
         left=fitted.left,
         broken=tuple(_refused(files)),
-        camber_reduction=_camber_reduction(config, measured),
+        nominal=measured.nominal,
+        radius_counts=not _follows_path(config),
         sideslip_zeros=measured.sideslip_zeros,
     )
     effect = left.effect is not None and left.effect.significant
@@ -78,9 +77,13 @@ def judged(
 
 def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
     """The judgement of direct measurements by the rules that need no fit."""
-    reduction = _camber_reduction(config, measured)
     return judge(
-        JudgedMeasurement(points=points, camber_reduction=reduction, sideslip_zeros=measured.sideslip_zeros)
+        JudgedMeasurement(
+            points=points,
+            nominal=measured.nominal,
+            radius_counts=not _follows_path(config),
+            sideslip_zeros=measured.sideslip_zeros,
+        )
     )
 
 
@@ -151,20 +154,6 @@ def _refused(files: Mapping[str, Tyre]) -> Iterable[str]:
     return dict.fromkeys(found)
 
 
-def _camber_reduction(config: Config, measured: Measured) -> CamberReduction | None:
-    row = measured.nominal
-    if row is None or row.epsilon_gamma is None:
-        return None
-
-    def value(name: str) -> float:
-        found = getattr(row, name)
-        return math.nan if found is None else float(found.value)
-
-    return CamberReduction(
-        value=row.epsilon_gamma.value,
-        u=row.epsilon_gamma.u,
-        R=abs(value("R")),
-        radius_counts=not any(radius.follows_path for radius in radius_readings(config)),
-        C_gamma=value("C_gamma"),
-        C_alpha=value("C_alpha"),
-    )
+def _follows_path(config: Config) -> bool:
+    """Whether r_e was measured along the path, so that an error of the path's radius cancels."""
+    return any(radius.follows_path for radius in radius_readings(config))

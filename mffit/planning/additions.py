@@ -6,13 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Literal, NamedTuple
 
+from mffit.constants import CAMBER_OF_SLOPES
 from mffit.errors import InputError
-from mffit.measured.constants import CUBIC_CAMBER
 from mffit.planning import constants
-from mffit.quantities import CHANNELS, DIRECT
+from mffit.quantities import CHANNELS
 from mffit.rig_errors import DECLARED
-
-_EPSILON = DIRECT["epsilon_gamma"].ascii
 
 
 class LineOfPoints(NamedTuple):
@@ -43,7 +41,6 @@ class Addition:
     pressures: Sequence[float] = (1.0,)  #: over the programme's pressure, one run each
     declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
     declares_unit: str = ""
-    revolution: bool = False  #: adds a [rolling_radius] table
 
 
 _NEW_SETUP = (
@@ -54,7 +51,7 @@ _SHARES = constants.SWEEP_SHARES
 _ZEROS = tuple(
     LineOfPoints("alpha", (-1.0, -0.5, 0.0, 0.5, 1.0), constants.ZERO_ANGLE, way) for way in (1, -1)
 )
-_SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CUBIC_CAMBER),)
+_SMALL_CAMBERS = (LineOfPoints("gamma", _SHARES, CAMBER_OF_SLOPES),)
 _SIDESLIP = (LineOfPoints("alpha", _SHARES),)
 _CAMBER = (LineOfPoints("gamma", _SHARES),)
 _DRIVE = (LineOfPoints("kappa", _SHARES),)
@@ -120,14 +117,6 @@ ADDITIONS = (
         rig="disc",
     ),
     *_RIG_MEASUREMENTS,
-    Addition(
-        id="revolution",
-        title="one revolution of the disc",
-        reason=f"{_EPSILON} cannot be measured without an effective radius.",
-        loads="nominal",
-        rig="disc",
-        revolution=True,
-    ),
     Addition(
         id="backward-camber",
         title="camber sweep rolled backwards",

@@ -16,7 +16,7 @@ from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from, rolls_backward
-from mffit.suspicion.all_files import load_below
+from mffit.suspicion.all_files import LevelsOfLoad
 from mffit.sweeps import formats
 from mffit.sweeps.formats import stem
 
@@ -175,11 +175,11 @@ def _load(sniffed: Sniffed, given: float | None) -> str:
 
 def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:
     """A remark if the nominal load [N] is above every load of the recordings; "" otherwise."""
-    highest = None if nominal_load is None else load_below(sniffed.points, nominal_load)
-    if highest is None:
+    loads = LevelsOfLoad.of(sniffed.points)
+    if nominal_load is None or not loads.below(nominal_load):
         return ""
     return (
-        f"the nominal load of {nominal_load:g} N is above the highest load of {highest:.0f} N: check the unit of the load "
+        f"the nominal load of {nominal_load:g} N is above the highest load of {loads.highest:.0f} N: check the unit of the load "
         f"({', '.join(sorted({r.guesses['Fz_N'].unit_of_readings for r in sniffed.recordings}))})"
     )
 

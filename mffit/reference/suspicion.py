@@ -28,7 +28,7 @@ def page() -> str:
 
 
 def _section(when: When) -> str:
-    rows = [_row(rule) for rule in RULES if when in rule.when]
+    rows = [_row(rule) for rule in RULES if when is rule.when]
     head = "| rule | looks at | limits | outcome |\n|---|---|---|---|"
     return f"## {str(when).capitalize()}\n{head}\n" + "\n".join(rows) + "\n"
 

@@ -131,20 +131,6 @@ RUN_STIFFNESS = _of_run(
     meaning="cornering stiffness times 1 + run_stiffness, a number of every run",
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
 )
-SURFACE_GRIP = RigError(
-    name="surface_grip",
-    word="grip of the surface beyond that of the first campaign",
-    shown_in=("%", 100.0),
-    unit="-",
-    kind="environment",
-    place=Place.COEFFICIENTS,
-    meaning="longitudinal and lateral friction, and the slips at which the contact slides, times 1 + surface_grip",
-    acts_on=("LMUX", "LMUY"),
-    inverse_on=("LXAL", "LYKA"),
-    formula=lambda share, value, at: value * (1.0 + share),
-    spread=0.05,
-    limits=(-0.5, 1.0),
-)
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
     word="temperature at which the model holds",
@@ -238,6 +224,5 @@ COEFFICIENT_ERRORS = (
     TEMPERATURE_SLIP_STIFFNESS,
     RUN_GRIP,
     RUN_STIFFNESS,
-    SURFACE_GRIP,
 )
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

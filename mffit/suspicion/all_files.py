@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
+from mffit.constants import FALSE_ALARM, HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, Subject, rule
-from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, overturning_slope, pooled, signatures
-
-of_all_files = partial(rule, subject=Subject.ALL_FILES)
+from mffit.suspicion.rule import Finding, Outcome, rule
+from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning_slope, pooled, signatures
 
 
-@of_all_files(
+@rule(
     id="copied-sweep",
     limits=(constants.FEWEST,),
     sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
@@ -40,9 +38,9 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
         seen[key] = int(k)
 
 
-@of_all_files(
+@rule(
     id="reversed-file",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    limits=(FALSE_ALARM,),
     sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
     'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
 )
@@ -75,33 +73,9 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
     ]
 
 
-@of_all_files(
-    id="lone-lean",
-    limits=(UPRIGHT, constants.FEWEST),
-    outcome=Outcome.WARNED,
-    sentence="{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
-    "intended, correct the sign of its gamma_deg",
-)
-def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
-    """Sign of camber, sweep by sweep; no sweep on a disc, which has both signs, counts."""
-    sides: dict[int, float] = {}
-    for k in np.unique(points.sweep).tolist():
-        gamma = points.gamma[points.sweep == k]
-        found = np.unique(np.sign(gamma[np.abs(gamma) > UPRIGHT.rad]))
-        if len(found) > 1:
-            return
-        if len(found):
-            sides[k] = float(found[0])
-    usual = np.sign(sum(sides.values()))
-    odd = [k for k, side in sides.items() if side != usual]
-    if len(sides) >= constants.FEWEST and len(odd) == 1:
-        degrees = abs(np.degrees(np.median(points.gamma[points.sweep == odd[0]])))
-        yield Finding({"sweep": points.sweep_names[odd[0]], "degrees": degrees, "others": len(sides) - 1})
-
-
-@of_all_files(
+@rule(
     id="overturning-moment-reversed",
-    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    limits=(FALSE_ALARM,),
     outcome=Outcome.WARNED,
     sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
     "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
@@ -112,7 +86,7 @@ def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({})
 
 
-@of_all_files(
+@rule(
     id="weak-turn-slip-force",
     limits=(constants.WEAK_TURN_SLIP_FORCE,),
     outcome=Outcome.WARNED,
@@ -126,12 +100,12 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"percent": 100 * outward})
 
 
-@of_all_files(
+@rule(
     id="moments-about-another-point",
     limits=(
         constants.LEVER_OF_OTHER_MOMENT_POINT,
-        constants.SMALL_ANGLE,
-        constants.FORCE_RANGE_OF_MOMENT_POINT,
+        UPRIGHT,
+        FALSE_ALARM,
         constants.FEWEST,
     ),
     sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
@@ -139,14 +113,10 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
 )
 def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     """Lever arm of Mx over Fy of the upright wheel, per unloaded radius."""
-    upright = np.abs(points.gamma) < constants.SMALL_ANGLE.rad
-    used = np.isfinite(points.Mx) & np.isfinite(points.Fy) & upright
-    if np.sum(used) < constants.FEWEST:
-        return
-    if np.ptp(points.Fy[used]) < constants.FORCE_RANGE_OF_MOMENT_POINT * np.median(points.Fz[used]):
-        return
-    lever = float(np.polyfit(points.Fy[used], points.Mx[used], 1)[0])
-    if abs(lever) < constants.LEVER_OF_OTHER_MOMENT_POINT * config.tyre.unloaded_radius:
+    used = np.isfinite(points.Fy) & (np.abs(points.gamma) <= UPRIGHT.rad)
+    found = line(points.Fy, points.Mx, used)
+    lever = found.value
+    if not abs(lever) - found.clear > constants.LEVER_OF_OTHER_MOMENT_POINT * config.tyre.unloaded_radius:
         return
     declared = config.rig.moments
     other = {"contact": "wheel-centre", "wheel-centre": "contact"}[declared]
@@ -158,7 +128,7 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     )
 
 
-@of_all_files(
+@rule(
     id="one-sided-on-a-disc",
     limits=(STRAIGHT, UPRIGHT),
     sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
@@ -178,7 +148,7 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
             yield Finding(facts, file=config.path, column=column)
 
 
-@of_all_files(
+@rule(
     id="no-zero-on-a-disc",
     limits=(STRAIGHT, UPRIGHT),
     sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
@@ -189,26 +159,40 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({}, file=config.path, column="alpha_deg")
 
 
-@of_all_files(
+class LevelsOfLoad(NamedTuple):
+    """The lowest and the highest level of load [N]; NaN without loads."""
+
+    lowest: float
+    highest: float
+
+    @classmethod
+    def of(cls, points: Points) -> LevelsOfLoad:
+        """Those of some points."""
+        loads = points.Fz[np.isfinite(points.Fz)]
+        found = levels.level_values(loads, levels.LOAD) if len(loads) else np.array([np.nan])
+        return cls(float(found.min()), float(found.max()))
+
+    def below(self, nominal: float) -> bool:
+        """Whether a nominal load [N] is above all of them."""
+        return nominal > NOMINAL_OVER_HIGHEST_LOAD * self.highest
+
+
+@rule(
     id="nominal-load-of-other-loads",
-    limits=(constants.BEYOND_LOADS,),
+    limits=(constants.BEYOND_NOMINAL,),
     sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
     "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
 )
 def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
     """Nominal load over the highest level of load, and the lowest level over the nominal load."""
-    loads, nominal = points.Fz[np.isfinite(points.Fz)], config.tyre.nominal_load
-    if not len(loads):
-        return
-    of_levels = levels.level_values(loads, levels.LOAD)
-    lowest, highest = float(of_levels.min()), float(of_levels.max())
-    if max(nominal / highest, lowest / nominal) > constants.BEYOND_LOADS:
+    found, nominal = LevelsOfLoad.of(points), config.tyre.nominal_load
+    if max(nominal / found.highest, found.lowest / nominal) > constants.BEYOND_NOMINAL:
         key = "tyre.nominal_load"
-        facts = {"nominal": nominal, "lowest": lowest, "highest": highest}
+        facts = {"nominal": nominal, **found._asdict()}
         yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
 
 
-@of_all_files(
+@rule(
     id="nominal-load-above-all",
     limits=(NOMINAL_OVER_HIGHEST_LOAD,),
     outcome=Outcome.WARNED,
@@ -217,21 +201,12 @@ def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
 )
 def nominal_load_above_all(points: Points, config: Config) -> Iterator[Finding]:
     """Nominal load over the highest level of load."""
-    highest = load_below(points, config.tyre.nominal_load)
-    if highest is not None:
-        yield Finding({"nominal": config.tyre.nominal_load, "highest": highest})
+    found = LevelsOfLoad.of(points)
+    if found.below(config.tyre.nominal_load):
+        yield Finding({"nominal": config.tyre.nominal_load, "highest": found.highest})
 
 
-def load_below(points: Points, nominal_load: float) -> float | None:
-    """The highest level of load [N] if the nominal load is above it; else None."""
-    loads = points.Fz[np.isfinite(points.Fz)]
-    if not len(loads):
-        return None
-    highest = float(levels.level_values(loads, levels.LOAD).max())
-    return highest if nominal_load > NOMINAL_OVER_HIGHEST_LOAD * highest else None
-
-
-@of_all_files(
+@rule(
     id="hot-tread",
     limits=(HOTTEST_TREAD,),
     outcome=Outcome.WARNED,

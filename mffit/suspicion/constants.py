@@ -5,22 +5,10 @@ from __future__ import annotations
 from tir.constant import Count, Real
 
 # Slopes and forces whose sign and size all tyres share
-SIDESLIP_OF_SLOPES = Real(3.0, "deg", "Sideslip up to which side force and aligning moment count as linear.")
-CAMBER_OF_SLOPES = Real(
-    20.0,
+SIDESLIP_OF_SLOPES = Real(
+    3.0,
     "deg",
-    "Camber up to which the camber force counts as linear, and from which it is large.",
-)
-SMALL_ANGLE = Real(
-    2.0,
-    "deg",
-    "Camber or sideslip up to which radii and overturning moment are those of the upright, straight wheel; beyond it every tyre "
-    "has a force.",
-)
-CHANCE_OF_OTHER_SIGN = Real(
-    3e-5,
-    "-",
-    "Probability (Student's t) of the other sign below which a slope has a sign: 4 standard errors.",
+    "Sideslip up to which side force and aligning moment count as linear, and from which every tyre has a force.",
 )
 FEWEST = Count(
     4,
@@ -31,15 +19,10 @@ WEAK_TURN_SLIP_FORCE = Real(0.01, "-", "A smaller turn-slip force over the load 
 STEEPEST_CAMBER_STIFFNESS = Real(
     -1.9, "1/rad", "Steepest camber stiffness over load of any tyre; a wrong frame changes it by 1."
 )
-WEAKEST_CAMBER_STIFFNESS = Real(
-    -0.2, "1/rad", "Camber stiffness over load that the data must show under a proposed declaration."
-)
 SMALLEST_CAMBER_THRUST = Real(
-    0.1, "-", "Smallest Fy over Fz tan(gamma) of any tyre; a wrong frame removes 1."
+    0.2, "-", "Smallest Fy over Fz tan(gamma) of any tyre, which have 0.3 to 1.2; a wrong frame removes 1."
 )
 LARGEST_CAMBER_THRUST = Real(1.5, "-", "Largest Fy over Fz tan(gamma) of any tyre; a wrong frame adds 1.")
-MOST_NAMED = Count(3, "-", "Most contradictions, sweeps or outliers that a sentence names.")
-FORCE_RANGE_OF_MOMENT_POINT = Real(0.5, "-", "Smallest range of Fy over load that determines this lever arm.")
 LEVER_OF_OTHER_MOMENT_POINT = Real(
     0.5, "-", "Lever arm over radius above which moments refer to another point."
 )
@@ -56,26 +39,20 @@ SMALLEST_RADIUS = Real(
     "-",
     "Loaded or rolling over unloaded radius of a flat tyre: the rim is at 0.6 to 0.7.",
 )
-LARGEST_RADIUS = Real(1.03, "-", "The same above: tyres have 1 at most, and grow with speed and pressure.")
-
-BEYOND_LOADS = Real(
+BEYOND_NOMINAL = Real(
     3.0,
     "-",
-    "Nominal load over the highest level, the lowest level over it, or one load over all others of its file, that no campaign "
-    "has: loads reach from a fifth of the nominal one to twice it, and a digit too few or too many is a factor of ten.",
+    "Nominal load over the highest level, the lowest level over it, one load over all others of its file, or nominal pressure "
+    "over that of a file, that no campaign has: loads reach from a fifth of the nominal one to twice it; a digit too few or too "
+    "many is a factor of ten, psi for kPa one of seven.",
 )
 
 # Single files
 STEEPEST_OVER_SIDESLIP = Real(
     120.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."
 )
-STEEPEST_OVER_CAMBER = Real(
-    12.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."
-)
-CAMBER_THAT_SHOWS_FORCE = Real(5.0, "deg", "Camber beyond which every tyre has a side force.")
-SMALLEST_FRICTION = Real(0.02, "-", "Side force per load that every tyre exceeds at those angles.")
-LARGEST_FORCE_AT_ZERO = Real(
-    1.0, "-", "Side force per load that turn slip and asymmetry never reach at zero angles."
+SMALLEST_FRICTION = Real(
+    0.02, "-", "Side force per load that every tyre exceeds at angles that show a force."
 )
 LARGEST_FRICTION = Real(4.0, "-", "Side force per load that no tyre reaches.")
 LARGEST_MOMENT_ARM = Real(
@@ -83,8 +60,6 @@ LARGEST_MOMENT_ARM = Real(
     "m",
     "|Mz| over load that no tyre exceeds: trail times friction. Side forces over load exceed it at usual angles.",
 )
-LONGEST_ARM = Real(1.0, "m", "|Mz| or |Mx| over load that no tyre reaches.")
-LOWEST_TESTED_PRESSURE = Real(0.35, "-", "No tyre is tested below this share of its nominal pressure.")
 
 # Every sweep against all others; shares are errors of a prediction over the usual size of the channel
 SHARE_OF_WORST_POINTS = Real(
@@ -92,7 +67,6 @@ SHARE_OF_WORST_POINTS = Real(
     "-",
     "Share of worst points of a sweep that are ignored: outliers, and ends where a formula is extrapolated.",
 )
-SURE_ERRORS = Real(3.0, "-", "Standard errors of a prediction that are subtracted from its error.")
 GROSS_SHARE = Real(0.1, "-", "Error from which known mistakes are tried.")
 IMPLAUSIBLE_SHARE = Real(
     0.5,
@@ -100,10 +74,6 @@ IMPLAUSIBLE_SHARE = Real(
     "Error that is refused without a known mistake, and that undoing one must not leave.",
 )
 MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which the fit is repeated.")
-LARGEST_SWEEP = Real(0.5, "-", "Larger shares of all points leave too few others to predict a sweep.")
-EXPLAINED_BY_ONE_NUMBER = Real(
-    0.8, "-", "Remaining share of the sum of squares below which one number explains an error."
-)
 
 # The fitted model
 DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")
@@ -114,15 +84,11 @@ CERTAIN_SIGMA = Real(
 DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )
-SHARE_OF_A_BOUND = Real(0.05, "-", "Share of the misfit from which a bound matters that holds a coefficient.")
-LEAST_PUBLISHED_EPSILON = Real(
-    -0.4, "-", "Camber reduction factors below are outside everything published.", "docs/method.md"
-)
-MOST_PUBLISHED_EPSILON = Real(
-    0.3, "-", "Camber reduction factors above are outside everything published.", "docs/method.md"
-)
 USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
+)
+SPREAD_OF_PUBLISHED_EPSILON = Real(
+    0.084, "-", "Standard deviation of the factors of these six tyres.", "Mottola and Massaro 2022, Table 2"
 )
 LARGEST_FALL_LEFT = Real(
     10.0,
@@ -135,10 +101,7 @@ EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a truste
 MISFIT_OF_ANOTHER_UNIT = Real(
     0.1,
     "-",
-    "Misfit over stated noise, of many readings, that only a noise stated in another unit explains: kN or percent are farther.",
-)
-FEWEST_READINGS_OF_A_UNIT = Count(
-    50, "-", "Fewest readings with a stated noise; a fit passes closer to fewer of them."
+    "Misfit over stated noise that only a noise stated in another unit explains: kN or percent are farther.",
 )
 
 # One sweep against a simulation; shares are median errors over the usual size of the channel

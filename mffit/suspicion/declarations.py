@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.rule import Finding, rule
 from mffit.suspicion.slopes import Signatures, contradictions, signatures
 from tir.conventions import FLIPPED
 
@@ -30,8 +31,7 @@ class Alternative(NamedTuple):
 
 @rule(
     id="declaration-contradicted",
-    subject=Subject.ALL_FILES,
-    limits=(constants.WEAKEST_CAMBER_STIFFNESS,),
+    limits=(constants.SMALLEST_CAMBER_THRUST,),
     sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
 )
 def contradicted(points: Points, config: Config) -> Iterator[Finding]:
@@ -44,7 +44,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
     def fits(other: Alternative) -> bool:
         """Whether the data agree with another declaration, and also show a camber response under it."""
         seen = signatures(other.points())
-        return not contradictions(seen) and not seen.camber.value > constants.WEAKEST_CAMBER_STIFFNESS
+        return not contradictions(seen) and not seen.camber.value > -constants.SMALLEST_CAMBER_THRUST
 
     fitting = [other for other in _alternatives(points, config) if fits(other)]
     fitting = fitting or [other for other in _pairs(points, config) if fits(other)]
@@ -56,7 +56,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
             "no other axes, frame or path centre fits: check the signs of alpha_deg, gamma_deg, Fy_N, Mz_Nm"
         )
         key = "rig.axes"
-    shown = constants.MOST_NAMED
+    shown = NAMED_IN_SENTENCE
     facts = {
         "declared": _declared(config),
         "wrong": " and ".join(wrong[:shown]) + (", among others," if len(wrong) > shown else ""),

@@ -25,8 +25,8 @@ def groups(points: Points) -> list[Group]:
     """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
     found = [*_sweeps(points), *_conditions(points)]
     unique = {group.index.tobytes(): group for group in reversed(found)}
-    fewest, most = constants.FEWEST, constants.LARGEST_SWEEP * len(points)
-    return [g for g in reversed(unique.values()) if fewest <= len(g.index) <= most]
+    # A minority contradicts a majority, never the other way round.
+    return [g for g in reversed(unique.values()) if constants.FEWEST <= len(g.index) <= 0.5 * len(points)]
 
 
 def _sweeps(points: Points) -> Iterator[Group]:

@@ -17,8 +17,8 @@ from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
-from mffit.suspicion.rule import Outcome, Subject, When, rule
+from mffit.suspicion.rereadings import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.rule import Outcome, When, rule
 
 LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
@@ -52,11 +52,9 @@ def misread(
 
 @rule(
     id="misread-sweep",
-    when=(When.DIAGNOSIS,),
-    subject=Subject.SIMULATION,
+    when=When.DIAGNOSIS,
     limits=(
         constants.GROSS_SHARE,
-        constants.SURE_ERRORS,
         constants.MISREAD_OVER_WORST,
         EXPLAINED_SHARE,
         constants.DISTRUSTED_MISFIT,
@@ -72,8 +70,8 @@ def misread_sweep(
 ) -> Iterator[Misread]:
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
-    The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
-    that, the model or the rig is at fault. A small error is a wrong label only if sound sweeps of the same kind at or around
+    The sweep that is twice as far off as any other is found if a known mistake explains it. If several sweeps look like that,
+    the model or the rig is at fault. A small error is a wrong label only if sound sweeps of the same kind at or around
     that label show that the model is right there. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
@@ -91,18 +89,23 @@ def misread_sweep(
     found = []
     for part, before in zip(parts, off, strict=True):
         others = [o for o in off if o is not before]
-        gross = _gross(before, others, usual, constants.GROSS_SHARE)
+        beyond = {
+            name: error
+            for name, error in before.items()
+            if error > constants.MISREAD_OVER_WORST * max((o[name] for o in others if name in o), default=0.0)
+        }
+        gross = {name: error for name, error in beyond.items() if error > constants.GROSS_SHARE}
         if gross:
             candidates, least = _candidates(part, points, signs), float(constants.GROSS_SHARE)
         else:
-            gross, least = _gross(before, others, usual, 0.0), 0.0
+            gross, least = beyond, 0.0
             rest = [other for other in parts if other is not part]
-            candidates = _confirmed_labels(part, points, signs, rest) if gross else iter(())
+            candidates = _confirmed_labels(part, points, signs, rest)
         tolerated = {
             n: max(constants.DISTRUSTED_MISFIT * usual[n], least, 0.0 if n in gross else before[n])
             for n in before
         }
-        best = explaining(candidates, gross, away, tolerated)
+        best = explaining(candidates, gross, away, tolerated) if gross else None
         if best is not None:
             found.append(
                 Misread(
@@ -117,23 +120,6 @@ def misread_sweep(
             )
     if len(found) == 1:
         yield found[0]
-
-
-def _gross(
-    own: Mapping[str, float], others: list[dict[str, float]], usual: Mapping[str, float], least: float
-) -> dict[str, float]:
-    """Channels of a sweep that are off by ``least`` or more, and much further than usual and than any other sweep's."""
-    worst = {name: max((o[name] for o in others if name in o), default=0.0) for name in own}
-    return {
-        name: error
-        for name, error in own.items()
-        if error
-        > max(
-            least,
-            constants.SURE_ERRORS * usual[name],
-            constants.MISREAD_OVER_WORST * worst[name],
-        )
-    }
 
 
 def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
@@ -151,7 +137,7 @@ def _confirmed_labels(
         channel, _, kind = label
         here = _held(part, channel)
         alike = [_held(other, channel) for other in others if _differ_only_in(part, other, channel)]
-        near = kind.tolerance * (here if kind.relative else 1.0)
+        near = _near(kind, here)
         if any(x <= here + near for x in alike) and any(x >= here - near for x in alike):
             for mistake in _wrong_labels(part, points, signs, *label):
                 yield mistake, mistake.undone(part, signs)
@@ -162,6 +148,11 @@ def _held(part: Points, channel: str) -> float:
     return float(abs(np.mean(getattr(part, channel))))
 
 
+def _near(kind: levels.LevelKind, value: float) -> float:
+    """How far values are from one of a condition that count as the same."""
+    return kind.tolerance * (value if kind.relative else 1.0)
+
+
 def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
     """Whether two sweeps are of the same angle, in the same direction and mount, and alike in all labels but one."""
     if any((np.ptp(getattr(part, a)) > 0.0) != (np.ptp(getattr(other, a)) > 0.0) for a in ("alpha", "gamma")):
@@ -169,8 +160,7 @@ def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
     if part.direction[0] != other.direction[0] or part.mount[0] != other.mount[0]:
         return False
     return all(
-        abs(_held(part, name) - _held(other, name))
-        <= kind.tolerance * (_held(part, name) if kind.relative else 1.0)
+        abs(_held(part, name) - _held(other, name)) <= _near(kind, _held(part, name))
         for name, _, kind in LABELS
         if name != channel
     )
@@ -190,7 +180,7 @@ def _wrong_labels(
     if levels.spread(held, kind):
         return
     for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
-        if abs(level - here) > kind.tolerance * (here if kind.relative else 1.0):
+        if abs(level - here) > _near(kind, here):
             word, _, unit = CONDITIONS[column]
             size = signs.get(channel, 1.0) * level * TO_COLUMN[channel]
             run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"

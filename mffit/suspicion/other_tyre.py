@@ -12,7 +12,8 @@ from mffit.config import Config
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.rule import Finding, rule
+from mffit.suspicion.slopes import at_zero
 
 
 class MeasuredRadius(NamedTuple):
@@ -33,9 +34,8 @@ RADII = (
 
 @rule(
     id="two-tyres",
-    subject=Subject.ALL_FILES,
     limits=(constants.RADIUS_OF_ANOTHER_TYRE,),
-    sentence="{first} and {second} are of two tyres: the {words} at {load}, upright, is {a:.0f} against {b:.0f} mm{forces}; "
+    sentence="{first} and {second} are of two tyres: the {words} at {load}, upright, is {a:.0f} against {b:.0f} mm; "
     "make a project of each",
 )
 def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
@@ -64,7 +64,6 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
                 "load": CONDITIONS["Fz_N"].of(load),
                 "a": 1e3 * a,
                 "b": 1e3 * b,
-                "forces": _forces(points, one, other),
             }
             yield Finding(facts, file=config.path)
             return
@@ -72,8 +71,7 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="other-radius",
-    subject=Subject.ALL_FILES,
-    limits=(constants.SMALLEST_RADIUS, constants.LARGEST_RADIUS),
+    limits=(constants.SMALLEST_RADIUS, constants.RADIUS_OF_ANOTHER_TYRE),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )
@@ -87,7 +85,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
         if not len(values):
             continue
         middle = float(np.median(values))
-        if not constants.SMALLEST_RADIUS <= middle / declared <= constants.LARGEST_RADIUS:
+        if not constants.SMALLEST_RADIUS <= middle / declared <= 1.0 + constants.RADIUS_OF_ANOTHER_TYRE:
             facts = {
                 "words": radius.words,
                 "radius": middle,
@@ -101,8 +99,7 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
 
 def _rolls_upright(points: Points) -> np.ndarray:
     """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
-    upright = np.abs(points.gamma) <= constants.SMALL_ANGLE.rad
-    return np.asarray(points.free_rolling & upright & (np.abs(points.alpha) <= constants.SMALL_ANGLE.rad))
+    return np.asarray(points.free_rolling & at_zero(points))
 
 
 class _Cell(NamedTuple):
@@ -123,31 +120,3 @@ def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, 
     for key, value in zip(keys, values.tolist(), strict=True):
         own.setdefault(key, []).append(value)
     return {key: _Cell(float(np.median(radii)), len(radii)) for key, radii in own.items()}
-
-
-def _forces(points: Points, one: int, other: int) -> str:
-    """Side force of the second file over that of the first at equal conditions, for a sentence; "" if none are equal."""
-    enough = np.abs(points.alpha) >= constants.SMALL_ANGLE.rad
-    used = points.select(points.free_rolling & enough)
-    kinds = {
-        "alpha": levels.SIDESLIP, "gamma": levels.CAMBER, "Fz": levels.LOAD, "p": levels.PRESSURE,
-    }  # fmt: skip
-    if not (np.any(used.file == one) and np.any(used.file == other)):
-        return ""
-    near = [levels.level_values(getattr(used, name), kind) for name, kind in kinds.items()]
-    keys = np.round(np.column_stack(near), 6)
-    force: dict[int, dict[tuple[float, ...], list[float]]] = {one: {}, other: {}}
-    for file, key, value in zip(
-        used.file.tolist(), map(tuple, keys.tolist()), used.Fy / used.Fz, strict=True
-    ):
-        if file in force:
-            force[file].setdefault(key, []).append(float(value))
-    ratios = [
-        float(np.mean(force[other][key]) / np.mean(force[one][key]))
-        for key in force[one].keys() & force[other].keys()
-        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST
-    ]
-    if not ratios:
-        return ""
-    low, high = np.percentile(ratios, [10.0, 90.0])
-    return f", and the side force under equal conditions is {low:.2f} to {high:.2f} times as large"

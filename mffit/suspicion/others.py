@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,10 +23,9 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.explanation import explanation
 from mffit.suspicion.groups import Group, groups
-from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
-from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
+from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
+from mffit.suspicion.rule import Finding, Outcome, When, rule
 
 
 class FittedModel(NamedTuple):
@@ -107,11 +107,19 @@ class View(NamedTuple):
         }
 
 
-def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
+def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
+    """Sweeps that do not fit the others, judged by what all others predict; one beyond plausibility is refused."""
+    seen = views(campaign)
+    for beyond in (known_mistake, implausible_sweep):
+        for finding in beyond.find(seen):
+            raise beyond.refusal(finding)
+    return tuple(doubtful_sweep.find(seen))
+
+
+def views(campaign: JudgedSweeps) -> tuple[View, ...]:
     """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
 
-    Only errors above the share ``least`` of the usual size are suspected. The search ends at the first sweep that a known
-    mistake explains.
+    The search ends at the first sweep that a known mistake explains.
     """
     points = campaign.points
     found = groups(points)
@@ -122,7 +130,7 @@ def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
         for c in campaign.fitted.left.channels
     }
     out: list[View] = []
-    for group in _suspects(campaign, found, size, least):
+    for group in _suspects(campaign, found, size):
         view = _view(campaign, group, size)
         if view is not None:
             out.append(view)
@@ -133,8 +141,7 @@ def views(campaign: JudgedSweeps, least: float = 0.0) -> tuple[View, ...]:
 
 @rule(
     id="known-mistake",
-    subject=Subject.SWEEP,
-    when=(When.FIRST, When.AFTER),
+    when=When.AFTER,
     limits=(
         PREDICTION_FALSE_ALARM,
         constants.GROSS_SHARE,
@@ -156,8 +163,7 @@ def known_mistake(seen: Sequence[View]) -> Iterator[Finding]:
 
 @rule(
     id="implausible-sweep",
-    subject=Subject.SWEEP,
-    when=(When.AFTER,),
+    when=When.AFTER,
     limits=(PREDICTION_FALSE_ALARM, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
@@ -179,9 +185,8 @@ def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
 
 @rule(
     id="doubtful-sweep",
-    subject=Subject.SWEEP,
-    when=(When.AFTER,),
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.EXPLAINED_BY_ONE_NUMBER),
+    when=When.AFTER,
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, EXPLAINED_SHARE),
     outcome=Outcome.WARNED,
     sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
     "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
@@ -199,9 +204,7 @@ def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
             yield v.doubt
 
 
-def _suspects(
-    campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float], least: float
-) -> list[Group]:
+def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
     """Groups that the others do not predict, if runs did not differ, and that are odder than is usual; the worst first.
 
     With what the formula misses, which hides what only one sweep shows, and without it, as the numbers of the fit predict them.
@@ -220,7 +223,7 @@ def _suspects(
             }
             usual = max(1.0, float(np.median([e.ratio for e in errors.values()])))
             for k, e in errors.items():
-                if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual and e.share >= least:
+                if e.chance < level and e.ratio > constants.DISTRUSTED_MISFIT * usual:
                     worst[k] = max(worst.get(k, 0.0), e.ratio / usual)
     in_order = sorted(worst, key=lambda k: (not found[k].whole, -worst[k]))
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
@@ -238,7 +241,7 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
         channel=name,
         rms=rms(e),
         ratio=float(np.sqrt(chi2 / number)),
-        share=max(rms(e) - constants.SURE_ERRORS * uncertain, 0.0) / size,
+        share=max(rms(e) - constants.DOUBTFUL_SIGMA * uncertain, 0.0) / size,
         chance=float(chdtrc(number, chi2)),
         vague=uncertain / size,
     )
@@ -263,8 +266,8 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     part = _part(campaign.points, group, found)
     gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
     undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
-    away = _Away(part, fitted.simulation, found, {name: size[name] * load for name in found})
-    best = explaining(undone, gross, away.after, dict.fromkeys(found, constants.GROSS_SHARE))
+    away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
+    best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
     return View(
         group=group,
@@ -275,7 +278,7 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     )
 
 
-def _part(points: Points, group: Group, found: Mapping[str, LeftOutReadings]) -> Points:
+def _part(points: Points, group: Group, found: Errors) -> Points:
     """The points of a group with those readings only that are judged."""
     part = points.select(group.index)
     readings = {
@@ -287,33 +290,17 @@ def _part(points: Points, group: Group, found: Mapping[str, LeftOutReadings]) ->
     return part.replace(**readings)
 
 
-class _Away(NamedTuple):
-    """How far a sweep is from the prediction of all others when a mistake in it is undone."""
-
-    part: Points
-    simulation: Simulation
-    found: Mapping[str, LeftOutReadings]
-    size: Mapping[str, float]
-
-    def after(self, changed: Points) -> dict[str, Away]:
-        """By channel, for the points without the mistake."""
-        here, there = (self.simulation.readings(p, tuple(self.found)) for p in (self.part, changed))
-        out = {}
-        for name, one in self.found.items():
-            predicted = np.full(len(self.part), np.nan)
-            known = np.isfinite(self.part.channel(name))
-            predicted[known] = self.part.channel(name)[known] - one.error
-            predicted += there[name] - here[name]
-            measured = changed.channel(name)
-            known &= np.isfinite(measured)
-            if np.any(known):
-                moved = one._replace(error=(measured - predicted)[known])
-                if len(moved.error) != len(one.error):
-                    continue
-                e = _error(name, moved, self.size[name])
-                least = min(rms(measured[known]), rms(predicted[known]))
-                out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
-        return out
+def _away(
+    part: Points, simulation: Simulation, found: Errors, size: Mapping[str, float], changed: Points
+) -> dict[str, Away]:
+    """By channel, how far a sweep is from the prediction of all others if it is read as ``changed``."""
+    out = {}
+    for name, error in moved(part, found, simulation, changed).items():
+        measured = changed.channel(name)[np.isfinite(part.channel(name))]
+        e = _error(name, found[name]._replace(error=error), size[name])
+        least = min(rms(measured), rms(measured - error))
+        out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
+    return out
 
 
 def _doubt(
@@ -321,7 +308,7 @@ def _doubt(
     group: Group,
     simulation: Simulation,
     part: Points,
-    found: Mapping[str, LeftOutReadings],
+    found: Errors,
     errors: Sequence[Error],
 ) -> Doubt | None:
     """The doubt about a group, if chance does not explain its errors."""

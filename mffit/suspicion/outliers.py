@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.suspicion import constants
-from mffit.suspicion.rule import Outcome, Rule, Subject, When
+from mffit.suspicion.rule import Outcome, Rule, When
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
 
 def outliers_sentence(found: Sequence[Outlier]) -> str:
     """The warning about all outliers, the worst by name."""
-    worst = sorted(found, key=lambda o: -o.ratio)[: constants.MOST_NAMED]
+    worst = sorted(found, key=lambda o: -o.ratio)[:NAMED_IN_SENTENCE]
     named = "; ".join(
         f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
         for o in worst
@@ -86,8 +86,7 @@ def outliers_sentence(found: Sequence[Outlier]) -> str:
 
 OUTLYING = Rule(
     id="outlying-reading",
-    when=(When.AFTER,),
-    subject=Subject.READINGS,
+    when=When.AFTER,
     looks_at="Residual, and its distance from the neighbours' residuals in the sweep; the weights of the fit have the limits",
     outcome=Outcome.LEFT_OUT,
     sentence="readings that do not fit their sweep have no weight ({number}): {named}; correct or remove what is wrong",

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import wraps
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from mffit.config import Config
 from mffit.errors import InputError
+from mffit.points import Points
 
 
 class When(StrEnum):
@@ -17,24 +22,8 @@ class When(StrEnum):
     READING = "while a recording becomes points"
     BEFORE = "before the fit"
     MEASURED = "after the direct method, with or without a fit"
-    FIRST = "after the first fit"
     AFTER = "after the fit"
     DIAGNOSIS = "before a diagnosis"
-
-
-class Subject(StrEnum):
-    """What one call of a rule is given."""
-
-    SAMPLES = "samples of a recording"
-    FILE = "one file"
-    SIGN = "sign of a slope"
-    SIZE = "size of a slope"
-    ALL_FILES = "all files"
-    SWEEP = "one sweep against all others"
-    MODEL = "the fitted model"
-    DIRECT = "the direct measurement"
-    READINGS = "single readings"
-    SIMULATION = "one sweep against a simulation"
 
 
 class Outcome(StrEnum):
@@ -44,6 +33,7 @@ class Outcome(StrEnum):
     CONTRADICTION = "the declaration is contradicted"
     WARNED = "a warning"
     DISTRUSTED = "the result is not to be trusted"
+    GRADED = "the result is not to be trusted, or a warning where chance is unlikely but not excluded"
     LEFT_OUT = "left out, with a warning"
 
 
@@ -58,7 +48,7 @@ class Finding(NamedTuple):
 
 
 Find = Callable[..., Iterable[Any]]
-"""What it takes and finds depends on the subject."""
+"""Before the fit it takes points and configuration; later what its module says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,8 +56,7 @@ class Rule:
     """One suspicion."""
 
     id: str
-    when: tuple[When, ...] = (When.BEFORE,)
-    subject: Subject
+    when: When = When.BEFORE
     looks_at: str  #: what is compared, in words
     limits: tuple[float, ...] = ()  #: records of ``constants.py``
     outcome: Outcome = Outcome.REFUSED
@@ -78,39 +67,27 @@ class Rule:
         """The sentence about one finding."""
         return self.sentence.format(**facts)
 
-    def refusal(self, finding: Finding, file: str | None = None) -> InputError:
-        """The error that ends the command; ``file`` is named if the finding names none."""
-        return InputError(
-            self.said(finding.facts),
-            file=finding.file or file,
-            line=finding.line,
-            column=finding.column,
-            key=finding.key,
-        )
+    def refusal(self, finding: Finding) -> InputError:
+        """The error that ends the command."""
+        said = self.said(finding.facts)
+        return InputError(said, file=finding.file, line=finding.line, column=finding.column, key=finding.key)
 
 
-def rule(
-    *,
-    id: str,
-    subject: Subject,
-    sentence: str,
-    limits: tuple[float, ...] = (),
-    when: tuple[When, ...] = (When.BEFORE,),
-    outcome: Outcome = Outcome.REFUSED,
-) -> Callable[[Find], Rule]:
+def rule(**told: Any) -> Callable[[Find], Rule]:
     """Decorator that turns a finder into a rule; the first line of the finder's docstring names what is compared."""
+    return lambda find: Rule(looks_at=(find.__doc__ or "").partition("\n")[0].rstrip("."), find=find, **told)
+
+
+def rule_of_files(**told: Any) -> Callable[[Find], Rule]:
+    """The same for a finder that is given one file at a time."""
 
     def of(find: Find) -> Rule:
-        looks_at = (find.__doc__ or "").partition("\n")[0].rstrip(".")
-        return Rule(
-            id=id,
-            when=when,
-            subject=subject,
-            looks_at=looks_at,
-            limits=limits,
-            outcome=outcome,
-            sentence=sentence,
-            find=find,
-        )
+        @wraps(find)
+        def everywhere(points: Points, config: Config) -> Iterator[Finding]:
+            for k in np.unique(points.file):
+                for finding in find(points.select(points.file == k), config):
+                    yield finding._replace(file=points.files[k])
+
+        return rule(**told)(everywhere)
 
     return of

@@ -1,31 +1,34 @@
 """All suspicions, in the order in which they are applied.
 
-Each rule is made beside the function that finds its cases, and ``applying`` runs them. Two kinds of checks are elsewhere:
-values outside the range of their column end the reading of a file (``sweeps``), and the fit decides the weight of single
-readings.
+Each rule is made beside the function that finds its cases. Two kinds of checks are elsewhere: values outside the range of
+their column end the reading of a file (``sweeps``), and the fit decides the weight of single readings.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
+from mffit.config import Config
+from mffit.config.loading import as_declared
+from mffit.points import Points
 from mffit.points.faulty import FAULTS
 from mffit.suspicion import (
     all_files,
     declarations,
-    misread,
     other_tyre,
     others,
-    outliers,
     single_files,
     slopes,
     trust,
 )
-from mffit.suspicion.rule import Outcome, Rule, Subject, When
+from mffit.suspicion.misread import misread_sweep
+from mffit.suspicion.outliers import OUTLYING
+from mffit.suspicion.rule import Outcome, Rule, When
 
 SAMPLES = tuple(
     Rule(
         id=fault.id,
-        when=(When.READING,),
-        subject=Subject.SAMPLES,
+        when=When.READING,
         looks_at=fault.looks_at,
         limits=fault.limits,
         outcome=Outcome.LEFT_OUT,
@@ -42,22 +45,16 @@ RULES: tuple[Rule, ...] = (
     other_tyre.two_tyres,
     other_tyre.other_radius,
     all_files.nominal_load_of_others,
-    single_files.angle_in_radians,
     single_files.dead_channel,
-    single_files.force_and_moment_exchanged,
-    single_files.force_too_small,
     single_files.lone_load,
     single_files.wild_force,
-    single_files.load_in_another_unit,
-    single_files.arm_too_long,
-    single_files.pressure_in_psi,
+    single_files.impossible_file,
     *slopes.NO_TYRE,
     declarations.contradicted,
     all_files.reversed_file,
     all_files.other_moment_point,
     all_files.one_sided_on_disc,
     all_files.no_zero_on_disc,
-    all_files.lone_lean,
     all_files.moment_reversed,
     all_files.weak_turn_slip,
     all_files.nominal_load_above_all,
@@ -65,8 +62,28 @@ RULES: tuple[Rule, ...] = (
     others.known_mistake,
     others.implausible_sweep,
     others.doubtful_sweep,
-    outliers.OUTLYING,
-    *trust.REASONS,
-    *trust.DOUBTS,
-    misread.misread_sweep,
+    OUTLYING,
+    *trust.OF_TRUST,
+    misread_sweep,
 )
+
+
+def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
+    """Warnings about points that are odd under their declaration.
+
+    Points that were driven or braked are not judged, nor, on a disc, the samples of moving sweeps. An InputError says that the
+    points contradict every tyre or the declaration, or that a disc cannot do without what is missing.
+    """
+    judged = points.select(~points.continuous) if config.rig.on_disc else points
+    if np.any(judged.free_rolling) and not np.all(judged.free_rolling):
+        judged = judged.select(judged.free_rolling)
+    warnings = []
+    with as_declared(config):
+        for rule in RULES:
+            if rule.when is not When.BEFORE or rule.outcome is Outcome.CONTRADICTION:
+                continue
+            for finding in rule.find(judged, config):
+                if rule.outcome is Outcome.REFUSED:
+                    raise rule.refusal(finding)
+                warnings.append(rule.said(finding.facts))
+    return tuple(warnings)

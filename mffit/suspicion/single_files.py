@@ -1,44 +1,31 @@
-"""Checks of one file: mostly for numbers in another unit, which can be plausible one by one and impossible together."""
+"""Checks of one file: what no tyre shows, and how the file must be read so that it is possible.
+
+Numbers in another unit can be plausible one by one and impossible together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.rereadings import MISTAKES
+from mffit.suspicion.rule import Finding, rule_of_files
 from mffit.suspicion.slopes import slope
-from mffit.sweeps.units import factor
 
-of_file = partial(rule, subject=Subject.FILE)
-
-
-@of_file(
-    id="angle-in-radians",
-    limits=(constants.STEEPEST_OVER_SIDESLIP, constants.STEEPEST_OVER_CAMBER),
-    sentence="reaches only {largest:.3g} deg, over which the side force changes by {steepness:.0f} times the load per radian; "
-    'the angles look like radians: write degrees, or {column} = {{ column = "{column}", unit = "rad" }} under '
-    "[sweep.columns]",
-)
-def angle_in_radians(part: Points, config: Config) -> Iterator[Finding]:
-    """Slope of Fy per load over sideslip and over camber, forwards and backwards; small angles are not suspected."""
-    for angle, steepest in (
-        ("alpha", constants.STEEPEST_OVER_SIDESLIP),
-        ("gamma", constants.STEEPEST_OVER_CAMBER),
-    ):
-        for way in (1, -1):
-            found = slope(part, part.Fy, angle, part.direction == way)
-            if found.sign and abs(found.value) > steepest:
-                largest = np.degrees(np.max(np.abs(getattr(part, angle))))
-                facts = {"largest": largest, "steepness": abs(found.value), "column": f"{angle}_deg"}
-                yield Finding(facts, column=f"{angle}_deg")
+WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(constants.SMALLEST_CAMBER_THRUST))
+"""Slope over load and camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
+CAMBER_THAT_SHOWS_FORCE = float(constants.SMALLEST_FRICTION / constants.SMALLEST_CAMBER_THRUST)
+"""Camber [rad] from which every tyre has a side force that can be seen."""
+AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
+"""Signs of the rig's axes, which do not matter for sizes."""
 
 
-@of_file(
+@rule_of_files(
     id="dead-channel",
     limits=(constants.FEWEST,),
     sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
@@ -55,75 +42,9 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
             yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
 
 
-@of_file(
-    id="force-and-moment-exchanged",
-    limits=(
-        constants.LARGEST_MOMENT_ARM,
-        constants.LARGEST_FRICTION,
-        constants.SMALLEST_FRICTION,
-        constants.LARGEST_CAMBER_THRUST,
-        constants.LARGEST_FORCE_AT_ZERO,
-    ),
-    sentence="reaches {moment:.0f} Nm at loads of {load:.0f} N while Fy_N stays below {force:.3g} N, so the headings Fy_N and "
-    "Mz_Nm look exchanged; correct them",
-)
-def force_and_moment_exchanged(part: Points, config: Config) -> Iterator[Finding]:
-    """|Mz| and |Fy| over load: the moment is as large as a side force, and the force as small as a moment.
-
-    In a sweep of small camber both are small: there the moment is as large as a side force must be, and the force too small for
-    newtons but too large for kilonewtons.
-    """
-    force, moment = np.abs(part.Fy) / part.Fz, np.abs(part.Mz) / part.Fz
-    if not np.all(np.isfinite(moment)):
-        return
-    least, most = constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION
-    if np.max(force) < least < np.max(moment) < most or _exchanged_at_small_camber(part, force, moment):
-        facts = {
-            "moment": np.max(np.abs(part.Mz)),
-            "force": np.max(np.abs(part.Fy)),
-            "load": np.median(part.Fz),
-        }
-        yield Finding(facts, column="Mz_Nm")
-
-
-def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarray) -> bool:
-    """Whether |Fy| and |Mz| per load (n,) of a sweep of camber are a moment and a side force."""
-    shows = np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
-    straight = np.max(np.abs(part.alpha)) <= constants.SMALL_ANGLE.rad
-    if not straight or np.sum(shows) < constants.FEWEST:
-        return False
-    thrust = constants.LARGEST_CAMBER_THRUST * np.tan(np.max(np.abs(part.gamma)))
-    in_kilonewtons = factor("kN", "N") * np.max(force) < constants.LARGEST_FORCE_AT_ZERO + thrust
-    weak = np.max(force[shows]) < constants.SMALLEST_FRICTION < np.max(moment[shows])
-    return bool(weak and not in_kilonewtons and np.max(moment) > np.max(force))
-
-
-@of_file(
-    id="force-in-kilonewtons",
-    limits=(
-        constants.SMALL_ANGLE,
-        constants.CAMBER_THAT_SHOWS_FORCE,
-        constants.SMALLEST_FRICTION,
-        constants.FEWEST,
-    ),
-    sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
-    'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
-)
-def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
-    """Largest Fy per load at angles that show a force."""
-    shows = (np.abs(part.alpha) > constants.SMALL_ANGLE.rad) | (
-        np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
-    )
-    if np.sum(shows) < constants.FEWEST:
-        return
-    if np.max(np.abs(part.Fy[shows]) / part.Fz[shows]) < constants.SMALLEST_FRICTION:
-        facts = {"largest": np.max(np.abs(part.Fy[shows])), "load": np.median(part.Fz)}
-        yield Finding(facts, column="Fy_N")
-
-
-@of_file(
+@rule_of_files(
     id="lone-load",
-    limits=(constants.BEYOND_LOADS, constants.FEWEST),
+    limits=(constants.BEYOND_NOMINAL, constants.FEWEST),
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
 )
 def lone_load(part: Points, config: Config) -> Iterator[Finding]:
@@ -131,12 +52,12 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
     if len(part) < constants.FEWEST:
         return
     row, others = int(np.argmax(part.Fz)), np.sort(part.Fz)[:-1]
-    if part.Fz[row] > constants.BEYOND_LOADS * others[-1]:
+    if part.Fz[row] > constants.BEYOND_NOMINAL * others[-1]:
         facts = {"load": part.Fz[row], "others": others[-1]}
-        yield Finding(facts, line=_line(part, row), column="Fz_N")
+        yield Finding(facts, line=int(part.line[row]) or None, column="Fz_N")
 
 
-@of_file(
+@rule_of_files(
     id="wild-force",
     limits=(constants.LARGEST_FRICTION, constants.FEWEST),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
@@ -147,50 +68,99 @@ def wild_force(part: Points, config: Config) -> Iterator[Finding]:
     if 0 < np.sum(friction > constants.LARGEST_FRICTION) < constants.FEWEST:
         row = int(np.argmax(friction))
         facts = {"force": part.Fy[row], "friction": friction[row]}
-        yield Finding(facts, line=_line(part, row), column="Fy_N")
+        yield Finding(facts, line=int(part.line[row]) or None, column="Fy_N")
 
 
-@of_file(
-    id="load-in-another-unit",
-    limits=(constants.LARGEST_FRICTION, constants.FEWEST),
-    sentence="side forces reach {friction:.0f} times the load ({load:.0f} N), which no tyre does: the load looks like kgf, or "
-    'the force like another unit; map it with its unit, Fz_N = {{ column = "Fz_N", unit = "kgf" }} in [sweep.columns]',
+class Impossible(NamedTuple):
+    """Something that no tyre shows."""
+
+    column: str
+    said: str  #: in words, as the end of a sentence
+
+
+def _steep(part: Points, config: Config) -> Iterator[Impossible]:
+    limits = {"alpha": constants.STEEPEST_OVER_SIDESLIP, "gamma": WEAKEST_CAMBER_IN_RADIANS}
+    for angle, steepest in limits.items():
+        for way in (1, -1):
+            found = slope(part, part.Fy, angle, part.direction == way)
+            if found.sign and abs(found.value) > steepest:
+                largest = np.degrees(np.max(np.abs(getattr(part, angle))))
+                said = (
+                    f"reaches only {largest:.3g} deg, over which the side force changes by {abs(found.value):.0f} times the load "
+                    "per radian"
+                )
+                yield Impossible(f"{angle}_deg", said)
+
+
+def _reached(values: np.ndarray) -> float:
+    """The size that a few values (n,) reach; 0 with too few, of which single ones may be wild."""
+    sizes = np.sort(np.abs(values[np.isfinite(values)]))
+    few = int(constants.FEWEST)
+    return float(sizes[-few]) if len(sizes) >= few else 0.0
+
+
+def _strong(part: Points, config: Config) -> Iterator[Impossible]:
+    for column, reading, largest in (
+        ("Fy_N", part.Fy, constants.LARGEST_FRICTION),
+        ("Mz_Nm", part.Mz, constants.LARGEST_MOMENT_ARM),
+        ("Mx_Nm", part.Mx, constants.LARGEST_FRICTION * config.tyre.unloaded_radius),
+    ):
+        reached = _reached(reading / part.Fz)
+        if reached > largest:
+            unit = " m" if column.endswith("Nm") else ""
+            said = f"reaches {reached:.2g}{unit} times the load, where no tyre exceeds {largest:g}{unit}"
+            yield Impossible(column, said)
+
+
+def _weak(part: Points, config: Config) -> Iterator[Impossible]:
+    shows = (np.abs(part.alpha) >= constants.SIDESLIP_OF_SLOPES.rad) | (
+        np.abs(part.gamma) >= CAMBER_THAT_SHOWS_FORCE
+    )
+    force = np.abs(part.Fy[shows])
+    if np.sum(shows) >= constants.FEWEST and np.max(force / part.Fz[shows]) < constants.SMALLEST_FRICTION:
+        said = f"is at most {np.max(force):.3g} N at loads of {np.median(part.Fz):.0f} N"
+        yield Impossible("Fy_N", said)
+
+
+def _soft(part: Points, config: Config) -> Iterator[Impossible]:
+    nominal, pressure = 1e3 * config.tyre.nominal_pressure, float(np.median(part.p))
+    if pressure * constants.BEYOND_NOMINAL < nominal:
+        said = f"is {pressure / 1e3:.3g} kPa, far from the nominal {nominal / 1e3:.3g} kPa"
+        yield Impossible("p_kPa", said)
+
+
+IMPOSSIBLE: tuple[Callable[[Points, Config], Iterator[Impossible]], ...] = (_soft, _steep, _weak, _strong)
+
+
+def impossible(part: Points, config: Config) -> list[Impossible]:
+    """What a file shows that no tyre does."""
+    return [found for test in IMPOSSIBLE for found in test(part, config)]
+
+
+@rule_of_files(
+    id="impossible-file",
+    limits=(
+        constants.BEYOND_NOMINAL,
+        constants.STEEPEST_OVER_SIDESLIP,
+        constants.SMALLEST_CAMBER_THRUST,
+        constants.SIDESLIP_OF_SLOPES,
+        constants.SMALLEST_FRICTION,
+        constants.LARGEST_FRICTION,
+        constants.LARGEST_MOMENT_ARM,
+        constants.FEWEST,
+    ),
+    sentence="{said}; {looks}",
 )
-def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
-    """Fy per load of more rows; the loads of the file are too small."""
-    friction = np.abs(part.Fy) / part.Fz
-    if np.sum(friction > constants.LARGEST_FRICTION) >= constants.FEWEST:
-        row = int(np.argmax(friction))
-        yield Finding({"friction": friction[row], "load": part.Fz[row]}, column="Fz_N")
-
-
-@of_file(
-    id="moment-in-newton-millimetres",
-    limits=(constants.LONGEST_ARM,),
-    sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
-)
-def arm_too_long(part: Points, config: Config) -> Iterator[Finding]:
-    """|Mz| and |Mx| over load."""
-    for column, moment in (("Mz_Nm", part.Mz), ("Mx_Nm", part.Mx)):
-        arm = np.abs(moment) / part.Fz
-        if np.any(arm > constants.LONGEST_ARM):
-            yield Finding({"arm": np.nanmax(arm)}, column=column)
-
-
-@of_file(
-    id="pressure-in-psi",
-    limits=(constants.LOWEST_TESTED_PRESSURE,),
-    sentence="is {pressure:.3g} kPa, far from the nominal {nominal:.3g} kPa, and looks like psi; write kPa, or "
-    'p_kPa = {{ column = "p_kPa", unit = "psi" }} under [sweep.columns]',
-)
-def pressure_in_psi(part: Points, config: Config) -> Iterator[Finding]:
-    """Median pressure over the nominal one, as it is and read as psi."""
-    nominal = 1e3 * config.tyre.nominal_pressure
-    pressure = float(np.median(part.p))
-    lowest, highest = constants.LOWEST_TESTED_PRESSURE * nominal, nominal / constants.LOWEST_TESTED_PRESSURE
-    if pressure < lowest and lowest < factor("psi", "kPa") * pressure < highest:
-        yield Finding({"pressure": pressure / 1e3, "nominal": nominal / 1e3}, column="p_kPa")
-
-
-def _line(part: Points, row: int) -> int | None:
-    return int(part.line[row]) or None
+def impossible_file(part: Points, config: Config) -> Iterator[Finding]:
+    """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; as read and without each mistake."""
+    wrong = impossible(part, config)
+    if not wrong:
+        return
+    facts: Mapping[str, str]
+    for mistake in MISTAKES:
+        if mistake.beyond_doubt and not impossible(mistake.undone(part, AS_READ), config):
+            facts = {"said": wrong[0].said, "looks": f"it looks like {mistake.looks}: {mistake.remedy}"}
+            yield Finding(facts, column=mistake.column)
+            return
+    looks = "no single unit or exchanged heading explains it: check the columns and units of this file"
+    yield Finding({"said": wrong[0].said, "looks": looks}, column=wrong[0].column)

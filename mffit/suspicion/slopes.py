@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import STRAIGHT, UPRIGHT
+from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
+from mffit.suspicion.rule import Finding, Outcome, Rule
 
 
 class SlopeWithError(NamedTuple):
@@ -30,10 +30,14 @@ class SlopeWithError(NamedTuple):
     scatter: float  #: standard deviation about the line
 
     @property
+    def clear(self) -> float:
+        """How far it must be from a number to differ from it by more than chance (Student's t)."""
+        return float(-stdtrit(max(self.freedom, 1), FALSE_ALARM / 2.0)) * self.error
+
+    @property
     def sign(self) -> int:
         """+1 or -1 if the sign is significant, else 0."""
-        clear = float(-stdtrit(max(self.freedom, 1), constants.CHANCE_OF_OTHER_SIGN)) * self.error
-        return int(np.sign(self.value)) if abs(self.value) > clear else 0
+        return int(np.sign(self.value)) if abs(self.value) > self.clear else 0
 
 
 UNKNOWN = SlopeWithError(value=np.nan, error=np.nan, freedom=0, scatter=np.nan)
@@ -71,13 +75,12 @@ def signatures(points: Points) -> Signatures:
     points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
     forward = points.direction > 0
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
-    upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= constants.SMALL_ANGLE.rad)
-    straight = (sideslip <= constants.SMALL_ANGLE.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
-    gentle = sideslip <= constants.SIDESLIP_OF_SLOPES.rad
+    upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= UPRIGHT.rad)
+    straight = (sideslip <= STRAIGHT.rad) & (camber <= CAMBER_OF_SLOPES.rad)
     return Signatures(
         cornering=slope(points, points.Fy, "alpha", forward & upright),
         camber=slope(points, points.Fy, "gamma", forward & straight),
-        aligning=slope(points, points.Mz, "alpha", forward & upright & gentle),
+        aligning=slope(points, points.Mz, "alpha", forward & upright),
         backward=slope(points, points.Fy, "alpha", ~forward & upright),
         outward=_outward(points),
         thrust=_thrust(points),
@@ -91,23 +94,27 @@ def overturning_slope(points: Points) -> SlopeWithError:
     """
     points = points.select((points.mount > 0) & (points.direction > 0))
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
-    straight = (sideslip <= constants.SMALL_ANGLE.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
+    straight = (sideslip <= STRAIGHT.rad) & (camber <= CAMBER_OF_SLOPES.rad)
     return slope(points, points.Mx, "gamma", straight)
 
 
 def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> SlopeWithError:
     """Slope of ``response`` (n,) per load over "alpha" or "gamma" at some points, with a linear term of the other angle."""
-    used = used & np.isfinite(response)
-    other = points.gamma if angle == "alpha" else points.alpha
-    x, y = getattr(points, angle)[used], (response / points.Fz)[used]
-    if len(x) < constants.FEWEST:
+    angles = (points.alpha, points.gamma) if angle == "alpha" else (points.gamma, points.alpha)
+    return line(angles[0], response / points.Fz, used, angles[1])
+
+
+def line(x: np.ndarray, y: np.ndarray, used: np.ndarray, other: np.ndarray | None = None) -> SlopeWithError:
+    """Slope of y (n,) over x (n,) at some finite ones, with a linear term of another variable (n,) if it varies."""
+    used = used & np.isfinite(y)
+    if np.sum(used) < constants.FEWEST:
         return UNKNOWN
-    columns = [np.ones_like(x), x]
-    if np.ptp(other[used]) > 0.0:
+    columns = [np.ones(int(np.sum(used))), x[used]]
+    if other is not None and np.ptp(other[used]) > 0.0:
         columns.append(other[used])
-    design = np.column_stack(columns)
+    design, y = np.column_stack(columns), y[used]
     solution, _, rank, _ = np.linalg.lstsq(design, y, rcond=1e-8)
-    freedom = len(x) - rank
+    freedom = len(y) - rank
     if rank < design.shape[1] or freedom < 1:
         return UNKNOWN
     scatter = float(np.sqrt(np.sum((y - design @ solution) ** 2) / freedom))
@@ -117,8 +124,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
 
 def at_zero(points: Points) -> np.ndarray:
     """Mask (n,) of the points at zero sideslip and camber."""
-    upright = np.abs(np.degrees(points.gamma)) <= UPRIGHT
-    return upright & (np.abs(np.degrees(points.alpha)) <= STRAIGHT)
+    return np.asarray((np.abs(points.gamma) <= UPRIGHT.rad) & (np.abs(points.alpha) <= STRAIGHT.rad))
 
 
 def _outward(points: Points) -> float:
@@ -132,8 +138,8 @@ def _outward(points: Points) -> float:
 
 def _thrust(points: Points) -> float:
     """Odd camber thrust at large camber; NaN without both signs of camber."""
-    straight = np.abs(points.alpha) <= constants.SMALL_ANGLE.rad
-    leaning = np.abs(points.gamma) > constants.CAMBER_OF_SLOPES.rad
+    straight = np.abs(points.alpha) <= STRAIGHT.rad
+    leaning = np.abs(points.gamma) > CAMBER_OF_SLOPES.rad
     used = straight & leaning & (points.direction > 0)
     Fy, Fz, gamma = points.Fy[used], points.Fz[used], points.gamma[used]
     if not (np.any(gamma > 0) and np.any(gamma < 0)):
@@ -157,10 +163,8 @@ def contradictions(found: Signatures) -> list[str]:
     return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
 
 
-_sign = partial(
-    Rule, subject=Subject.SIGN, limits=(constants.CHANCE_OF_OTHER_SIGN,), outcome=Outcome.CONTRADICTION
-)
-_size = partial(Rule, subject=Subject.SIZE, outcome=Outcome.CONTRADICTION)
+_sign = partial(Rule, limits=(FALSE_ALARM,), outcome=Outcome.CONTRADICTION)
+_size = partial(Rule, outcome=Outcome.CONTRADICTION)
 NO_TYRE = (
     _sign(
         id="force-rises-with-sideslip",
@@ -220,4 +224,4 @@ NO_TYRE = (
     ),
 )
 """What no tyre does."""
-SIGNS = tuple(rule for rule in NO_TYRE if rule.subject is Subject.SIGN)
+SIGNS = tuple(rule for rule in NO_TYRE if rule.limits == (FALSE_ALARM,))

@@ -10,17 +10,17 @@ contradict the others, scatter beyond the noise, and errors of the rig that take
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtrc, ndtr
+from scipy.special import chdtr, chdtrc, ndtr
 
-from mffit.constants import ODD_SWEEP_RATIO
+from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
-from mffit.measured import SideslipZeros
+from mffit.measured import LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
@@ -29,8 +29,8 @@ from mffit.rig import Readings
 from mffit.scatter import finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
-from mffit.suspicion.rule import Outcome, Rule, Subject, When, rule
-from mffit.suspicion.unpublished import CamberReduction, causes
+from mffit.suspicion.rule import Outcome, Rule, When, rule
+from mffit.suspicion.unpublished import causes
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,8 @@ class JudgedMeasurement:
     """What the rules of trust look at that need no fit."""
 
     points: Points
-    camber_reduction: CamberReduction | None = None
+    nominal: LoadResult | None = None  #: at the nominal load
+    radius_counts: bool = True  #: False if r_e was measured along the path, so that an error of R cancels
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
 
 
@@ -171,8 +172,8 @@ class Trust:
 SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
 NONE_KNOWN = "no known effect explains it"
-of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
-of_measurement = partial(rule, subject=Subject.DIRECT, when=(When.MEASURED,))
+of_model = partial(rule, when=When.AFTER)
+of_measurement = partial(rule, when=When.MEASURED)
 
 
 @of_model(
@@ -192,98 +193,67 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
-    outcome=Outcome.DISTRUSTED,
-    sentence="the model misses {channel} by {ratio:.1f} times its stated uncertainty{carriers}; {cause}; look at these sweeps, "
-    "or run mffit diagnose",
+    limits=(
+        constants.DISTRUSTED_MISFIT,
+        constants.CERTAIN_SIGMA,
+        constants.MISFIT_IN_DOUBT,
+        constants.DOUBTFUL_SIGMA,
+    ),
+    outcome=Outcome.GRADED,
+    sentence="the model misses {channel} by {ratio:.3g} times its stated uncertainty, most in {carriers}; {cause}; check these "
+    "sweeps and the stated uncertainty, or run mffit diagnose",
 )
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Scatter over the stated uncertainty, channel by channel, or a misfit that an effect explains better than a smooth miss."""
     for name in fit.used:
         rough = far(fit.rough(name), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
-        if rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against):
+        certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
+        if certain or fit.doubtful(name):
             facts = {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
-            yield {**facts, "cause": _cause(fit)}
+            yield {**facts, "cause": _cause(fit), "doubtful": not certain}
 
 
 @of_model(
     id="sweep-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, ODD_SWEEP_RATIO),
     outcome=Outcome.DISTRUSTED,
-    sentence="the model misses {channel} of {sweep} by {ratio:.1f} times its stated uncertainty, which chance does not explain"
-    "{others}{cause}; check this sweep or repeat it",
+    sentence="the model misses {channel} of {sweep} by {ratio:.1f} times {noise}, which chance does not explain{others}{cause}; "
+    "check this sweep or repeat it",
 )
 def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Chi-square of the misfit of a sweep against its number of readings, where the sweep contradicts all others."""
+    """Misfit of a sweep that contradicts all others over its stated noise, or over its scatter and the median sweep's misfit."""
     for name in fit.used:
+        seen = _by_sweep(fit, name)
         off = {
-            k: row
-            for k, row in _by_sweep(fit, name).items()
-            if _sweep_is_far(fit, name, k) and fit.contradicts(name, k)
+            k: one.ratio
+            for k, one in {**_odd(fit, name), **seen}.items()
+            if far(one, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA) and fit.contradicts(name, k)
         }
         if off:
             first = {int(fit.points.sweep[one.index[0]]): -i for i, one in enumerate(fit.against)}
             worst = max(off, key=lambda k: (first.get(k, -len(first)), off[k]))
             others = [fit.points.sweep_names[k] for k in sorted(off, key=lambda k: -off[k]) if k != worst]
-            said = f" (also {', '.join(others[: constants.MOST_NAMED])})" if others else ""
-            sweep = fit.points.sweep_names[worst]
-            cause = "" if any(above_noise.find(fit)) else f"; {_cause(fit)}"
-            yield {"channel": name, "sweep": sweep, "ratio": off[worst], "others": said, "cause": cause}
-
-
-@of_model(
-    id="sweep-beyond-the-others",
-    limits=(ODD_SWEEP_RATIO, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
-    outcome=Outcome.DISTRUSTED,
-    sentence="the model misses {channel} of {sweep} by {rms:.3g} {unit}: {odd:.0f} times as much as the usual sweep, and "
-    "{ratio:.1f} times the scatter of neighbouring readings (none states its uncertainty); check this sweep or repeat it",
-)
-def sweep_beyond_others(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of a sweep without a stated uncertainty over the median sweep's and its scatter, if it contradicts all others."""
-    sweeps = np.unique(fit.points.sweep).tolist()
-    for name in fit.used:
-        missed = np.where(fit.used[name], fit.model[name] - fit.points.channel(name), np.nan)
-        own = {k: rms(missed[fit.points.sweep == k]) for k in sweeps}
-        usual = finite_median(np.array(list(own.values())))
-        seen = {
-            k: fit.over_scatter(name, fit.points.sweep == k)
-            for k in sweeps
-            if own[k] > ODD_SWEEP_RATIO * usual
-        }
-        off = [
-            k
-            for k, z in seen.items()
-            if far(z, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA) and fit.contradicts(name, k)
-        ]
-        if off:
-            worst = max(off, key=lambda k: own[k])
             yield {
                 "channel": name,
-                "unit": CHANNELS[name].unit,
                 "sweep": fit.points.sweep_names[worst],
-                "rms": seen[worst].ratio * fit.scatter[name],
-                "odd": own[worst] / usual,
-                "ratio": seen[worst].ratio,
+                "ratio": off[worst],
+                "noise": "its stated uncertainty" if worst in seen else SCATTER,
+                "others": f" (also {', '.join(others[:NAMED_IN_SENTENCE])})" if others else "",
+                "cause": "" if _blamed_by(above_noise, fit) else f"; {_cause(fit)}",
             }
 
 
-@of_model(
-    id="doubtful-misfit",
-    limits=(constants.MISFIT_IN_DOUBT, constants.DISTRUSTED_MISFIT, constants.DOUBTFUL_SIGMA),
-    outcome=Outcome.WARNED,
-    sentence="the misfit of {channel} is {ratio:.2f} times its stated uncertainty, largest in {sweep} ({own:.1f} times); "
-    "{cause}; check this sweep and the stated uncertainty",
+SCATTER = (
+    "the scatter of neighbouring readings (none states its uncertainty) and far more than the usual sweep"
 )
-def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Scatter about the model and its smooth miss over the stated uncertainty, below the limit of trust."""
-    for name in fit.used:
-        ratio, _ = fit.rough(name)
-        if fit.doubtful(name) and ratio <= constants.DISTRUSTED_MISFIT:
-            rows = _by_sweep(fit, name)
-            worst = max(rows, key=lambda k: rows[k])
-            sweep = fit.points.sweep_names[worst]
-            facts = {"channel": name, "ratio": ratio, "sweep": sweep, "own": rows[worst]}
-            yield {**facts, "cause": _cause(fit)}
+
+
+def _odd(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
+    """Misfit over the scatter of neighbours of the sweeps that state no noise and are much further off than the median sweep."""
+    missed = np.where(fit.used[channel], fit.model[channel] - fit.points.channel(channel), np.nan)
+    own = {k: rms(missed[fit.points.sweep == k]) for k in np.unique(fit.points.sweep).tolist()}
+    odd = ODD_SWEEP_RATIO * finite_median(np.array(list(own.values())))
+    return {k: fit.over_scatter(channel, fit.points.sweep == k) for k, size in own.items() if size > odd}
 
 
 @of_model(
@@ -320,7 +290,7 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="bound-against-the-data",
-    limits=(constants.CERTAIN_SIGMA, constants.SHARE_OF_A_BOUND),
+    limits=(constants.CERTAIN_SIGMA, LEAST_PREDICTED_SHARE),
     outcome=Outcome.DISTRUSTED,
     sentence="a limit holds {name} against the readings ({sigma:.0f} standard deviations, {percent:.0f} % of the misfit): no "
     "plausible tyre fits these sweeps; check what determines {name}",
@@ -328,7 +298,7 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit that is due to a bound or a physical limit of a coefficient, where the noise is stated."""
     for held in fit.held if _noise_is_stated(fit) else ():
-        certain = held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND
+        certain = held.sigma > constants.CERTAIN_SIGMA and held.share > LEAST_PREDICTED_SHARE
         if certain and not held.by_hand:
             yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
 
@@ -357,34 +327,19 @@ def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     yield from ({"problem": problem} for problem in fit.broken)
 
 
-APART = (
-    "the sideslip zeros of {setup} contradict each other: alpha_M = {one} and {other}, as one axis and the ply-steer of one tyre "
-    "cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis moved, or a "
-    "direction, path_centre or zero is wrong: check the zeros there"
-)
-
-
 @of_measurement(
     id="contradictory-sideslip-zeros",
-    limits=(constants.CERTAIN_SIGMA,),
-    outcome=Outcome.DISTRUSTED,
-    sentence=APART,
+    limits=(constants.CERTAIN_SIGMA, constants.DOUBTFUL_SIGMA),
+    outcome=Outcome.GRADED,
+    sentence="the sideslip zeros of {setup} contradict each other: alpha_M = {one} and {other}, as one axis and the ply-steer of "
+    "one tyre cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis "
+    "moved, or a direction, path_centre or zero is wrong: check the zeros there",
 )
 def zeros_contradict(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Sideslip zeros of one set-up, from forward and backward runs at all its loads and paths: they are one angle."""
-    yield from (_apart(z) for z in measured.sideslip_zeros if z.chance < ndtr(-constants.CERTAIN_SIGMA))
-
-
-@of_measurement(
-    id="doubtful-sideslip-zeros",
-    limits=(constants.DOUBTFUL_SIGMA, constants.CERTAIN_SIGMA),
-    outcome=Outcome.WARNED,
-    sentence=APART,
-)
-def zeros_in_doubt(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
-    """The same angles, where chance is unlikely but not excluded."""
-    certain, doubtful = ndtr(-constants.CERTAIN_SIGMA), ndtr(-constants.DOUBTFUL_SIGMA)
-    yield from (_apart(z) for z in measured.sideslip_zeros if certain <= z.chance < doubtful)
+    for z in measured.sideslip_zeros:
+        if z.chance < ndtr(-constants.DOUBTFUL_SIGMA):
+            yield _apart(z) | {"doubtful": z.chance >= ndtr(-constants.CERTAIN_SIGMA)}
 
 
 def _apart(found: SideslipZeros) -> dict[str, Any]:
@@ -398,32 +353,39 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
 
 @of_measurement(
     id="unpublished-camber-reduction",
-    limits=(constants.LEAST_PUBLISHED_EPSILON, constants.MOST_PUBLISHED_EPSILON),
+    limits=(
+        constants.USUAL_PUBLISHED_EPSILON,
+        constants.SPREAD_OF_PUBLISHED_EPSILON,
+        constants.CERTAIN_SIGMA,
+    ),
     outcome=Outcome.DISTRUSTED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
     "likeliest causes: {causes}",
 )
 def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
-    """Measured camber reduction factor beside those of published tyres."""
-    found = measured.camber_reduction
-    if found is not None and not (
-        constants.LEAST_PUBLISHED_EPSILON <= found.value <= constants.MOST_PUBLISHED_EPSILON
-    ):
-        yield {"value": found.value, "u": found.u, "causes": causes(found)}
+    """Measured camber reduction factor against those of published tyres."""
+    row, furthest = measured.nominal, constants.CERTAIN_SIGMA * constants.SPREAD_OF_PUBLISHED_EPSILON
+    if row is None or row.epsilon_gamma is None:
+        return
+    value, u, _ = row.epsilon_gamma
+    if abs(value - constants.USUAL_PUBLISHED_EPSILON) > furthest:
+        yield {"value": value, "u": u, "causes": causes(row, radius_counts=measured.radius_counts)}
 
 
 @of_model(
     id="misfit-far-below-noise",
-    limits=(constants.MISFIT_OF_ANOTHER_UNIT, constants.FEWEST_READINGS_OF_A_UNIT),
+    limits=(constants.MISFIT_OF_ANOTHER_UNIT, FALSE_ALARM),
     outcome=Outcome.WARNED,
     sentence="the model misses {channel} by {ratio:.2g} times its stated uncertainty only, so that the readings and their "
     "uncertainty cannot be in the same unit: check the units of {column} and u_{column}",
 )
 def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of the model over the stated uncertainty, where it is too small."""
+    """Misfit of the model over the stated uncertainty, where it is smaller than chance and the numbers of the fit explain."""
+    numbers = 0 if fit.linear is None else len(fit.linear.numbers)
     for name in fit.used:
         ratio, n = fit.misfit(name)
-        if n >= constants.FEWEST_READINGS_OF_A_UNIT and ratio < constants.MISFIT_OF_ANOTHER_UNIT:
+        few = n <= numbers or chdtr(n - numbers, n * ratio**2) > FALSE_ALARM
+        if not few and ratio < constants.MISFIT_OF_ANOTHER_UNIT:
             yield {"channel": name, "ratio": ratio, "column": column(name)}
 
 
@@ -435,9 +397,7 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
-    said = any(
-        any(r.find(fit)) for r in (above_noise, sweep_above_noise, sweep_beyond_others, doubtful_misfit)
-    )
+    said = any(any(r.find(fit)) for r in (above_noise, sweep_above_noise))
     if fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said:
         yield {"cause": fit.cause}
 
@@ -460,7 +420,7 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of a given model that is none of this tyre; no other rule is applied then."""
-    if fit.stranger and any(any(r.find(fit)) for r in OF_READINGS):
+    if fit.stranger and any(_blamed_by(rule, fit) for rule in OF_READINGS):
         yield {"why": fit.stranger}
 
 
@@ -473,21 +433,27 @@ REMARKED = (
 def judge(found: JudgedMeasurement) -> Trust:
     """The judgement by all rules of trust, or without a fit by those that need none; another tyre's model ends the search."""
 
-    def said(rules: Sequence[Rule]) -> tuple[str, ...]:
-        apply = (r for r in rules if isinstance(found, FinishedFit) or r.subject is Subject.DIRECT)
-        return tuple(r.said(facts) for r in apply for facts in r.find(found))
+    def said(*rules: Rule, doubtful: bool) -> tuple[str, ...]:
+        return tuple(
+            rule.said(facts)
+            for rule in rules
+            for facts in rule.find(found)
+            if facts.get("doubtful", rule.outcome is Outcome.WARNED) == doubtful
+        )
 
     if not isinstance(found, FinishedFit):
-        return Trust(said(REASONS), said(DOUBTS))
-    if strange := said((of_another_tyre,)):
+        rules = [rule for rule in OF_TRUST if rule.when is When.MEASURED]
+        return Trust(said(*rules, doubtful=False), said(*rules, doubtful=True))
+    if strange := said(of_another_tyre, doubtful=False):
         return Trust(reasons=strange, over_noise=found.over_noise)
-    reasons = said(REASONS)
-    return Trust(reasons, said(DOUBTS), () if reasons else tuple(_remarks(found)), found.over_noise)
+    reasons = said(*OF_TRUST, doubtful=False)
+    doubts = said(*OF_TRUST, doubtful=True)
+    return Trust(reasons, doubts, () if reasons else tuple(_remarks(found)), found.over_noise)
 
 
-OF_READINGS = (above_noise, sweep_above_noise, sweep_beyond_others, unexplained, unpredicted)
+OF_READINGS = (above_noise, sweep_above_noise, unexplained, unpredicted)
 """Rules that blame readings."""
-REASONS = (
+OF_TRUST = (
     of_another_tyre,
     not_ended,
     *OF_READINGS,
@@ -495,17 +461,17 @@ REASONS = (
     limit_broken,
     zeros_contradict,
     unpublished,
-)
-"""Rules whose findings make a result not to be trusted, the gravest first."""
-DOUBTS = (
     hand_against_data,
-    doubtful_misfit,
     far_below_noise,
-    zeros_in_doubt,
     effect_left,
     structure_left,
 )
-"""Rules whose findings are warnings."""
+"""All rules of trust, the gravest first."""
+
+
+def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
+    """Whether a rule finds a reason, not only a doubt."""
+    return any(not facts.get("doubtful", False) for facts in rule.find(fit))
 
 
 def _remarks(fit: FinishedFit) -> Iterator[str]:
@@ -543,19 +509,16 @@ def _cause(fit: FinishedFit) -> str:
     return fit.cause if fit.cause_is_certain else NONE_KNOWN
 
 
-def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, float]:
+def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
     """Misfit over the stated noise of every sweep that states one."""
-    rows = {k: fit.misfit(channel, fit.points.sweep == k).ratio for k in np.unique(fit.points.sweep).tolist()}
-    return {k: ratio for k, ratio in rows.items() if math.isfinite(ratio)}
-
-
-def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
-    return fit.wrong(channel, fit.points.sweep == k)
+    rows = {k: fit.misfit(channel, fit.points.sweep == k) for k in np.unique(fit.points.sweep).tolist()}
+    return {k: seen for k, seen in rows.items() if seen.n}
 
 
 def _carriers(fit: FinishedFit, channel: str) -> str:
-    """The sweeps with most of a misfit, in words."""
-    total, own = fit.misfit(channel).ratio, _by_sweep(fit, channel)
-    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.DISTRUSTED_MISFIT * total]
-    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.MOST_NAMED])
-    return f", most of it in {names}" if names else ""
+    """The sweeps with most of a misfit, in words; at least the worst."""
+    own = {k: seen.ratio for k, seen in _by_sweep(fit, channel).items()}
+    worst = sorted(own, key=lambda k: -own[k])
+    limit = constants.DISTRUSTED_MISFIT * fit.misfit(channel).ratio
+    named = [k for k in worst if own[k] > limit][:NAMED_IN_SENTENCE] or worst[:1]
+    return ", ".join(f"{fit.points.sweep_names[k]} ({own[k]:.1f} times)" for k in named)

@@ -199,15 +199,7 @@ def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float
         "camber skew [deg]": (measured.camber_skew, faults["camber_skew_deg"]),
         "conicity [N]": (row.conicity, float(true["PVY1"]) * truth.load_N),
     }
-    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None} | {
-        "eps_gamma, draws": _of_draws(row, truth.epsilon_gamma)
-    }
-
-
-def _of_draws(row: Any, truth: float) -> tuple[float, float, float]:
-    """The interval of the random draws, as a value with a standard uncertainty that has the same 95 % interval."""
-    low, high = row.interval
-    return (low + high) / 2.0, (high - low) / (2.0 * SAFE), truth
+    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None}
 
 
 def table(name: str, rows: list[Found]) -> list[str]:

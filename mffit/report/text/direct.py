@@ -56,7 +56,7 @@ def spin_summary(measured: Measured) -> str:
         *against,
         "\n".join(filter(None, (spin_numbers(measured), estimates(measured)))),
         budget_table(measured.budget, measured.epsilon_gamma.u),
-        "\n".join(text for text in (wording.expanded(measured), wording.by_draws(measured)) if text),
+        wording.expanded(measured),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
         _per_load(measured.per_load),
         setups_table(measured),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mffit.points import Points, make_points
-from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.rereadings import MISTAKES, Away, Mistake, explaining
 
 REVERSED, OTHER = MISTAKES[0], MISTAKES[1]
 TOLERATED = {"Fy": 0.1, "Mz": 0.1}

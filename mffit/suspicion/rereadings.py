@@ -1,0 +1,284 @@
+"""Other ways to read a sweep, one record each, and the one that makes it agree with what is expected of it.
+
+A mistake in a recording is undone; a number of the rig that may be off has the size that explains most of the errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.constants import EXPLAINED_SHARE
+from mffit.linearised.mixed import LeftOutReadings
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.quantities import column as heading
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME
+from mffit.rounding import to_uncertainty
+from mffit.sweeps.units import factor
+
+Signs = Mapping[str, float]
+"""+1 or -1 by channel: from ISO-W to the rig's axes."""
+Errors = Mapping[str, LeftOutReadings]
+"""By channel, measured less expected where a channel was measured."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mistake:
+    """A way in which a recording says something else than was run."""
+
+    looks: str  #: what the sweep looks like
+    column: str  #: heading at fault
+    remedy: str  #: what to do about it
+    undone: Callable[[Points, Signs], Points]  #: the points without it
+    beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost like it
+
+
+def _negated(points: Points, _: Signs, *, fields: tuple[str, ...]) -> Points:
+    return points.replace(**{name: -getattr(points, name) for name in fields})
+
+
+def _swapped(points: Points, signs: Signs, *, fields: tuple[str, str]) -> Points:
+    one, other = fields
+    sign = signs[one] * signs[other]
+    return points.replace(**{one: sign * getattr(points, other), other: sign * getattr(points, one)})
+
+
+def _converted(points: Points, _: Signs, *, field: str, unit: str, expected: str) -> Points:
+    return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
+
+
+def _reversed(looks: str, column: str, remedy: str, *fields: str, beyond_doubt: bool = True) -> Mistake:
+    undone = partial(_negated, fields=fields)
+    return Mistake(looks=looks, column=column, remedy=remedy, undone=undone, beyond_doubt=beyond_doubt)
+
+
+def _of_sign(field: str, column: str, what: str) -> Mistake:
+    remedy = f"correct its sign, or map {column} with scale = -1 under [sweep.columns]"
+    return _reversed(f"{what} reversed", column, remedy, field)
+
+
+def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) -> Mistake:
+    return Mistake(
+        looks=f"{what} in {unit}",
+        column=column,
+        remedy=f'write {expected}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
+        undone=partial(_converted, field=field, unit=unit, expected=expected),
+    )
+
+
+FORCE = ("Fy", "Fy_N", "its side force")
+DRIVE = ("Fx", "Fx_N", "its longitudinal force")
+OVERTURNING = ("Mx", "Mx_Nm", "its overturning moment")
+ROLLING = ("My", "My_Nm", "its rolling resistance moment")
+LOAD = ("Fz", "Fz_N", "its load")
+MOMENT = ("Mz", "Mz_Nm", "its moment")
+SIDESLIP = ("alpha", "alpha_deg", "its sideslip")
+CAMBER = ("gamma", "gamma_deg", "its camber")
+PRESSURE = ("p", "p_kPa", "its pressure")
+
+MISTAKES: tuple[Mistake, ...] = (
+    *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
+    _in_unit(*PRESSURE, unit="psi", expected="kPa"),
+    *(_in_unit(*force, unit="kN", expected="N") for force in (FORCE, DRIVE)),
+    Mistake(
+        looks="side force and moment exchanged",
+        column="Fy_N",
+        remedy="correct the headings Fy_N and Mz_Nm",
+        undone=partial(_swapped, fields=("Fy", "Mz")),
+    ),
+    Mistake(
+        looks="sideslip and camber exchanged",
+        column="alpha_deg",
+        remedy="correct the headings alpha_deg and gamma_deg",
+        undone=partial(_swapped, fields=("alpha", "gamma")),
+    ),
+    *(_in_unit(*force, unit=unit, expected="N") for force in (LOAD, FORCE, DRIVE) for unit in ("kgf", "lbf")),
+    *(
+        _in_unit(*moment, unit=unit, expected="N m")
+        for moment in (MOMENT, OVERTURNING, ROLLING)
+        for unit in ("N mm", "kN m", "lbf ft")
+    ),
+    *(_of_sign(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT, DRIVE, OVERTURNING, ROLLING)),
+    _reversed(
+        "the direction of rolling undeclared or wrong",
+        "direction",
+        'write direction = "backward" (or "forward") in its [[sweep]]',
+        "direction",
+    ),
+    _reversed(
+        "side force and moment in other axes", "Fy_N", "correct the signs of Fy_N and Mz_Nm", "Fy", "Mz"
+    ),
+    _reversed(
+        "sideslip, side force and moment in other axes",
+        "alpha_deg",
+        "correct the signs of alpha_deg, Fy_N and Mz_Nm",
+        *("alpha", "Fy", "Mz"),
+    ),
+    _reversed(
+        "the tyre turned on its rim",
+        "mount",
+        'write mount = "flipped" (or "normal") in its [[sweep]]',
+        "mount",
+        beyond_doubt=False,
+    ),
+)
+"""In the order in which they are thought of where several would do."""
+
+
+def moved(points: Points, errors: Errors, simulation: Simulation, changed: Points) -> dict[str, np.ndarray]:
+    """By channel, the errors of points that are read as ``changed``, to first order; without channels that lack readings then."""
+    here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
+    out = {}
+    for name, one in errors.items():
+        change = changed.channel(name) - points.channel(name) - (there[name] - here[name])
+        after = one.error + change[np.isfinite(points.channel(name))]
+        if np.all(np.isfinite(after)):
+            out[name] = after
+    return out
+
+
+class Away(NamedTuple):
+    """How far one channel of a sweep is from what is expected."""
+
+    error: float  #: in any unit that is the same before and after
+    share: float  #: of the channel's usual size
+    matched: bool = True  #: False if the error is not small beside what was measured and expected
+
+
+class ExplainingMistake(NamedTuple):
+    """A mistake that explains a sweep."""
+
+    mistake: Mistake
+    left: float  #: largest share of the usual size by which a channel is still away
+
+
+def explaining(
+    candidates: Iterable[tuple[Mistake, Points]],
+    gross: Mapping[str, float],
+    away: Callable[[Points], Mapping[str, Away]],
+    tolerated: Mapping[str, float],
+) -> ExplainingMistake | None:
+    """The mistake that leaves least when it is undone; None if no mistake explains the errors.
+
+    ``candidates`` come with the points of the sweep as they are without the mistake. ``tolerated`` limits the share by which a
+    channel may be away in the end, so that no new error is made elsewhere.
+    """
+    best = None
+    for mistake, points in candidates:
+        after = away(points)
+        little = all(
+            name in after and after[name].error <= EXPLAINED_SHARE * error and after[name].matched
+            for name, error in gross.items()
+        )
+        if not little or any(one.share > tolerated[name] for name, one in after.items()):
+            continue
+        left = max(one.share for one in after.values())
+        if best is None or left < best.left:
+            best = ExplainingMistake(mistake=mistake, left=left)
+    return best
+
+
+DEGREES = float(np.degrees(1.0))
+STEP = 1e-4
+"""Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
+Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
+"""Change of measured less expected in some channels, per unit of a number, by channel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """One number of a sweep that may be off."""
+
+    looks: str  #: with {} for the number
+    shape: Shape
+    possible: tuple[float, float] = (-math.inf, math.inf)  #: least and largest number that a rig can have
+    unit: float = 1.0  #: by which the number is multiplied in the sentence
+    start: float = 0.0  #: added to it there
+    sign: str = ""  #: channel whose sign in the rig's axes the number has
+
+
+def _constant(channel: str) -> Shape:
+    return lambda points, simulation, among: {channel: np.ones(len(points))}
+
+
+def _gain(channel: str) -> Shape:
+    return lambda points, simulation, among: (
+        {channel: simulation.readings(points, (channel,))[channel]} if channel in among else {}
+    )
+
+
+def _set_point(name: str, relative: bool = False) -> Shape:
+    def shape(points: Points, simulation: Simulation, among: Collection[str]) -> Mapping[str, np.ndarray]:
+        value = getattr(points, name)
+        there = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
+        before, after = simulation.readings(points, among), simulation.readings(there, among)
+        return {channel: (after[channel] - before[channel]) / STEP for channel in before}
+
+    return shape
+
+
+POSITIVE = (-1.0, math.inf)
+"""Of a change relative to a number that is positive in any case."""
+SHIFTS = (
+    *(
+        Shift(f"a zero offset of {{}} {known.unit} in {heading(name)}", _constant(name), sign=name)
+        for name, known in CHANNELS.items()
+    ),
+    *(Shift(f"a gain of {{}} in {heading(name)}", _gain(name), POSITIVE, start=1.0) for name in CHANNELS),
+    *(
+        Shift(
+            f"a {word} axis that is {{}} deg out",
+            _set_point(name),
+            (BY_NAME[zero].lower / DEGREES, BY_NAME[zero].upper / DEGREES),
+            unit=DEGREES,
+            sign=name,
+        )
+        for name, word, zero in (("alpha", "sideslip", "alpha_0_deg"), ("gamma", "camber", "gamma_0_deg"))
+    ),
+    Shift("a load that was {} % off", _set_point("Fz", relative=True), POSITIVE, unit=100.0),
+    Shift("a pressure that was {} % off", _set_point("p", relative=True), POSITIVE, unit=100.0),
+)
+
+
+def explanation(points: Points, errors: Errors, simulation: Simulation, signs: Signs) -> str:
+    """What explains most of the errors of a sweep, in words; empty if no known cause does."""
+    before = _chi2(errors, {name: one.error for name, one in errors.items()})
+    best, said = (1.0 - EXPLAINED_SHARE) * before, ""
+    for mistake in MISTAKES:
+        gained = before - _chi2(errors, moved(points, errors, simulation, mistake.undone(points, signs)))
+        if gained > best:
+            best, said = gained, mistake.looks
+    for shift in SHIFTS:
+        gained, size, u = _fitted(points, errors, shift.shape(points, simulation, errors))
+        if gained > best and shift.possible[0] < size < shift.possible[1]:
+            best = gained
+            value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
+            said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))
+    return said
+
+
+def _fitted(points: Points, errors: Errors, shapes: Mapping[str, np.ndarray]) -> tuple[float, float, float]:
+    """Chi-square that a multiple of the shapes removes, the multiple and its standard uncertainty."""
+    curvature = gradient = 0.0
+    for name in (name for name in errors if name in shapes):
+        shape = shapes[name][np.isfinite(points.channel(name))]
+        solved = np.linalg.solve(errors[name].covariance, shape)
+        curvature += float(shape @ solved)
+        gradient += float(errors[name].error @ solved)
+    if curvature <= 0.0:
+        return 0.0, 0.0, 0.0
+    return gradient**2 / curvature, gradient / curvature, curvature**-0.5
+
+
+def _chi2(errors: Errors, left: Mapping[str, np.ndarray]) -> float:
+    """Of errors as they are left; infinite if readings of a channel are lacking then."""
+    if left.keys() != errors.keys():
+        return math.inf
+    return sum(float(left[n] @ np.linalg.solve(one.covariance, left[n])) for n, one in errors.items())
