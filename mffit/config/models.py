@@ -24,11 +24,11 @@ from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
 from mffit.config.by_hand import Entries, as_in_the_file, check_coefficients, named
-from mffit.config.exclusion import ExcludeTable, check_exclusions
 from mffit.config.laboratory import LabTable
-from mffit.config.locate import line_of
+from mffit.config.lines import ExcludeTable, check_exclusions
 from mffit.config.radii import effective_radius, path_radius
 from mffit.config.table import Table, list_of_tables
+from mffit.config.toml_file import line_of
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 

@@ -14,8 +14,8 @@ from typing import NamedTuple, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from mffit.config.locate import line_of
 from mffit.config.quantities import TOO_MANY_DIGITS
+from mffit.config.toml_file import line_of
 from mffit.errors import InputError, meant, shortened
 
 Keys = Mapping[str, tuple[str, ...]]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import Config, axis_signs
-from mffit.config.declared import as_declared
+from mffit.config.loading import as_declared
 from mffit.fit import agreement
 from mffit.fit.borrowed.sister import sister_of, sister_sentence
 from mffit.fit.by_hand import hand_of

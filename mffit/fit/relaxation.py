@@ -208,6 +208,8 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
     read = samples.channel(direction.force)
     beside = np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)])
+    spacing = float(np.median(np.diff(rolled_distance(samples.time, samples.V))))
+    within = max(1, round(radius / spacing))
     ends = _ends_of_steps(direction, samples, radius)
     free = [
         FreeNumber("sigma", radius, 1e-3 * radius),
@@ -226,7 +228,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         return design @ x[count:], np.column_stack([x[-1] * slope, design])
 
     sigma, u, move = radius, math.inf, math.inf
-    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free))
+    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free), within)
     for _ in range(constants.REFIT_STEPS):
         end = solve(_problem(model, read, noise), free)
         x = np.array(list(end.values.values()))
@@ -235,7 +237,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         u = math.sqrt(float(end.covariance[0, 0]))
         if abs(move) < constants.REFIT_TOLERANCE * sigma:
             break
-        noise = _Noise.of(read - model(x)[0], len(free))
+        noise = _Noise.of(read - model(x)[0], len(free), within)
     u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
@@ -292,10 +294,14 @@ class _Noise(NamedTuple):
     size: float  #: standard deviation of what is new in a reading
 
     @classmethod
-    def of(cls, residual: np.ndarray, numbers: int) -> _Noise:
-        """The noise in what so many fitted numbers leave."""
+    def of(cls, residual: np.ndarray, numbers: int, within: int = 1) -> _Noise:
+        """The noise in what so many fitted numbers leave, larger if it still shows over ``within`` samples."""
         memory, new = autoregression(residual - residual.mean())
-        return cls(memory, math.sqrt(new * len(residual) / max(len(residual) - numbers, 1)) or 1.0)
+        white = cls(memory, math.sqrt(new) or 1.0).whitened(residual)
+        blocks = white[: len(white) // within * within].reshape(-1, within).mean(axis=1)
+        excess = max(1.0, within * float(np.var(blocks))) if len(blocks) > 1 else 1.0
+        freedom = max(len(residual) - numbers, 1)
+        return cls(memory, math.sqrt(new * excess * len(residual) / freedom) or 1.0)
 
     def whitened(self, x: np.ndarray) -> np.ndarray:
         """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""

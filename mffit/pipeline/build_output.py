@@ -18,9 +18,8 @@ from mffit.fit import name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
 from mffit.points import Points
-from mffit.points.stretch import StretchNote
+from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
-from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.suspicion import marks
 from tir import Tyre

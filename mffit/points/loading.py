@@ -12,8 +12,7 @@ import numpy as np
 from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
-from mffit.config.declared import as_declared
-from mffit.config.loading import STAND_IN
+from mffit.config.loading import STAND_IN, as_declared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.errors import InputError
 from mffit.points import levels

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 
 PLATEAU, SWEEP, MOVE = "plateau", "sweep", "transition"
 
@@ -47,3 +49,15 @@ def runs(mask: np.ndarray) -> list[tuple[int, int]]:
     """Begin and end (excluded) of every run of a mask (n,)."""
     edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
     return [(int(begin), int(end)) for begin, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+DIGITS = {
+    "begin_s": 3, "end_s": 3, "alpha_from_deg": 2, "alpha_to_deg": 2, "kappa_from": 4, "kappa_to": 4, "gamma_deg": 2,
+    "Fz_N": 0, "p_kPa": 1, "T_degC": 1, "lag_m": 4, "u_lag_m": 4,
+}  # fmt: skip
+
+
+def stretch_table(notes: Sequence[StretchNote]) -> pd.DataFrame:
+    """One row per stretch in the order of the recordings; angles in ISO signs."""
+    table = pd.DataFrame(list(notes), columns=list(StretchNote._fields))
+    return table.round(DIGITS)

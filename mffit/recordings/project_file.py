@@ -13,10 +13,9 @@ import tomli_w
 
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
-from mffit.recordings.directions import rolls_backward
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.guess import Guess
-from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
+from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from, rolls_backward
 from mffit.suspicion.all_files import LevelsOfLoad
 from mffit.sweeps import formats
 from mffit.sweeps.formats import stem

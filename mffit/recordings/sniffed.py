@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +13,7 @@ import numpy as np
 
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.config.globs import is_pattern, matches
-from mffit.config.loading import STAND_IN
+from mffit.config.loading import STAND_IN, is_pattern, matches
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.clock import spread
@@ -20,7 +21,6 @@ from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.directions import rolls_backward
 from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.suspicion import contradictions, signatures, under_axes
@@ -298,3 +298,16 @@ def _levels(values: np.ndarray, quantity: levels.LevelKind) -> tuple[Level, ...]
         Level(float(np.median(values[near == k])), int(np.sum(near == k)))
         for k in range(near.max(initial=-1) + 1)
     )
+
+
+LETTER = "[^\\W\\d_]"
+BACKWARD = re.compile(
+    rf"backward|reverse|(?<!{LETTER})(?:(?:zu)?r(?:ü|ue|u)ck(?:w(?:ä|ae|a)rts|lauf|fahrt|rollen|rollend)?|bwd|rev)(?!{LETTER})",
+    re.IGNORECASE,
+)
+"""Words in the name of a file that was recorded rolling backwards; no others that begin like them, such as Rückstellmoment."""
+
+
+def rolls_backward(path: Path) -> bool:
+    """Whether the name of a recording says that the wheel rolled backwards."""
+    return BACKWARD.search(unicodedata.normalize("NFC", formats.stem(path.name))) is not None

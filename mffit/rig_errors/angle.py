@@ -21,8 +21,7 @@ RELAXATION = RigError(
     formula=lambda sigma, alpha, at: at.lagged(alpha, sigma),
     spread=0.2,
     scan=(0.05, 0.15, 0.3),
-    lower=0.0,
-    upper=2.0,
+    limits=(0.0, 2.0),
     seen_as=(
         Appearance(
             id="relaxation",
@@ -39,8 +38,7 @@ SIDESLIP_ZERO = _of_angle(
     meaning="true sideslip angle = reading + alpha_0",
     formula=lambda zero, alpha, at: alpha + zero * RADIANS,
     spread=0.2,
-    lower=-5.0,
-    upper=5.0,
+    limits=(-5.0, 5.0),
     of_setup=True,
     seen_as=(
         Appearance(
@@ -86,8 +84,7 @@ HYSTERESIS = _of_angle(
     meaning="true sideslip angle = reading - hysteresis sense, sense 1 or -1 as the sweep goes up or down",
     formula=lambda width, alpha, at: alpha - width * (RADIANS * at.sense),
     spread=0.1,
-    lower=-2.0,
-    upper=2.0,
+    limits=(-2.0, 2.0),
     seen_as=(
         Appearance(
             id="hysteresis",
@@ -107,8 +104,7 @@ COMPLIANCE = _of_angle(
     meaning="true sideslip angle = reading + compliance Mz",
     formula=lambda give, alpha, at: at.turned_by_moment(alpha, give * RADIANS),
     spread=0.004,
-    lower=-0.05,
-    upper=0.05,
+    limits=(-0.05, 0.05),
     seen_as=(
         Appearance(
             id="steering-compliance",
@@ -129,8 +125,7 @@ BACKLASH = _of_angle(
     formula=lambda play, alpha, at: at.held_in_play(alpha, 0.5 * RADIANS * play),
     spread=0.2,
     scan=(0.05, 0.15, 0.3),
-    lower=0.0,
-    upper=3.0,
+    limits=(0.0, 3.0),
     seen_as=(
         Appearance(
             id="backlash",
@@ -157,8 +152,7 @@ CAMBER_SKEW = _of_angle(
     meaning="true sideslip angle = reading + camber_skew sin(true camber)",
     formula=lambda skew, alpha, at: alpha + skew * RADIANS * np.sin(at.gamma),
     spread=0.2,
-    lower=-5.0,
-    upper=5.0,
+    limits=(-5.0, 5.0),
     seen_as=(
         Appearance(
             id="camber-skew",

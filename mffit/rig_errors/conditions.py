@@ -18,8 +18,7 @@ CAMBER_ZERO = RigError(
     acts_on=("gamma",),
     formula=lambda zero, gamma, at: gamma + zero * RADIANS,
     spread=0.4,
-    lower=-5.0,
-    upper=5.0,
+    limits=(-5.0, 5.0),
     of_setup=True,
     seen_as=(
         Appearance(
@@ -56,8 +55,7 @@ LOAD_CAMBER = RigError(
     acts_on=("Fz",),
     formula=lambda share, Fz, at: Fz * (1.0 + share * np.sin(at.gamma) ** 2),
     spread=0.03,
-    lower=-0.5,
-    upper=0.5,
+    limits=(-0.5, 0.5),
     seen_as=(
         Appearance(
             id="load-camber",
@@ -83,8 +81,7 @@ PATH_RADIUS = RigError(
     formula=lambda radius, phi_t, at: np.sign(phi_t) / (radius + at.beyond_usual_path),
     undisturbed=math.nan,
     spread=0.03,
-    lower=0.1,
-    upper=100.0,
+    limits=(0.1, 100.0),
     relative=True,
     seen_as=(
         Appearance(
@@ -120,8 +117,7 @@ SLIP_ZERO = RigError(
     acts_on=("kappa",),
     formula=lambda zero, kappa, at: kappa + zero,
     spread=0.002,
-    lower=-0.1,
-    upper=0.1,
+    limits=(-0.1, 0.1),
     seen_as=(
         Appearance(
             id="slip-zero",

@@ -20,7 +20,7 @@ def _warmed(k: Any, value: Any, at: Any) -> Any:
 
 
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
-_of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, lower=-0.05, upper=0.05)
+_of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, limits=(-0.05, 0.05))
 _of_run = partial(
     RigError,
     unit="-",
@@ -28,8 +28,7 @@ _of_run = partial(
     place=Place.COEFFICIENTS,
     formula=lambda share, value, at: value * (1.0 + share),
     spread=0.02,
-    lower=-0.5,
-    upper=0.5,
+    limits=(-0.5, 0.5),
 )
 _appearance = partial(Appearance, parity="as the forces")
 
@@ -62,8 +61,7 @@ TEMPERATURE_GRIP_CURVATURE = RigError(
         value * (1.0 + k2 * at.warmth**2 / (1.0 + at.numbers["k_T_grip_per_K"] * at.warmth))
     ),
     spread=1e-4,
-    lower=-5e-3,
-    upper=5e-3,
+    limits=(-5e-3, 5e-3),
 )
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
@@ -142,8 +140,7 @@ REFERENCE_TEMPERATURE = RigError(
     place=None,
     undisturbed=constants.REFERENCE_TEMPERATURE,
     spread=10.0,
-    lower=-40.0,
-    upper=200.0,
+    limits=(-40.0, 200.0),
 )
 SPEED = _of_forces(
     name="k_V_per_mps",
@@ -152,8 +149,7 @@ SPEED = _of_forces(
     meaning="Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed",
     formula=lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
     spread=0.005,
-    lower=-0.2,
-    upper=0.2,
+    limits=(-0.2, 0.2),
     seen_as=(
         _appearance(
             id="speed",
@@ -170,8 +166,7 @@ DRIFT = _of_forces(
     meaning="Fy and Mz times 1 + k_t t, t the time at which the point was taken",
     formula=lambda k, force, at: force * (1.0 + k * at.time),
     spread=1e-6,
-    lower=-1e-3,
-    upper=1e-3,
+    limits=(-1e-3, 1e-3),
     seen_as=(
         _appearance(
             id="drift",
@@ -189,8 +184,7 @@ WEAR = _of_forces(
     meaning="Fy and Mz times 1 + wear s, s the distance rolled",
     formula=lambda wear, force, at: force * (1.0 + wear * at.distance_km),
     spread=3e-4,
-    lower=-0.1,
-    upper=0.1,
+    limits=(-0.1, 0.1),
     seen_as=(
         _appearance(
             id="wear",
@@ -208,8 +202,7 @@ WARM_UP = _of_forces(
     meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
     formula=lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
     spread=0.03,
-    lower=-0.5,
-    upper=0.5,
+    limits=(-0.5, 0.5),
     seen_as=(
         _appearance(
             id="warm-up",

@@ -23,8 +23,7 @@ def _crosstalk(force: str, moment: str, *, spread: float, appearance: Appearance
         formula=lambda arm, reading, at: reading + arm * at.true[force],
         reads=(force,),
         spread=spread,
-        lower=-0.1,
-        upper=0.1,
+        limits=(-0.1, 0.1),
         seen_as=(appearance,),
         declared=Declared(
             key=f"u_{force}_into_{moment}_m",
@@ -43,8 +42,7 @@ GAIN = _of_reading(
     formula=lambda gain, Fy, at: gain * Fy,
     undisturbed=1.0,
     spread=0.02,
-    lower=0.5,
-    upper=2.0,
+    limits=(0.5, 2.0),
     seen_as=(
         Appearance(
             id="loadcell-gain",
@@ -63,8 +61,7 @@ NONLINEARITY = _of_reading(
     acts_on=("Fy",),
     formula=lambda growth, Fy, at: Fy * (1.0 + 1e-3 * growth * abs(Fy)),
     spread=0.01,
-    lower=-0.2,
-    upper=0.2,
+    limits=(-0.2, 0.2),
     seen_as=(
         Appearance(
             id="loadcell-nonlinearity",
@@ -85,8 +82,7 @@ CROSSTALK = _of_reading(
     acts_on=("Fy",),
     formula=lambda share, Fy, at: Fy + share * at.Fz,
     spread=0.01,
-    lower=-0.3,
-    upper=0.3,
+    limits=(-0.3, 0.3),
     seen_as=(
         Appearance(
             id="crosstalk-fz-fy",
@@ -106,8 +102,7 @@ FORCE_ZERO = _zero_of(
     meaning=FORCE,
     acts_on=("Fy",),
     spread=10.0,
-    lower=-1e3,
-    upper=1e3,
+    limits=(-1e3, 1e3),
     seen_as=(
         Appearance(
             id="loadcell-offset-fy",
@@ -150,8 +145,7 @@ MOMENT_ZERO = _zero_of(
     meaning="reported Mz = Mz + M0",
     acts_on=("Mz",),
     spread=1.0,
-    lower=-1e2,
-    upper=1e2,
+    limits=(-1e2, 1e2),
     seen_as=(
         Appearance(
             id="loadcell-offset-mz",
@@ -183,8 +177,7 @@ LONGITUDINAL_ZERO = _zero_of(
     meaning="reported Fx = Fx + Fx0",
     acts_on=("Fx",),
     spread=20.0,
-    lower=-1e3,
-    upper=1e3,
+    limits=(-1e3, 1e3),
     seen_as=(
         Appearance(
             id="loadcell-offset-fx",
@@ -207,8 +200,7 @@ OVERTURNING_ZERO = _zero_of(
     meaning="reported Mx = Mx + Mx0",
     acts_on=("Mx",),
     spread=30.0,
-    lower=-500.0,
-    upper=500.0,
+    limits=(-500.0, 500.0),
     seen_as=(
         Appearance(
             id="loadcell-offset-mx",
@@ -233,8 +225,7 @@ ROLLING_ZERO = _zero_of(
     meaning="reported My = My + My0",
     acts_on=("My",),
     spread=5.0,
-    lower=-100.0,
-    upper=100.0,
+    limits=(-100.0, 100.0),
     declared=Declared(key="u_My_offset_Nm", unit="Nm", default=constants.ROLLING_ZERO, source="zero of My"),
 )
 LONGITUDINAL_GAIN = _of_reading(
@@ -245,8 +236,7 @@ LONGITUDINAL_GAIN = _of_reading(
     formula=lambda gain, Fx, at: gain * Fx,
     undisturbed=1.0,
     spread=0.02,
-    lower=0.5,
-    upper=2.0,
+    limits=(0.5, 2.0),
     seen_as=(
         Appearance(
             id="loadcell-gain-fx",
@@ -267,8 +257,7 @@ LONGITUDINAL_DRAG = _of_reading(
     acts_on=("Fx",),
     formula=lambda drag, Fx, at: Fx - drag * at.points.direction,
     spread=15.0,
-    lower=-500.0,
-    upper=500.0,
+    limits=(-500.0, 500.0),
     seen_as=(
         Appearance(
             id="longitudinal-drag",

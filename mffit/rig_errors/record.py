@@ -106,8 +106,7 @@ class RigError:
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma
     scan: tuple[float, ...] = (0.0,)  #: changes to start from; an even effect needs some other than 0
-    lower: float = -math.inf
-    upper: float = math.inf
+    limits: tuple[float, float] = (-math.inf, math.inf)
     relative: bool = False  #: spread and scan are relative to the value
     of_setup: bool = False  #: differs from one set-up of the rig to the next, as a zero does
     seen_as: tuple[Appearance, ...] = ()
@@ -116,6 +115,16 @@ class RigError:
         None  #: unit in which people read it, and its size in them; default its own
     )
     declared: Declared | None = None
+
+    @property
+    def lower(self) -> float:
+        """The least number that a rig can have."""
+        return self.limits[0]
+
+    @property
+    def upper(self) -> float:
+        """The largest number that a rig can have."""
+        return self.limits[1]
 
     def shows_in(self, channels: Iterable[str]) -> bool:
         """Whether it may change any of these channels; only what acts on other channels alone cannot."""

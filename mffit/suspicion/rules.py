@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.config import Config
-from mffit.config.declared import as_declared
+from mffit.config.loading import as_declared
 from mffit.points import Points
 from mffit.points.faulty import FAULTS
 from mffit.suspicion import (

@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from mffit.config import Config, setup_names
-from mffit.config.exclusion import ExcludeTable
+from mffit.config.lines import ExcludeTable, inside, ranges_text
 from mffit.config.models import SweepTable
 from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
 from mffit.errors import InputError
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
-from mffit.sweeps.excluded import ExclusionError, take_apart
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
 from mffit.sweeps.frames import (
     FileFrame,
@@ -164,17 +163,34 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
 def _apart(
     config: Config, entry: SweepTable, raw: RawTable
 ) -> tuple[RawTable | None, list[tuple[ExcludeTable, RawTable]]]:
-    """The rows of a file that are kept, None without any, and the excluded ones with their entries."""
-    entries = [one for one in config.fit.exclude if one.file == entry.file]
-    try:
-        kept, excluded = take_apart(raw, entries)
-    except ExclusionError as error:
-        index = config.fit.exclude.index(error.entry)
-        key = f"fit.exclude.{index}.lines"
-        raise InputError(
-            str(error), file=config.path, line=config.line_of(key), key=f"fit.exclude[{index + 1}].lines"
-        ) from None
-    return kept, list(zip(entries, excluded, strict=True))
+    """The rows of a file that are kept, None without any, and the excluded ones with their entries.
+
+    They are taken apart before anything is checked, so that a damaged row can be excluded without editing the file.
+    """
+    lines = np.asarray(raw.lines)
+    out = np.zeros(len(lines), dtype=bool)
+    excluded = []
+    for index, one in enumerate(config.fit.exclude):
+        if one.file != entry.file:
+            continue
+        # The first end of a range that is not the line of a row.
+        wrong = next((end for pair in one.ranges for end in pair if not np.any(lines == end)), None)
+        if wrong is not None:
+            line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
+            raise InputError(_no_reading(raw, wrong), file=config.path, line=line, key=key)
+        mask = inside(lines, one.ranges)
+        out |= mask
+        excluded.append((one, raw.of_rows(mask)))
+    return None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw, excluded
+
+
+def _no_reading(raw: RawTable, wrong: int) -> str:
+    first, last = int(np.min(raw.lines)), int(np.max(raw.lines))
+    place = f"the readings of {raw.path.name} are in lines {ranges_text([(first, last)])}"
+    if wrong > last:
+        return f"line {wrong} is beyond the end of the file; {place}"
+    reason = "is above the first reading" if wrong < first else "holds no reading"
+    return f"line {wrong} {reason}; {place}"
 
 
 def _as_far_as_readable(

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import zlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from mffit.config import RigTable, declared_faults, declared_rig
 from mffit.errors import InputError
-from mffit.rig_errors import ZEROS, Faults
-from mffit.virtual_rig.faults import drawn, given
+from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 from mffit.virtual_rig.machine import Channels, Machine, steady
-from mffit.virtual_rig.plan import ADDED, NoiseTable, RigPlan, SweepPlan
+from mffit.virtual_rig.plan import ADDED, NoiseTable, RigPlan, RollingRadiusPlan, SweepPlan
 from mffit.virtual_rig.recording import record
-from mffit.virtual_rig.revolution import written_down
 from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
 from mffit.virtual_rig.tables import point_table, recorded_table
 from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_truth, driven_truth
@@ -207,3 +208,79 @@ def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
     names = ("file", "direction", "mount", "path_centre", "path_radius", "setup")
     entry = {name: getattr(sweep, name) for name in names}
     return {key: value for key, value in entry.items() if value not in ("forward", "normal", None)}
+
+
+def written_down(
+    row: RollingRadiusPlan, r_e: float, R: float, generator: np.random.Generator
+) -> dict[str, Any]:
+    """The table ``[[rolling_radius]]`` of tyre.toml for one load.
+
+    Parameters
+    ----------
+    row : load, and uncertainties of the readings
+    r_e : true effective rolling radius [m]
+    R : true radius of the path [m]; infinite on a flat track
+    generator : errors of the readings, normally distributed with the declared uncertainties
+
+    Notes
+    -----
+    Angles are read to 0.1 deg. The notches of the disc are aligned by eye at the start and at the end, so the wheel travels
+    ``2 pi R`` and two small arcs.
+    """
+    chance = generator.standard_normal(4)
+    if row.u_effective_radius is not None:
+        known = round(float(r_e + row.u_effective_radius * chance[0]), 5)
+        return {"load_N": row.load_N, "effective_radius": known, "u_effective_radius": row.u_effective_radius}
+    travelled = 2.0 * math.pi * R + row.u_arc_m * (chance[0] + chance[1])
+    start = 10.0
+    turned = start + math.degrees(travelled / r_e) + row.u_angle_deg * (chance[2] + chance[3])
+    revolutions, end = divmod(float(turned), 360.0)
+    return {
+        "load_N": row.load_N,
+        "revolutions": int(revolutions),
+        "angle_start_deg": start,
+        "angle_end_deg": round(end, 1),
+        "u_angle_deg": row.u_angle_deg,
+        "u_arc_m": row.u_arc_m,
+    }
+
+
+def as_declared(rig: RigTable) -> Faults:
+    """The declared rig: its play and path radius; all other errors are absent."""
+    radius = rig.radius
+    return declared_faults(rig).replace(path_radius_m=math.inf if radius is None else radius)
+
+
+def given(rig: RigTable, values: Mapping[str, float]) -> Faults:
+    """The declared rig with some errors of given size."""
+    return as_declared(rig).replace(**values)
+
+
+def drawn(
+    rig: RigTable,
+    values: Mapping[str, float],
+    C_alpha: float,
+    generator: np.random.Generator,
+    setups: Sequence[str] = ("",),
+) -> dict[str, Faults]:
+    """The errors of every set-up of a rig that follow the declared uncertainties; the zeros are drawn for each set-up.
+
+    Parameters
+    ----------
+    rig : the declaration; every ``u_`` is one standard deviation of a normal distribution
+    values : errors that are given and therefore not drawn
+    C_alpha : cornering stiffness at the nominal load [N/rad], turns ``u_slip_alignment_N`` into an angle
+    generator : source of random numbers
+    setups : names of the set-ups; the first has the same errors as a rig with one set-up
+    """
+    # Each error draws from a stream of its own name: fixing one, or declaring one more, does not change the others.
+    seed = int(generator.integers(2**32))
+    out = {}
+    for k, setup in enumerate(setups):
+        found = {}
+        for name, prior in declared_rig(rig, C_alpha).items():
+            stream = number_of(name, setup) if k and BY_NAME[name].of_setup else name
+            own = np.random.default_rng([seed, zlib.crc32(stream.encode())])
+            found[name] = max(prior.value + prior.u * own.standard_normal(), BY_NAME[name].lower)
+        out[setup] = as_declared(rig).replace(**{**found, **values})
+    return out

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.rig_errors import Faults
-from mffit.virtual_rig.radius import loaded_radius
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
@@ -249,3 +248,25 @@ def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine)
     for name, formula in formulae.items():
         out = out * formula(machine.faults[name], settings, machine)
     return out
+
+
+def loaded_radius(p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, omega: Any, pressure: Any) -> Any:
+    """Distance (n,) of the wheel's centre from the contact point [m].
+
+    Parameters
+    ----------
+    p : values of the property file
+    Fz, Fx, Fy : forces (n,) [N]
+    omega : speed of rotation (n,) [rad/s]
+    pressure : inflation pressure (n,) [Pa]
+    """
+    R0, Fz0 = p["UNLOADED_RADIUS"], p["FNOMIN"]
+    rim_speed = np.abs(omega) * R0 / p["LONGVL"]
+    free = R0 * (p["Q_RE0"] + p["Q_V1"] * rim_speed**2)
+    stiffer = 1.0 + p["Q_V2"] * rim_speed - (p["Q_FCX"] * Fx / Fz0) ** 2 - (p["Q_FCY"] * Fy / Fz0) ** 2
+    stiffer = stiffer * (1.0 + p["PFZ1"] * (pressure / p["NOMPRES"] - 1.0))
+    linear = np.sqrt((p["VERTICAL_STIFFNESS"] * R0 / Fz0) ** 2 - 4.0 * p["Q_FZ2"])
+    load = Fz / Fz0 / stiffer
+    # Root of q2 d^2 + q1 d = load that stays finite where q2 is zero.
+    deflection = 2.0 * load / (linear + np.sqrt(linear**2 + 4.0 * p["Q_FZ2"] * load))
+    return free - R0 * deflection

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mffit.rig_errors import Faults
-from mffit.virtual_rig.radius import loaded_radius
+from mffit.virtual_rig.machine import loaded_radius
 from tir import Tyre
 from tir.parameters import TABLE
 

@@ -16,11 +16,10 @@ from mffit.pipeline.intake import project_of
 from mffit.points import Points, levels
 from mffit.points.loading import read
 from mffit.quantities import CONDITIONS
-from mffit.recordings.directions import rolls_backward
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, Guess, guesses
 from mffit.recordings.project_file import Stated, slug, tyre_found
-from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, sniff
+from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, rolls_backward, sniff
 from mffit.recordings.summary import RunSummary, apart, bad_runs, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from mffit.config import Config
 from mffit.config.loading import checked
-from mffit.config.locate import lines_of_keys
+from mffit.config.toml_file import lines_of_keys
 from mffit.errors import InputError
 from mffit.window import constants
 from mffit.window.edits import EDITS

@@ -26,7 +26,7 @@ from mffit import virtual_rig
 from mffit.pipeline.planning import plan_of
 from mffit.planning import Goal, Plan, PlannedRun, addition_named, constants, read_goal
 from mffit.results import BuildResult
-from mffit.virtual_rig.faults import as_declared
+from mffit.virtual_rig.campaign import as_declared
 from tests.mffit.small_rigs import SAMPLE, built, disc, truth
 
 FAULTS = {

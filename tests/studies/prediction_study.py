@@ -19,7 +19,7 @@ import pandas as pd
 import mffit
 import tir
 from mffit import config as configuration
-from mffit.config.exclusion import ExcludeTable
+from mffit.config.lines import ExcludeTable
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.pipeline.inputs import read_points
 from mffit.points import Points

@@ -35,7 +35,7 @@ from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import DECLARED, ZEROS
 from mffit.scatter import rms
-from mffit.virtual_rig.radius import loaded_radius
+from mffit.virtual_rig.machine import loaded_radius
 
 RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", "PFZ1", "BREFF", "DREFF", "FREFF")
 """Coefficients of the radii that are drawn like the staged ones."""

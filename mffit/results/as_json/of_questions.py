@@ -21,11 +21,11 @@ from mffit.fleet.record import FleetScatter, Row
 from mffit.planning import Plan, PlannedRun, PlanStep, Tie, Trial
 from mffit.planning import wording as planned
 from mffit.planning.goals import Goal
+from mffit.points.stretch import stretch_table
 from mffit.quantities import column
 from mffit.recordings import Sniffed
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import SniffedRecording
-from mffit.recordings.stretch_table import stretch_table
 from mffit.recordings.summary import BadRun
 from mffit.results.as_json.of_build import estimates, of_rig
 from mffit.results.values import Json, document, keys, plain

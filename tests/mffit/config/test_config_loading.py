@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from mffit import config
-from mffit.config.globs import is_pattern, matches
-from mffit.config.locate import lines_of_keys
+from mffit.config.loading import is_pattern, matches
 from mffit.config.problems import known_keys
 from mffit.config.rig_declaration import setup_names
+from mffit.config.toml_file import lines_of_keys
 from mffit.errors import InputError
 
 MINIMAL = """[tyre]

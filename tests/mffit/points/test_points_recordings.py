@@ -239,17 +239,6 @@ def test_a_reversed_channel_is_caught(read, column):
         read(table)
 
 
-def test_a_warning_names_the_one_sweep_that_leans_the_other_way(read, whole):
-    table = recording()
-    assert not [warning for warning in whole.warnings if "other side" in warning]
-    leaning = [note for note in kept(whole) if abs(note.gamma_deg) > 1.0]
-    note = leaning[0]
-    rows = (table["ET"] >= note.begin_s) & (table["ET"] <= note.end_s)
-    table.loc[rows, "IA"] *= -1.0
-    (warning,) = [warning for warning in read(table).warnings if "other side" in warning]
-    assert warning.startswith(note.sweep)
-
-
 def test_samples_written_twice_are_left_out(read):
     table = recording(gaps=True)
     doubled = pd.concat([table.iloc[:800], table.iloc[799:800], table.iloc[800:]], ignore_index=True)

@@ -11,10 +11,9 @@ import pytest
 
 from mffit import pipeline
 from mffit.errors import InputError
-from mffit.points.stretch import StretchNote
+from mffit.points.stretch import StretchNote, stretch_table
 from mffit.recordings import Stated, project_text, sniff
 from mffit.recordings.guess import guesses
-from mffit.recordings.stretch_table import stretch_table
 from mffit.report import text
 from mffit.sweeps.raw_table import RawTable
 
