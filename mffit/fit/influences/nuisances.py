@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.constants import UPRIGHT
+from mffit.constants import UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -71,7 +71,7 @@ def _temperatures(points: Points) -> str:
     if not np.all(known):
         return f"T_degC is missing at {int(np.sum(~known))} of {len(points)} points"
     moved = float(np.ptp(points.T))
-    least = constants.LEAST_TEMPERATURE_RANGE
+    least = VISIBLE_TEMPERATURE
     return "" if moved > least else f"T_degC moves by {moved:.1f} K only, and {least:g} K are needed"
 
 
