@@ -19,6 +19,9 @@ NEGLIGIBLE = 0.01
 EXACT = 1e-9
 """Spread of a number that is exactly known."""
 
+POLISH_TOLERANCE = 1e-6
+"""Fall that a step still promises, over the sum of squares, at which a search ends."""
+
 UNDAMPED = 1e-9
 """Damping that only keeps a form positive where rounding would not."""
 
@@ -156,7 +159,7 @@ def minimum(
     numbers: Sequence[FreeNumber],
     *,
     max_steps: int = 200,
-    tolerance: float = 1e-6,
+    tolerance: float = POLISH_TOLERANCE,
 ) -> Minimum:
     """The minimum that :func:`solve` finds, without the derivatives there."""
     objective = _Objective.of(problem, numbers)
@@ -186,7 +189,7 @@ def solve(
     numbers: Sequence[FreeNumber],
     *,
     max_steps: int = 200,
-    tolerance: float = 1e-6,
+    tolerance: float = POLISH_TOLERANCE,
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
 

@@ -8,14 +8,5 @@ Progress = Callable[[str], None]
 """Called with a short sentence at the beginning of every step."""
 
 
-class Silent:
+def silent(sentence: str) -> None:
     """Progress that is not shown."""
-
-    def __call__(self, sentence: str) -> None:
-        pass
-
-    def __repr__(self) -> str:
-        return "silent"  # the default as help() shows it
-
-
-silent = Silent()

@@ -13,9 +13,8 @@ from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, TirWarning
-from tir.reading import read
 from tir.record import Quantity
-from tir.tyre import Tyre
+from tir.tyre import Tyre, read
 
 __all__ = [
     "Forces",

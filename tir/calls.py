@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -25,16 +25,18 @@ from tir.errors import TirError
 from tir.evaluate import OperatingCondition, unchecked
 from tir.record import TyreRecord
 
+if TYPE_CHECKING:
+    from tir.codegen.lag import ContactLag
+
 Function = Callable[..., Any]
 Made = TypeVar("Made")
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
-COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
 THREADS_FROM = 4 * BLOCK
 """Conditions that are worth starting threads."""
 FORCES, STATE = Forces._fields, State._fields
 OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
-"""States that :mod:`tir.transient` needs."""
+"""States that the lag of the contact needs."""
 DOUBLE = np.dtype(float)
 ONLY_DOUBLES = {DOUBLE}
 ROWS = itemgetter(*range(len(FORCES)))
@@ -50,8 +52,8 @@ def compile_kernels(
 ) -> None:
     """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
-    Without this, that happens by itself after some thousand scalar calls or some hundred thousand conditions, from the cache
-    at once and else in the background; before, arrays use numpy and scalar calls Python's floats.
+    Without this, that happens by itself after some thousand scalar calls or some hundred thousand conditions; before, arrays use
+    numpy and scalar calls Python's floats.
 
     Parameters
     ----------
@@ -72,7 +74,7 @@ def compile_kernels(
         )
     for on in (False, True) if turn_slip is None else (turn_slip,):
         for kind in kinds:
-            kernels.load(kind, Switches(on, star, limits))
+            kernels.meter(kind, Switches(on, star, limits)).load()
 
 
 def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
@@ -200,24 +202,30 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
     if bound is not None:
         return bound
     meter = kernels.meter("batch", switches)
-    loaded = meter.kernel(now=n >= COMPILE_FROM)
-    if loaded is None:
+    if meter.loaded is None:
         meter.left -= n + PER_CALL
-        loaded = meter.kernel()
-    if loaded is None:
-        return None
-    return _prepared(tyre, "batch", switches, FORCES, loaded.run_of)
+    loaded = meter.kernel()
+    return None if loaded is None else _prepared(tyre, "batch", switches, FORCES, loaded.run_of)
 
 
-def lag_of(tyre: TyreRecord, switches: Switches) -> tuple[Function, Function] | None:
-    """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
+def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
+    """The lag of the tyre's contact, cached in the tyre.
 
-    def functions(values: dict[str, float]) -> tuple[Function, Function]:
+    Raises
+    ------
+    TirError
+        If a parameter is not a real number.
+    """
+
+    def lag(values: dict[str, float]) -> ContactLag:
         from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
 
         return lag_functions(values, switches)
 
-    return _prepared(tyre, "lag", switches, (*FORCES, *OF_CONTACT), functions)
+    found = _prepared(tyre, "lag", switches, (*FORCES, *OF_CONTACT), lag)
+    if found is None:
+        raise TirError("the lag of the contact is computed for real parameters only")
+    return found
 
 
 def _prepared(

@@ -22,25 +22,18 @@ class _Judged:
     why: str  #: one or two sentences
     study: str  #: study, data set or publication that set the value; empty where none did
 
-    def _describe(self, unit: str, why: str, study: str) -> Self:
-        self.unit, self.why, self.study = unit, why, study
-        return self
+    def __new__(cls, value: float | Iterable[float], unit: str, why: str, study: str = "") -> Self:
+        found = super().__new__(cls, value)  # type: ignore[call-arg]
+        found.unit, found.why, found.study = unit, why, study
+        return found
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._plain(), self.unit, self.why, self.study)
-
-    def _plain(self) -> Any:
-        raise NotImplementedError
+        plain: type = type(self).__mro__[2]
+        return type(self), (plain(self), self.unit, self.why, self.study)
 
 
 class Real(_Judged, float):
     """A real constant; computes like any float."""
-
-    def __new__(cls, value: float, unit: str, why: str, study: str = "") -> Self:
-        return super().__new__(cls, value)._describe(unit, why, study)
-
-    def _plain(self) -> float:
-        return float(self)
 
     @property
     def rad(self) -> float:
@@ -59,18 +52,6 @@ class Real(_Judged, float):
 class Count(_Judged, int):
     """A whole constant; computes like any int."""
 
-    def __new__(cls, value: int, unit: str, why: str, study: str = "") -> Self:
-        return super().__new__(cls, value)._describe(unit, why, study)
-
-    def _plain(self) -> int:
-        return int(self)
-
 
 class Series(_Judged, tuple[float, ...]):
     """Several constants of one unit that belong together; a tuple of numbers."""
-
-    def __new__(cls, values: Iterable[float], unit: str, why: str, study: str = "") -> Self:
-        return super().__new__(cls, tuple(values))._describe(unit, why, study)
-
-    def _plain(self) -> tuple[float, ...]:
-        return tuple(self)

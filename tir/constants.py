@@ -26,12 +26,6 @@ CONDITIONS_WORTH_LOADING = Count(
 CONDITIONS_PER_CALL = Count(
     1000, "-", "Conditions that take as long as what every call in numpy takes beside them.", "docs/speed.md"
 )
-COMPILE_FROM_CONDITIONS = Count(
-    1_000_000,
-    "-",
-    "A call with this many conditions waits for the compiler, if the kernel is not in the cache.",
-    "docs/speed.md",
-)
 
 # Text of a file
 NAMES_IN_A_SENTENCE = Count(6, "-", "Most keys that a message names; it counts the others.")

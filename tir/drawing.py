@@ -70,28 +70,13 @@ def notebook(tyre: Tyre) -> str:
     said = "".join(f"<div>{html.escape(line)}</div>" for line in repr(tyre).strip("<>").splitlines())
     try:
         figure = plot(tyre, panels=PANELS[:2])
-    except TirError:
-        try:
-            return said + _table(tyre)
-        except TirError as error:  # a file that can be read, but not evaluated
-            return f"{said}<div>{html.escape(str(error))}</div>"
+    except TirError as error:  # without matplotlib, or for a file that can be read but not evaluated
+        return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
     figure.savefig(stream, format="png", facecolor="white")
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
-
-
-def _table(tyre: Tyre) -> str:
-    """Table of side forces at some angles and loads, for when no picture can be drawn."""
-    angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
-    head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
-    lines = []
-    for share in LOADS:
-        Fz = share * float(tyre["FNOMIN"])
-        found = tyre(Fz, np.radians(angles)).Fy
-        lines.append(f"<tr><th>{Fz:.0f} N</th>{''.join(f'<td>{Fy:.0f} N</td>' for Fy in found)}</tr>")
-    return f"<table><tr><th>F<sub>y</sub> at load, sideslip</th>{head}</tr>{''.join(lines)}</table>"
 
 
 def _reach(tyre: Tyre, name: str) -> tuple[float, float]:

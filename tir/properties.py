@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Mapping
 from functools import cache
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from tir.codegen.program import Switches, trace
 from tir.document import Document, FileLine
@@ -48,39 +48,16 @@ STATUS = re.compile(
 
 def described(kind: type[Kind], document: Document, lacking: Mapping[str, float | str]) -> Kind:
     """The tyre of a document, with values of keys that it lacks; raises as :func:`tir.read`."""
-    entries = document.entries
-    if not entries:
+    if not document.entries:
         raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
     problems: list[Problem] = []
-    words = units_of(document, problems)
-    values: dict[str, float | str] = {}
-    extra: dict[str, str] = {}
-    status: dict[str, str] = {}
-    for line in entries:
-        row = parameter_of(line)
-        if row is None:
-            if line.section not in HEADER:
-                extra[f"{line.section}.{line.key}"] = line.value
-            continue
-        if line.key in values:
-            problems.append(_warning(f"{line.key} appears twice; the first value is used", line))
-            continue
-        if not line.section:
-            problems.append(
-                _warning(f"{line.key} comes before the first [SECTION]; it is read all the same", line)
-            )
-        value = value_of(row, line, words, document, problems)
-        if value is None:
-            continue
-        values[line.key] = value
-        if STATUS.match(line.comment):
-            status[line.key] = line.comment
+    values, status, extra = stated_values(document, problems)
     added = add_given(values, lacking, problems)
     status |= dict.fromkeys(added, "given when the file was read")
     _refuse_other_versions(values, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
-    stated = {line.key for line in entries if parameter_of(line)} | added
+    stated = {line.key for line in document.entries if parameter_of(line)} | added
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
@@ -94,6 +71,42 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
         problems=tuple(problems),
         document=document,
     )
+
+
+class StatedValues(NamedTuple):
+    """What the lines of a document say, each by key."""
+
+    values: dict[str, Any]  #: in the units of the table
+    status: dict[str, str]  #: origin of a value
+    extra: dict[str, str]  #: text of unknown keys, as "SECTION.KEY"
+
+
+def stated_values(
+    document: Document, problems: list[Problem], known: Mapping[str, Parameter] = BY_NAME
+) -> StatedValues:
+    """The values of a document, with a problem for each that is unusual; raises TirError for one that cannot be used."""
+    words = units_of(document, problems)
+    found = StatedValues({}, {}, {})
+    for line in document.entries:
+        row = None if line.section in HEADER else known.get(line.key)
+        if row is None:
+            if line.section not in HEADER:
+                found.extra[f"{line.section}.{line.key}"] = line.value
+            continue
+        if line.key in found.values:
+            problems.append(_warning(f"{line.key} appears twice; the first value is used", line))
+            continue
+        if not line.section:
+            problems.append(
+                _warning(f"{line.key} comes before the first [SECTION]; it is read all the same", line)
+            )
+        value = value_of(row, line, words, document, problems)
+        if value is None:
+            continue
+        found.values[line.key] = value
+        if STATUS.match(line.comment):
+            found.status[line.key] = line.comment
+    return found
 
 
 def add_given(
@@ -170,7 +183,7 @@ def value_of(
         return None
     said = f'{line.key} is "{text}", but a number was expected' if number is None else ""
     said = said or f"{line.key} is {text}, which no formula can use"
-    if row.name not in _needed():
+    if row.name in BY_NAME and row.name not in _needed():
         problems.append(_warning(f"{said}; no force needs it, so its default is taken", line))
         return None
     remedy = ": give a number"

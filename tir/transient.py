@@ -14,18 +14,16 @@ length are stable.
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
-from tir.calls import OF_CONTACT, lag_of, some_of
-from tir.codegen.cpython import SCALARS
+from tir.calls import lag_of
 from tir.codegen.program import Switches
-from tir.equations import contact as equations
-from tir.equations.forces import Forces, State
+from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.tyre import Tyre
+
+if TYPE_CHECKING:
+    from tir.codegen.lag import ContactLag
 
 
 class Contact(NamedTuple):
@@ -77,7 +75,7 @@ def step(
     Raises
     ------
     TirError
-        If ``dt`` is negative or NaN.
+        If ``dt`` is negative or NaN, or a parameter is no real number.
 
     Notes
     -----
@@ -87,38 +85,9 @@ def step(
     """
     if not dt >= 0.0:
         raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
-    quick = _in_floats(tyre, contact, dt, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
-    if quick is not None:
-        return quick
-    state = _state(tyre, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
-    before = equations.Deflection(*map(np.asarray, contact))
-    load, ahead, along, across = (np.asarray(x, dtype=float) for x in (Fz, Vx, Vsx, Vsy))
-    with np.errstate(all="ignore"):
-        moved = equations.after(tyre.p, state, before, dt, load, ahead, along, across)
-    after = Contact(*map(_plain, moved))
-    slip = _slip(tyre, state, after, Vx, Vsx, Vsy, damping)
-    return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
-
-
-def _in_floats(
-    tyre: Tyre, contact: Contact, dt: float, given: tuple[Any, ...], turn_slip: bool | None, limits: bool
-) -> tuple[Contact, Forces] | None:
-    """The step by straight-line code if every input is a single number and nothing is infinite; else None."""
-    Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping = given
-    on = tyre.turns(turn_slip, phi_t)
-    phi_t = 0.0 if phi_t is None else phi_t
-    p = tyre["INFLPRES"] if p is None else p
-    inputs = (*contact, Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping)
-    if not SCALARS.issuperset(map(type, inputs)):
-        return None
-    functions = lag_of(tyre, Switches(on, False, bool(limits)))
-    if functions is None:
-        return None
-    try:
-        after = Contact(*functions[0](*map(float, inputs), float(dt)))
-        return after, Forces(*functions[1](*after, *map(float, inputs[2:]))[: len(Forces._fields)])
-    except (ArithmeticError, ValueError):
-        return None
+    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma), phi_t, p, damping, turn_slip, limits)
+    after = Contact(*lag.after(*contact, *inputs, dt))
+    return after, _forces(lag, after, inputs)
 
 
 def forces(
@@ -137,57 +106,23 @@ def forces(
     limits: bool = False,
 ) -> Forces:
     """The forces of a deflected contact; arguments as in :func:`step`."""
-    state = _state(tyre, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
-    slip = _slip(tyre, state, contact, Vx, Vsx, Vsy, damping)
-    return _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
+    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma), phi_t, p, damping, turn_slip, limits)
+    return _forces(lag, contact, inputs)
 
 
-def _state(
-    tyre: Tyre, Fz: Any, Vx: Any, gamma: Any, phi_t: Any, p: Any, turn_slip: bool | None, limits: bool
-) -> SimpleNamespace:
-    """What the contact needs of the state without slip."""
-    switches = Switches(tyre.turns(turn_slip, phi_t), False, bool(limits))
-    inputs = (
-        Fz, 0.0, gamma, 0.0, 0.0 if phi_t is None else phi_t, Vx, tyre["INFLPRES"] if p is None else p
-    )  # fmt: skip
-    return SimpleNamespace(**dict(zip(OF_CONTACT, some_of(tyre, inputs, switches, OF_CONTACT), strict=True)))
-
-
-def _slip(
-    tyre: Tyre, state: SimpleNamespace, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
-) -> tuple[Any, Any]:
-    """kappa' and alpha' [rad] of a deflected contact, damping included."""
-    deflection = equations.Deflection(*map(np.asarray, contact))
-    Vx, Vsx, Vsy = (np.asarray(x, dtype=float) for x in (Vx, Vsx, Vsy))
-    with np.errstate(all="ignore"):
-        kappa, alpha = equations.slips(tyre.p, state, deflection, Vx, Vsx, Vsy, damping)
-    return _plain(kappa), _plain(alpha)
-
-
-def _at(
+def _lag(
     tyre: Tyre,
-    slip: tuple[Any, Any],
-    Fz: Any,
-    Vx: Any,
-    gamma: Any,
+    moving: tuple[Any, ...],
     phi_t: Any,
     p: Any,
+    damping: float,
     turn_slip: bool | None,
     limits: bool,
-) -> Forces:
-    kappa, alpha = slip
-    return tyre(Fz, _plain(alpha), gamma, _plain(kappa), phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
+) -> tuple[ContactLag, tuple[Any, ...]]:
+    """The functions of the tyre's lag, and their inputs without the deflection."""
+    lag = lag_of(tyre, Switches(tyre.turns(turn_slip, phi_t), False, bool(limits)))
+    return lag, (*moving, 0.0 if phi_t is None else phi_t, tyre["INFLPRES"] if p is None else p, damping)
 
 
-def slips(state: State, contact: Contact, Vx: Any) -> tuple[Any, Any]:
-    """kappa' and alpha' [rad] of a deflected contact with the relaxation lengths of ``state``; 0 where those are 0."""
-    deflection = equations.Deflection(*map(np.asarray, contact))
-    kappa, alpha = equations.slips(
-        SimpleNamespace(VXLOW=0.0), state, deflection, np.asarray(Vx, dtype=float), 0.0, 0.0, 0.0
-    )
-    return _plain(kappa), _plain(alpha)
-
-
-def _plain(x: Any) -> Any:
-    """Scalars as floats, arrays unchanged."""
-    return x if np.ndim(x) else float(x)
+def _forces(lag: ContactLag, contact: Contact, inputs: tuple[Any, ...]) -> Forces:
+    return Forces(*lag.deflected(*contact, *inputs)[: len(Forces._fields)])

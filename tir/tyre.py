@@ -1,17 +1,20 @@
-"""The tyre as a simulation uses it: a frozen record of values that can be called."""
+"""The tyre as a simulation uses it: a frozen record of values that is read from a file and can be called."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from tir import calls
 from tir.codegen.program import Switches
+from tir.document import Document, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import counted
 from tir.parameters import TABLE
+from tir.properties import described
 from tir.record import TyreRecord
 from tir.targets import FITTYPS
 from tir.temperature import at_temperature
@@ -195,3 +198,27 @@ class Tyre(TyreRecord):
     def write(self, path: str | Path, target: str | None = None) -> None:
         """Write :meth:`text`; an existing file is replaced only when the new one is complete."""
         write(self, path, target)
+
+
+def read(path: str | Path, **lacking: float | str) -> Tyre:
+    """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
+
+    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
+    unusual with its line.
+
+    Parameters
+    ----------
+    path : the file
+    lacking : values [SI] of keys that the file lacks, such as ``UNLOADED_RADIUS=0.3``; a key of the file keeps its value
+
+    Raises
+    ------
+    TirError
+        If the file is not a property file, is truncated, contains an unreadable number, or has another MF version.
+    """
+    return interpret(read_document(path), lacking)
+
+
+def interpret(document: Document, lacking: Mapping[str, float | str] = MappingProxyType({})) -> Tyre:
+    """The tyre that a document describes, with values of keys that it lacks; raises as :func:`read`."""
+    return described(Tyre, document, lacking)

@@ -35,7 +35,7 @@ def _overview(view: BuildView, over: str) -> Panel:
         for c in view.curves
         if (c.over, c.load, c.held, c.pressure) == (over, load, 0.0, 250.0) and c.forward and len(c.index) > 8
     )
-    x, line = curve.varied(view.points), view.lines[curve.key]
+    x, line = curve.varied(view.points), view.lines[curve]
     rows = curve.index
     data = (
         (x, channel.measured[rows]),

@@ -8,37 +8,25 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import click
 
-from mffit.cli import (
-    building,
-    comparing,
-    diagnosing,
-    exporting,
-    files,
-    measuring,
-    opening,
-    planning,
-    predicting,
-    projects,
-    rigs,
-)
+from mffit.cli import building, exporting, files, projects, questions
 from mffit.cli.console import PipeTolerant
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 COMMANDS = (
     building.build,
     building.fleet,
-    measuring.spin,
-    measuring.align,
-    diagnosing.diagnose,
-    comparing.compare,
-    planning.plan,
-    predicting.predict,
+    questions.spin,
+    questions.align,
+    questions.diagnose,
+    questions.compare,
+    questions.plan,
+    questions.predict,
     files.check,
     files.show,
-    opening.open_window,
+    files.open_window,
     files.convert,
     exporting.export,
-    rigs.simulate,
+    projects.simulate,
     projects.sniff,
     projects.init,
 )

@@ -9,6 +9,7 @@ import click
 
 from mffit.cli.console import Voice, voiced
 from mffit.cli.options import PATH, out_option, strict
+from mffit.errors import InputError
 
 if TYPE_CHECKING:
     from mffit.results import BuildOutcome
@@ -176,7 +177,6 @@ def _build_many(
 def _compare_built(finished: list[BuildOutcome], out: Path, voice: Voice) -> None:
     """Compare the tyres that were built completely."""
     from mffit import pipeline
-    from mffit.errors import InputError
 
     whole = [outcome.out for outcome in finished if outcome.out is not None and outcome.whole]
     if len(whole) < FEWEST_TYRES_TO_COMPARE:

@@ -153,8 +153,8 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     from tir.document import parse_document
     from tir.errors import counted, some
     from tir.parameters import TABLE
-    from tir.reading import interpret
     from tir.targets import TARGETS
+    from tir.tyre import interpret
 
     names = list(filter(None, (name.strip() for name in targets.split(","))))
     if not names:

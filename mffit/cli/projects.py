@@ -1,4 +1,4 @@
-"""`mffit sniff` and `mffit init`: content of recordings, and a project to start from."""
+"""`mffit sniff`, `init` and `simulate`: content of recordings, a project to start from, and sweeps of a virtual rig."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import click
 
 from mffit.cli.console import Voice, voiced
 from mffit.cli.options import PATH, out_option, path_centre, unloaded_radius
+from mffit.errors import InputError
 
 if TYPE_CHECKING:
     from mffit.recordings import DiscPath
@@ -72,7 +73,6 @@ def init(
     **tyre: float | None,
 ) -> None:
     """Write a commented tyre.toml and empty CSV templates, with --from a project for recordings, or a sample."""
-    from mffit.errors import InputError
     from mffit.init_project import copy_sample, init_project
 
     *files, folder = paths
@@ -105,7 +105,6 @@ def init(
 
 def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
     """The path of a disc from the options; None without one."""
-    from mffit.errors import InputError
     from mffit.recordings import DiscPath
 
     if not disc and radius is None and centre is None:
@@ -117,3 +116,24 @@ def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> D
     if not radius > 0.0:
         raise InputError(f"{radius:g} m is no radius; correct it", key="--path-radius")
     return DiscPath(radius, centre)
+
+
+@click.command()
+@click.argument("rig_toml", type=PATH)
+@out_option("Folder to write to.", required=True)
+@click.option(
+    "--seed", type=int, default=None, help="Seed of noise and drawn rig errors [default: that of the file]."
+)
+@voiced
+def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
+    """Simulate the sweeps of a virtual rig.
+
+    Writes sweeps and a tyre.toml that `mffit build` reads, and the true values in truth.json.
+    """
+    from mffit import virtual_rig
+
+    with voice.progress() as show:
+        show("simulating")
+        truth = virtual_rig.simulate(rig_toml, out, seed=seed)
+    voice.written(out, "sweeps", "tyre.toml", "truth.json")
+    voice.give(truth.to_json)

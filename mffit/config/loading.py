@@ -15,6 +15,9 @@ from mffit.errors import InputError
 RIG_TOML_TABLES = frozenset({"truth", "faults", "noise", "conditions"})
 """Tables that only ``rig.toml`` has."""
 
+STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
+"""Placeholder for a tyre that is not known yet; no result of reading depends on it."""
+
 TYRE_TOML = TomlKind(
     name="tyre.toml",
     tables=Config.model_fields.keys(),

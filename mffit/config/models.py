@@ -254,12 +254,6 @@ class SisterTable(Table):
     u_stiffness: q.Fraction = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
 
 
-class CampaignTable(Table):
-    """[[campaign]]: another project of the same tyre, which gives what this one does not measure."""
-
-    toml: str  #: its tyre.toml
-
-
 class NormalTable(Table):
     """[normal]: the file for turn slip off."""
 
@@ -330,7 +324,6 @@ class Config(Brief, Table):
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
     sister: SisterTable | None = None
-    campaign: Annotated[tuple[CampaignTable, ...], BeforeValidator(list_of_tables)] = ()
     coefficients: Annotated[Entries, BeforeValidator(named)] = Field(default_factory=dict)
     fit: FitTable = FitTable()
     normal: NormalTable = NormalTable()
@@ -422,16 +415,11 @@ class Config(Brief, Table):
         return self
 
     @model_validator(mode="after")
-    def _sister_is_the_base_and_alone(self) -> Config:
+    def _sister_is_the_base(self) -> Config:
         if self.sister is not None and self.tyre.base is None:
             raise q.wrong(
                 "scales the longitudinal force of a sister tyre, but [tyre] names no base file; name the sister's file there, "
                 "or remove [sister]",
-                "sister.Fx",
-            )
-        if self.sister is not None and self.campaign:
-            raise q.wrong(
-                "is given together with [[campaign]], and Fx can come from one of them only; remove one",
                 "sister.Fx",
             )
         return self

@@ -31,9 +31,6 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
     for key in ("base", "priors"):
         if key in content["tyre"]:
             content["tyre"][key] = _moved(content["tyre"][key], config.folder, Path(folder))
-    content["campaign"] = [
-        {**row, "toml": _moved(row["toml"], config.folder, Path(folder))} for row in content["campaign"]
-    ]
     for entry in content["fit"]["exclude"]:
         entry["file"] = _moved(entry["file"], config.folder, Path(folder))
     content["fit"], content["lab"] = _filled(content["fit"]), _filled(content["lab"])

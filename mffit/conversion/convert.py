@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from mffit.conversion import constants, mf52, wording
-from mffit.conversion.curvature_limits import held
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
 from mffit.conversion.old_files import OldFile, read_old
-from mffit.conversion.refit import refit
+from mffit.conversion.refit import held, refit
 from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.errors import InputError
 from tir import Tyre

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from tir import Problem, TirError
-from tir.document import Document, FileLine, read_document
+from tir.document import Document, read_document
+from tir.errors import some
 from tir.parameters import BY_NAME
 from tir.properties import (
     CAR_FITTYPS,
@@ -20,23 +21,20 @@ from tir.properties import (
     add_given,
     number_of,
     of_motorcycles,
-    parameter_of,
-    units_of,
+    stated_values,
     unquoted,
-    value_of,
 )
-from tir.units import factor
 
-OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
-    {
-        "PHY3": (0.0, "-"),
-        **dict.fromkeys(("PTX1", "PTX2", "PTX3", "PTY1", "PTY2"), (0.0, "-")),
-        **dict.fromkeys(("LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG"), (1.0, "-")),
-        **dict.fromkeys(("QPZ1", "QPZ2"), (0.0, "-")),
-        **dict.fromkeys(("IP", "IP_NOM"), (math.nan, "Pa")),
-    }
-)
-"""Keys that only old files have and that the forces need: value of a missing key, and unit."""
+OWN = {
+    name: replace(BY_NAME["PHY1"], name=name, section="", default=default, unit=unit)
+    for names, default, unit in (
+        (("PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QPZ1", "QPZ2"), 0.0, "-"),
+        (("LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG"), 1.0, "-"),
+        (("IP", "IP_NOM"), math.nan, "Pa"),
+    )
+    for name in names
+}
+"""Parameters that only old files have and that the forces need."""
 VERSION = ("FITTYP", "PROPERTY_FILE_FORMAT")
 NEEDED = ("FNOMIN", "UNLOADED_RADIUS")
 OF_62 = {"PKY4": 2.0, "QSY7": 1.0, "QSY8": 0.0}
@@ -83,21 +81,9 @@ def read_old(
     document = read_document(path)
     kind = _kind(document, fittyp)
     problems: list[Problem] = []
-    words = units_of(document, problems)
-    values: dict[str, Any] = {}
-    unused: list[str] = []
-    for line in document.entries:
-        if line.section in ("UNITS", "MDI_HEADER") or line.key in VERSION or line.key in values:
-            continue
-        row = parameter_of(line)
-        if row is not None:
-            value = value_of(row, line, words, document, problems)
-            if value is not None:
-                values[line.key] = value
-        elif line.key in OWN:
-            values[line.key] = _own_number(line, document) * factor(OWN[line.key][1], words)
-        else:
-            unused.append(line.key)
+    values, _, unused = stated_values(document, problems, BY_NAME | OWN)
+    for key in VERSION:
+        values.pop(key, None)
     add_given(values, given, problems)
     missing = [name for name in NEEDED if name not in values]
     if missing:
@@ -107,25 +93,11 @@ def read_old(
             name=missing[0],
         )
     if unused:
-        shown = ", ".join(unused[:6]) + (f" and {len(unused) - 6} more" if len(unused) > 6 else "")
-        problems.append(Problem("warning", f"keys that are not used: {shown}"))
+        keys = [key.partition(".")[2] for key in unused]
+        problems.append(Problem("warning", f"keys that are not used: {some(keys)}"))
     present = frozenset(values)
-    defaults = {row.name: _default(row.name) for row in BY_NAME.values()}
-    own = {name: value for name, (value, _) in OWN.items()}
-    return OldFile(kind, MappingProxyType({**defaults, **own, **values}), present, tuple(problems), document)
-
-
-def _own_number(line: FileLine, document: Document) -> float:
-    """The number of a key that only old files have."""
-    number = number_of(unquoted(line.value))
-    if number is None or not math.isfinite(number):
-        raise TirError(
-            f'{line.key} is "{unquoted(line.value)}", but a number was expected: give a number',
-            path=document.path,
-            line=line.number,
-            name=line.key,
-        )
-    return number
+    defaults = {name: _default(name) for name in BY_NAME} | {name: row.default for name, row in OWN.items()}
+    return OldFile(kind, MappingProxyType({**defaults, **values}), present, tuple(problems), document)
 
 
 def _default(name: str) -> Any:

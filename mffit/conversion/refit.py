@@ -1,8 +1,8 @@
-"""Least squares of the new file's forces to the old ones."""
+"""Least squares of the new file's forces to the old ones, with curvature factors held to 1, as MF 5.2 holds them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -10,12 +10,82 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.conversion import constants
-from mffit.conversion.curvature_limits import CurvatureFactor, exceeding, excess
-from mffit.conversion.grid import Conditions, Reach
+from mffit.conversion.grid import Conditions, Reach, cambers, loads
 from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
-from tir.derivatives import traced
+from tir.derivatives import Traced, gradient, plain, traced
+from tir.equations import aligning, lateral, longitudinal, normalise
 from tir.outputs import outputs_of
+
+SIDES = (-1.0, 1.0)
+
+
+class CurvatureFactor(NamedTuple):
+    """A curvature factor E of one curve."""
+
+    channel: str  #: the force or moment that it bends
+    names: tuple[str, ...]  #: its coefficients without those of camber
+    at_loads: Callable[
+        [SimpleNamespace, normalise.Inputs, float], list[Any]
+    ]  #: E before limits, to the largest sideslip
+
+
+FACTORS = (
+    CurvatureFactor(
+        "Fx",
+        ("PEX1", "PEX2", "PEX3", "PEX4"),
+        lambda p, q, _: [longitudinal.curvature(p, q, side) for side in SIDES],
+    ),
+    CurvatureFactor("Fx", ("REX1", "REX2"), lambda p, q, _: [longitudinal.weight_factors(p, q).E]),
+    CurvatureFactor(
+        "Fy",
+        ("PEY1", "PEY2", "PEY3"),
+        lambda p, q, _: [lateral.curvature(p, q, q.gamma, side) for side in SIDES],
+    ),
+    CurvatureFactor("Fy", ("REY1", "REY2"), lambda p, q, _: [lateral.weight_factors(p, q).E]),
+    CurvatureFactor(
+        "Mz",
+        ("QEZ1", "QEZ2", "QEZ3", "QEZ4"),
+        lambda p, q, alpha: [
+            aligning.curvature(p, q, aligning.slope_factor(p, q), side * alpha) for side in SIDES
+        ],
+    ),
+)
+
+
+def excess(
+    p: SimpleNamespace,
+    factors: Sequence[CurvatureFactor],
+    reach: Reach,
+    by: Sequence[Traced] = (),
+    camber: np.ndarray | float = 0.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """E - 1 (k,) of the factors over load, side and cambers, above 0 where they exceed the limit, and its derivatives (k, m).
+
+    ``p`` has the coefficients as attributes, plain or traced; ``by`` are the m traced ones.
+    """
+    Fz, gamma = (axis.ravel() for axis in np.meshgrid(loads(reach), camber))
+    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, p.INFLPRES, False, False)
+    rows = [row - 1.0 for factor in factors for row in factor.at_loads(p, q, reach.alpha)]
+    value = np.concatenate([np.broadcast_to(plain(row), Fz.shape) for row in rows])
+    if not by:
+        return value, np.zeros((value.size, 0))
+    return value, np.concatenate([np.broadcast_to(gradient(row, by), (Fz.size, len(by))) for row in rows])
+
+
+def exceeding(p: SimpleNamespace, reach: Reach) -> list[CurvatureFactor]:
+    """The curvature factors of the upright wheel that exceed 1 somewhere in the range."""
+    return [factor for factor in FACTORS if np.max(excess(p, [factor], reach)[0]) > 0.0]
+
+
+def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
+    """The curvature factors that exceed 1 somewhere in the range, with camber or without: largest E, by key without number."""
+    largest = {
+        factor.names[0][:-1]: 1.0 + float(np.max(excess(p, [factor], reach, camber=cambers(reach))[0]))
+        for factor in FACTORS
+    }
+    return {key: E for key, E in largest.items() if E > 1.0}
+
 
 FREE: Mapping[str, Sequence[str]] = {
     "Fx": (),

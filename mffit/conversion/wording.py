@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from mffit.conversion import constants
-from mffit.conversion.curvature_limits import FACTORS
+from mffit.conversion.refit import FACTORS
 from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.quantities import MODEL
 

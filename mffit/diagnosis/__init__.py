@@ -2,7 +2,7 @@
 
 The modules in the order of the method (:mod:`engine` is the sequence):
 
-1. ``strangers``, ``campaigns``, ``conditions``: points and model belong together, each campaign has a rig and a surface;
+1. ``strangers``, ``conditions``: points and model belong together;
    sweeps are cut at their conditions.
 2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.

@@ -44,7 +44,7 @@ def answer(
     repair: Repair,
     given: DiagnosisProblem,
     tyre: Tyre,
-    rigs: Mapping[str, Config],
+    config: Config,
     notes: Sequence[DiagnosisNote],
     candidates: Sequence[Effect],
     alternatives: Mapping[str, float],
@@ -53,10 +53,9 @@ def answer(
     """The record of an explanation; ``gap_before`` is that of all readings as they are.
 
     ``found`` is what left-out sweeps confirm, with the ``named`` effects and the confidence of the ``alternatives`` by id;
-    ``given`` is the problem before it, ``rigs`` are the configurations of the campaigns, that of the tyre first.
+    ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
-    config = next(iter(rigs.values()))
     before = given.predict(given.start)
     explained = given.predict(found.refined.state) if chosen.effects or found.coefficients else before
     done = repair.explanation
@@ -89,7 +88,6 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
-        signs_elsewhere={name: axis_signs(other) for name, other in rigs.items()} if len(rigs) > 1 else {},
         tyre=tyre if repair.keeps_file else corrected,
         with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),

@@ -9,7 +9,6 @@ import numpy as np
 
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer, named_effects, not_accepted
-from mffit.diagnosis.campaigns import grips_of_surfaces, looked_at_together, on_surfaces, rigs_apart
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
@@ -35,8 +34,7 @@ from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import NO_FAULTS
-from mffit.suspicion import Misread, misread
+from mffit.suspicion import misread
 from tir import Tyre
 
 
@@ -46,7 +44,6 @@ def diagnose(
     config: Config,
     *,
     rig: Mapping[str, float] | None = None,
-    others: Mapping[str, Config] | None = None,
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
@@ -64,7 +61,6 @@ def diagnose(
     tyre : the model of the simulation
     config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
     rig : known rig errors, of the rig or of a set-up; default the declared play alone
-    others : configurations of other campaigns of the tyre by the name that they have in ``points``, in that order
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
@@ -84,27 +80,24 @@ def diagnose(
         Points and model cannot belong together, or there are too few points.
     """
     progress("comparing simulation and measurement")
-    rigs = dict(zip(points.campaigns, (config, *(others or {}).values()), strict=True))
-    start = _simulation(points, tyre, config, rigs, rig)
+    start = _simulation(points, tyre, config, rig)
     channels = channels_of(points)
     refuse_strangers(points, tyre, start, channels)
     given_points, given_start, every = points, start, points if as_read is None else as_read
-    start = on_surfaces(points, start, channels, rigs, seen=seen)
-    kept, wrong = np.ones(len(points), dtype=bool), None
-    if culprits:
-        kept, wrong = _without_misread(points, start, rigs, channels)
+    wrong = misread(points, start, axis_signs(config), channels) if culprits else None
+    kept = np.ones(len(points), dtype=bool)
+    if wrong is not None:
+        kept = np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep]
     points = points.select(kept)
     points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
     progress("trying every effect")
-    declared = declared_priors(rigs, points, start, channels) | grips_of_surfaces(points, start)
+    declared = declared_priors(config, points, start, channels)
     zeros = [name for name in zeros_of_setups(points, channels) if name in declared]
-    zeros += grips_of_surfaces(points, start)
     inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
     noise = stated_noise(points, origin, channels)
     found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
-    estimated = found.coefficients
     found, stranger = named_of_this_tyre(found)
     if wrong is not None and stranger is not None:
         return diagnose(
@@ -112,7 +105,6 @@ def diagnose(
             tyre,
             config,
             rig=rig,
-            others=others,
             effects=effects,
             coefficients=coefficients,
             seen=seen,
@@ -124,16 +116,13 @@ def diagnose(
         )
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.independent)
-    seen = seen and len(points.campaigns) < 2  # joined campaigns were not fitted together
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     exact = without_noise(found.scatter)
     named = named_effects(found, given)
     rivals = not_accepted(found.steps, found.chosen)
     done = repair(found, named, given, inexact, validation, rivals, seen=seen, every=repair_all)
     memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
-    together = looked_at_together(points, {**estimated, **done.explanation.coefficients}, start)
     remarks = (
-        together,
         *(TakenOff(sentence) for sentence in taken_off),
         wrong,
         exact,
@@ -146,15 +135,12 @@ def diagnose(
     )
     notes = [note for note in remarks if note is not None]
     before = raw_gap(every, given_start, kept, found.scatter)
-    return answer(found, named, done, given, tyre, rigs, notes, candidates, rivals, before)
+    return answer(found, named, done, given, tyre, config, notes, candidates, rivals, before)
 
 
-def _simulation(
-    points: Points, tyre: Tyre, config: Config, rigs: Mapping[str, Config], rig: Mapping[str, float] | None
-) -> Simulation:
-    """The model as every rig ran it, at the mean temperature of the points; known errors are of the first rig."""
-    several = len(rigs) > 1
-    given = NO_FAULTS if several else declared_faults(config.rig)
+def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
+    """The model as the rig ran it, at the mean temperature of the points."""
+    given = declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):
         given = given.replace(T_ref_degC=float(np.nanmean(points.T)))
     return Simulation(
@@ -162,19 +148,8 @@ def _simulation(
         faults=given,
         turn_slip=config.model.turn_slip and bool(np.any(points.phi_t)),
         star=config.model.star,
-        radius_m=math.nan if several else config.rig.radius or math.nan,
-    ).with_numbers(rigs_apart(rigs, rig or {}) if several else rig or {})
-
-
-def _without_misread(
-    points: Points, start: Simulation, rigs: Mapping[str, Config], channels: Sequence[str]
-) -> tuple[np.ndarray, Misread | None]:
-    """Mask (n,) of the points without the sweep that was written down wrongly, and that sweep."""
-    for k, config in enumerate(rigs.values()):
-        wrong = misread(points.select(points.campaign == k), start, axis_signs(config), channels)
-        if wrong is not None:
-            return np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep], wrong
-    return np.ones(len(points), dtype=bool), None
+        radius_m=config.rig.radius or math.nan,
+    ).with_numbers(rig or {})
 
 
 def _candidates(

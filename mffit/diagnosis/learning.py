@@ -49,7 +49,7 @@ def learned_noise(
     named = _with_bumps(problem, residual, named, basis)
     explained = ExplainingColumns(named=named, runs=runs, smooth=basis, withdrawn=without_offsets)
     start = replace(stated, scatter=before.scatter)
-    return learned(start, residual, explained, predicted, points.campaign).alone()
+    return learned(start, residual, explained, predicted).alone()
 
 
 def _with_bumps(

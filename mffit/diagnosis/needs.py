@@ -100,33 +100,7 @@ def _in_range(effect: Effect, points: Points) -> Effect:
 def possible(
     effects: Sequence[Effect], points: Points, start: Simulation
 ) -> tuple[list[Effect], list[NotVisible]]:
-    """Effects that the data can show, and notes on the others; none on effects of a channel that was not measured.
-
-    Of several campaigns each has its own effects of rig and environment, and the tyre and its temperature are common to all.
-    """
-    if len(points.campaigns) < 2:
-        return _possible(effects, points, start)
-    common = [effect for effect in effects if effect.kind == "tyre" or "temperatures" in effect.needs]
-    out, hidden = _possible(common, points, start)
-    of_rigs = [effect for effect in effects if effect not in common]
-    lacking: dict[str, list[tuple[tuple[str, ...], Effect]]] = {}
-    for name in points.campaigns:
-        own = points.of_campaign(name)
-        found, notes = _possible(of_rigs, own, start.of_campaign(name, points))
-        out += [effect.of_campaign(name) for effect in found]
-        for note in notes:
-            for effect in note.effects:
-                lacking.setdefault(effect.id, []).append((note.needs, effect))
-    everywhere: dict[tuple[str, ...], list[Effect]] = {}
-    for rows in lacking.values():
-        if len(rows) == len(points.campaigns):
-            everywhere.setdefault(rows[0][0], []).append(rows[0][1])
-    return out, [*hidden, *(NotVisible(needs, tuple(lost)) for needs, lost in everywhere.items())]
-
-
-def _possible(
-    effects: Sequence[Effect], points: Points, start: Simulation
-) -> tuple[list[Effect], list[NotVisible]]:
+    """Effects that the data can show, and notes on the others; none on effects of a channel that was not measured."""
     out: list[Effect] = []
     lacking: dict[tuple[str, ...], list[Effect]] = {}
     files = sorted({points.files[k] for k in np.unique(points.file)})

@@ -54,24 +54,6 @@ class OneSweep:
 
 
 @dataclass(frozen=True, slots=True)
-class CampaignsTogether:
-    """Several campaigns of one tyre were looked at together."""
-
-    counts: tuple[tuple[str, int], ...]  #: name of the campaign, number of its points
-    grips: tuple[tuple[str, float, float], ...]
-    """Name of the campaign, grip of its surface over that of the first, standard error."""
-
-    @property
-    def sentence(self) -> str:
-        looked = " and ".join(f"{number} points of {name}" for name, number in self.counts)
-        ratios = "".join(
-            f" The grip of the surface of {name} is {_with_u(value, u)} times that of {self.counts[0][0]}."
-            for name, value, u in self.grips
-        )
-        return f"Looked at together: {looked}; effects of rig and environment say which campaign they are of.{ratios}"
-
-
-@dataclass(frozen=True, slots=True)
 class AnotherTyre:
     """The model states other dimensions or nominal conditions than the configuration."""
 

@@ -14,7 +14,7 @@ from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
-from mffit.rig_errors import BY_NAME, OF_RUN, ZEROS, number_of
+from mffit.rig_errors import BY_NAME, ZEROS, number_of
 from tir.parameters import BY_NAME as COEFFICIENTS
 
 SWITCH = "turn_slip"
@@ -85,37 +85,20 @@ def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, t
 
 
 def declared_priors(
-    rigs: Mapping[str, Config], points: Points, start: Simulation, channels: Collection[str] = SIDEWAYS
+    config: Config, points: Points, start: Simulation, channels: Collection[str] = SIDEWAYS
 ) -> dict[str, tuple[float, float]]:
-    """Declared rig errors that show in some channels: name -> (value in the simulation, standard uncertainty).
-
-    ``rigs`` has the configuration of every campaign of the points, by its name there.
-    """
-    if len(rigs) < 2:
-        return _declared_of(next(iter(rigs.values())), points, start, channels, len(points.used_setups) > 1)
-    found: dict[str, tuple[float, float]] = {}
-    for name, config in rigs.items():
-        own = points.of_campaign(name)
-        read = [channel for channel in channels if channel in own.measured]
-        known = _declared_of(config, own, start.of_campaign(name, points), read, several=True)
-        found |= {n if OF_RUN in n else number_of(n, name): prior for n, prior in known.items()}
-    return found
-
-
-def _declared_of(
-    config: Config, points: Points, start: Simulation, channels: Collection[str], several: bool
-) -> dict[str, tuple[float, float]]:
-    """The same of one campaign; ``several``: there are several set-ups, in this campaign or in others."""
+    """Declared rig errors that show in some channels: name -> (value in the simulation, standard uncertainty)."""
     declared = declared_rig(config.rig, _cornering_stiffness(points, start))
     if not np.any(points.phi_t):
         declared.pop("path_radius_m", None)
     setups = points.used_setups
+    several = len(setups) > 1
     spreads = {error.name: error.spread for error in ZEROS if several and error.declared is None}
     spreads |= {name: u for name, (_, u) in declared.items()}
     spreads = {name: u for name, u in spreads.items() if BY_NAME[name].shows_in(channels)}
     out = {}
     for name, u in spreads.items():
-        for part in setups if len(setups) > 1 and BY_NAME[name].of_setup else ("",):
+        for part in setups if several and BY_NAME[name].of_setup else ("",):
             number = number_of(name, part)
             out[number] = (start.number(number, points), u)
     return out

@@ -86,9 +86,6 @@ class Diagnosis(Brief):
     given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
     signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
-    signs_elsewhere: Mapping[
-        str, Mapping[str, float]
-    ]  #: the same of the rigs of several campaigns, by campaign
     tyre: Tyre  #: the corrected property file, or the given one if that is better alone
     notes: tuple[DiagnosisNote, ...]
     model_after: str  #: file name of the corrected model in the output folder
@@ -114,10 +111,6 @@ class Diagnosis(Brief):
         """Of the given model at the points that were examined, without what was taken off them."""
         measured = np.concatenate([self.points.channel(name) for name in self.noise.channels])
         return gap(measured - self.before, self.noise)
-
-    def signs_of(self, effect: Effect) -> Mapping[str, float]:
-        """Signs of the axes of the rig that an effect is about."""
-        return self.signs_elsewhere.get(effect.campaign, self.signs)
 
     @property
     def repaired(self) -> tuple[AcceptedEffect, ...]:

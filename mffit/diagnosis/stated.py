@@ -26,19 +26,12 @@ def with_uncertainties(
     Missing uncertainties are estimated from the scatter of measured minus simulated between neighbouring points of each sweep.
     If all stated uncertainties are zero, an InputError asks for real ones.
     """
-    found = {name: points.u(name).copy() for name in channels}
-    origins = set()
-    for k in np.unique(points.campaign):  # another rig has another scatter
-        rows = points.campaign == k
-        own = points.select(rows)
-        for name, simulated in state.readings(own, channels).items():
-            found[name][rows], origin = _of_channel(
-                own, own.channel(name), own.u(name), simulated, u_column(name)
-            )
-            if name == "Fy" and origin is not None:
-                origins.add(origin)
-    origin = Origin.SCATTER if Origin.SCATTER in origins else next(iter(origins), None)
-    return points.replace(**{f"u_{name}": u for name, u in found.items()}), origin
+    found, origins = {}, {}
+    for name, simulated in state.readings(points, channels).items():
+        found[name], origins[name] = _of_channel(
+            points, points.channel(name), points.u(name), simulated, u_column(name)
+        )
+    return points.replace(**{f"u_{name}": u for name, u in found.items()}), origins.get("Fy")
 
 
 def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:

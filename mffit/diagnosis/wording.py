@@ -16,7 +16,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Validation
 from mffit.effects import Effect
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.rig_errors import OF_RUN, error_of, number_of, shown, unit_of, words_of
+from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir.errors import listed
@@ -222,7 +222,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     if not effect.remedy:
         return (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
-    if not several or several == [number_of(name.partition(OF_RUN)[0], effect.campaign) for name in several]:
+    if not several:
         return _remedy_with(found, effect.free[0].name, signs)
     significant = [name for name in several if _is_significant(found, name)]
     return "; ".join(

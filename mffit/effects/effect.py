@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mffit.rig_errors import OF_RUN, number_of
+from mffit.rig_errors import number_of
 from tir.parameters import BY_NAME
 
 
@@ -59,7 +59,6 @@ class Effect:
     axes: tuple[str, ...] = ()  #: channels in whose axes that number counts
     prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
     runs_written_out: bool = False  #: its numbers are those of single runs
-    campaign: str = ""  #: whose rig it is about, if several campaigns are looked at together
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -85,13 +84,6 @@ class Effect:
             for name in (setups if f.per_setup else ("",))
         ]
         return replace(self, free=tuple(free))
-
-    def of_campaign(self, name: str) -> Effect:
-        """The same on the rig of one of several campaigns."""
-        free = [f if OF_RUN in f.name else replace(f, name=number_of(f.name, name)) for f in self.free]
-        return replace(
-            self, id=number_of(self.id, name), name=f"{self.name}, {name}", free=tuple(free), campaign=name
-        )
 
     def of_parts(self, files: Sequence[str]) -> Effect:
         """The same with what differs from run to run written out for these files."""

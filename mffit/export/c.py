@@ -1,12 +1,14 @@
-"""A property file as C99 source."""
+"""A property file as C99 source, with names made from that of the file."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import tir
-from mffit.export.names import c_of, identifier, other_mode
+from mffit.errors import InputError
 from mffit.output import output_folder
+from tir.codegen.c99 import taken
 
 
 def write_c(
@@ -53,3 +55,29 @@ def write_c(
         (folder / f"{name}.h").write_text(code.header, encoding="ascii", newline="\n")
         (folder / f"{name}.c").write_text(code.source, encoding="ascii", newline="\n")
     return [out / f"{name}.h", out / f"{name}.c"]
+
+
+def identifier(path: Path, given: str | None = None, mode: str = "") -> str:
+    """The prefix of the functions: the given name, or else the file's name with underscores for other characters.
+
+    It gets ``tyre_`` in front if it does not begin with a letter or is a word of C, and ``mode`` behind it.
+    """
+    if given is not None:
+        return given
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
+    return name if re.match(r"[A-Za-z]", name) and not taken(name) else f"tyre_{name}"
+
+
+def other_mode(tyre: tir.Tyre, turn_slip: bool) -> str:
+    """What a name gets behind it if turn slip is not as the file's USE_MODE says; else nothing."""
+    if turn_slip == tyre.turn_slip:
+        return ""
+    return "_turn_slip" if turn_slip else "_normal"
+
+
+def c_of(tyre: tir.Tyre, path: Path, name: str, **switches: bool) -> tir.codegen.c99.Code:
+    """The tyre as C code; raises InputError with the file if C does not allow a name or a value."""
+    try:
+        return tir.export_c(tyre, name=name, **switches)
+    except tir.TirError as error:
+        raise InputError(error.sentence, file=path) from error

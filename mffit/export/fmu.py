@@ -15,7 +15,7 @@ import mffit
 import tir
 from mffit.errors import InputError
 from mffit.export import compiler, variables
-from mffit.export.names import c_of, identifier, other_mode
+from mffit.export.c import c_of, identifier, other_mode
 from mffit.output import output_folder
 from mffit.templates import environment
 from tir.mode import words

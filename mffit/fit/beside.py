@@ -1,4 +1,4 @@
-"""Coefficients that come from elsewhere than the points: radii, rolling resistance, relaxation, other tyres and campaigns."""
+"""Coefficients that come from elsewhere than the points: radii, rolling resistance, relaxation, a sister tyre."""
 
 from __future__ import annotations
 

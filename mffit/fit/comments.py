@@ -18,7 +18,6 @@ DERIVED = {
 }
 TIED = "tied to its expected value"
 HELD = "held by hand"
-JOINED = "from another campaign"
 BORROWED = "from sister, scaled"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
@@ -26,7 +25,6 @@ WORDS = {
     "base": "from base",
     CONVERTED: "from base, converted",
     "sister": BORROWED,
-    "campaign": JOINED,
     "fleet": "as tyres of its fleet have it",
     "default": "default, not measured",
     "estimate": "estimate, not measured",
@@ -45,7 +43,7 @@ def file_comments(
     comments |= {
         name: f"{WORDS[c.status]} +- {c.stderr:.2g}"
         for name, c in coefficients.items()
-        if c.status in ("sister", "campaign") and c.stderr
+        if c.status == "sister" and c.stderr
     }
     comments |= {
         name: f"{comments[name]}, {c.by_hand}"

@@ -53,11 +53,6 @@ SISTER_SLIP = Real(
     "Slip up to which the limits of Fx are checked for a drawn sister tyre: about the slip of the peak.",
 )
 
-# Other campaigns of the same tyre
-UNKNOWN_RATIO_OF_GRIPS = Real(
-    0.1, "-", "Relative uncertainty of the ratio of two surfaces' grips where nothing was run on both."
-)
-
 # Radii
 LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
@@ -113,16 +108,9 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 # Passes of the fit
 POINTS_OF_A_STAGE = Count(600, "-", "Most points of a first pass; the polish uses all.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
-RESTART_MISFIT = Real(1.3, "-", "Misfit over stated noise above which alternative starting values are tried.")
 STAGE_TOLERANCE = Real(1e-3, "-", "Relative gain that ends an early pass of a search.")
-POLISH_TOLERANCE = Real(1e-6, "-", "Relative gain that ends the joint polish.")
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
-REFIT_STEPS_UNDER_SLIP = Count(
-    60,
-    "-",
-    "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape.",
-)
 
 # Bands
 WIDER_BANDS = Real(
@@ -195,43 +183,14 @@ SPIN_CORRECTION_OF_MODEL = Real(
 NUISANCE_SPREAD = Real(
     10.0, "-", "Prior of such a number over its usual size: keeps it finite and does not pull."
 )
-OVERLAPPING_SWEEPS = Count(
-    2, "-", "Fewest sweeps through the same angles both up and down that show a sense."
-)
-OVERLAP_OF_SENSES = Real(0.5, "-", "Share of a sweep's range of sideslip that both senses cover.")
 LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the angle moving in either sense.")
-USUAL_RUN_SCATTER = Real(
-    0.02, "-", "Scatter of grip and stiffness among runs, from which the search for it starts."
-)
-LEAST_RUN_SCATTER = Real(1e-4, "-", "Smallest scatter of grip and stiffness among runs: less does not show.")
-RUN_SCATTER_STEPS = Count(25, "-", "Most steps of the search for this scatter.")
-RUN_SCATTER_TOLERANCE = Real(0.01, "-", "Relative change of the scatter that ends this search.")
-FEWEST_RUNS = Count(3, "-", "Fewest runs whose grip and stiffness can differ from one another.")
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
-NAMED_COEFFICIENTS = Count(
-    4, "-", "Most coefficients or sideslips that a sentence names; of more sideslips it gives the ends."
-)
-RUNS_ALONG = Real(
-    0.5,
-    "-",
-    "Correlation of temperature and a setting of the plan above which both run along with each other.",
-)
 
 # Relaxation lengths from steps
-MOST_KEPT_NOISE = Real(
-    0.995,
-    "-",
-    "Largest share of the noise that the next sample keeps: beyond it, offset and gain of a run of steps are lost in it.",
-)
 LEAST_MOVE_OF_A_STEP = Real(
     0.02,
     "-",
     "Move between two samples, over the largest one of a run of steps, that is part of a step rather than noise of the setting.",
-)
-MEAN_OF_STEPS = Real(
-    0.15,
-    "-",
-    "Distance over which samples of a run of steps are averaged, over the unloaded radius: half the shortest relaxation lengths.",
 )
 CARCASS_TERM_SPREAD = Series(
     (0.2, 0.1, 0.3),

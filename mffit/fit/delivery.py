@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce
 
@@ -11,7 +11,6 @@ import numpy as np
 from mffit.config import Config, Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit.beside import BesideNumbers
-from mffit.fit.borrowed.campaign import FittedCampaign, Joined, join
 from mffit.fit.borrowed.sister import Lent, Sister, lend
 from mffit.fit.coefficients import Coefficient, coefficient_records
 from mffit.fit.comments import file_comments
@@ -35,7 +34,6 @@ class Beside:
     radii: Vertical  #: from loaded radius and wheel speed
     steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by the setting that steps
     sister: Sister | None = None
-    campaigns: Sequence[FittedCampaign] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +45,6 @@ class Delivered:
     files: Files
     lent: Lent | None  #: what a sister tyre gave
     relaxation: tuple[Relaxation, ...]  #: one per direction
-    joined: tuple[Joined, ...]  #: what other campaigns gave
     posterior: Posterior  #: of all of them
     beside: tuple[BesideNumbers, ...]  #: what was fitted to readings of its own
     zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
@@ -78,23 +75,16 @@ def deliver(
     )
     posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
     lent = None if beside.sister is None else lend(beside.sister, known, posterior)
-    joined: list[Joined] = []
+    found = {**rolling.found, **beside.radii.found, **lags}
     if lent is not None:
         known = known.having(lent.beside.values, "sister")
         posterior = posterior.without(lent.found).with_numbers(lent.beside)
-    for campaign in beside.campaigns:
-        joined.append(join(campaign, known, posterior))
-        known = known.having(joined[-1].values, "campaign")
-        posterior = posterior.without(joined[-1].found).with_numbers(joined[-1].beside)
-    given: list[Lent | Joined] = [*([lent] if lent else []), *joined]
-    own = (*own, *(one.beside for one in given))
-    found = {**rolling.found, **beside.radii.found, **lags}
-    for one in given:
-        found |= {name: q for name, q in one.found.items() if q.u > 0.0}
+        own = (*own, lent.beside)
+        found |= {name: q for name, q in lent.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)
+    return Delivered(known, coefficients, annotated, lent, lag, posterior, own, rolling.zeros)
 
 
 def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:

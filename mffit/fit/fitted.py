@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
@@ -39,7 +38,6 @@ class Fitted:
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
     cost: float  #: sum of squares of data, priors and broken limits
-    attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 
     @property
@@ -48,18 +46,21 @@ class Fitted:
         return self.problem.simulation
 
 
+def uncertain(number: FreeNumber) -> Uncertain:
+    """A number at its start with its prior; one without has half the width of the values that tyres have."""
+    if np.isfinite(number.spread):
+        return Uncertain(number.name, number.expected - number.start, number.spread)
+    width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
+    return Uncertain(number.name, 0.0, 0.5 * width)
+
+
 def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | None = None) -> LinearisedFit:
     """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
 
-    A number at a bound stays there. One without a prior has half the width of the values that tyres have.
+    A number at a bound stays there.
     """
-    numbers = []
-    for number in fitted.problem.starting_here(fitted.numbers):
-        if number.name not in fitted.at_bound:
-            known = np.isfinite(number.spread)
-            width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
-            spread = number.spread if known else 0.5 * width
-            numbers.append(Uncertain(number.name, number.expected - number.start if known else 0.0, spread))
+    inner = [number for number in fitted.numbers if number.name not in fitted.at_bound]
+    numbers = [uncertain(number) for number in fitted.problem.starting_here(inner)]
     held = {**fitted.held, **fitted.held_rig}
     numbers += [Uncertain(name, 0.0, u) for name, u in held.items() if u > 0.0]
     problem = of or fitted.problem
@@ -78,7 +79,7 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
     free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
-    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
     return problem.with_values(solution.values).simulation
 
 

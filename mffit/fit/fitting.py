@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -13,7 +13,6 @@ import numpy as np
 from mffit.config import Config, axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
-from mffit.fit.borrowed.campaign import FittedCampaign, campaign_sentence
 from mffit.fit.borrowed.sister import sister_of, sister_sentence
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
@@ -55,7 +54,6 @@ def fit(
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
-    campaigns: Sequence[FittedCampaign] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -68,7 +66,6 @@ def fit(
     base : property file with the values that are not fitted, if there is one
     progress : called with a sentence before each step
     steps : samples of steps of the sideslip angle and of slip, by the setting that steps
-    campaigns : others of the same tyre, whose coefficients are taken where these points determine none
 
     Raises
     ------
@@ -79,8 +76,7 @@ def fit(
     fleet = of_fleet(config)
     hand = hand_of(config, base)
     sister = sister_of(config, base, points)
-    elsewhere = {name: x for other in campaigns for name, x in other.vertical().items()}
-    known = known_before_fit(config, points, measured, base, fleet, hand, elsewhere)
+    known = known_before_fit(config, points, measured, base, fleet, hand)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
@@ -102,7 +98,7 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    beside = Beside(radii, steps, sister, campaigns)
+    beside = Beside(radii, steps, sister)
     made = deliver(config, known, points, base, fitted, beside)
     files = made.files
     temperature = None
@@ -130,7 +126,6 @@ def fit(
             *explanations(config, files, made.known.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
             *relaxation_sentences(made.relaxation),
-            *map(campaign_sentence, made.joined),
             *([] if made.lent is None else [sister_sentence(made.lent)]),
             *unmodelled_sentences(found),
         ),
@@ -153,7 +148,6 @@ def fit(
         radii=radii,
         beside=made.beside,
         lent=made.lent,
-        joined=made.joined,
         relaxation=made.relaxation,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
@@ -166,22 +160,22 @@ def _fitted_and_judged(
     the build."""
 
     found = with_doubt(fit_with_nuisances(config, problem, start, plan, progress))
+    progress("predicting each sweep from the others")
 
     def refit(without: np.ndarray) -> FittedModel:
         fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
             weights[without] = problem.sigma[name][without]
-        left = left_by(fitted, replace(found.full.problem, sigma=sigma), without)
-        return FittedModel(fitted.simulation, left)
-
-    progress("predicting each sweep from the others")
-    left = left_by(found.full)
-    with as_declared(config):
-        campaign = JudgedSweeps(
-            problem.points, axis_signs(config), FittedModel(found.full.simulation, left), refit
+        return FittedModel(
+            fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without)
         )
-        return found, left, after_the_fit(campaign)
+
+    left = left_by(found.full)
+    fitted = FittedModel(found.full.simulation, left)
+    with as_declared(config):
+        doubts = after_the_fit(JudgedSweeps(problem.points, axis_signs(config), fitted, refit))
+    return found, left, doubts
 
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Measured) -> float | None:

@@ -22,17 +22,14 @@ from tir.parameters import BY_NAME, TABLE
 
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
 """Values that the build itself decides."""
-DETERMINED = ("measured", "fitted", "regularised", "campaign")
-"""Origins of what points decide, of this campaign or another, which no estimate replaces."""
-
-
-NOTHING: Mapping[str, float] = {}
+DETERMINED = ("measured", "fitted", "regularised")
+"""Origins of what points decide, which no estimate replaces."""
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
     """Values by name, and the origin of each: measured, fitted, regularised, base, converted, default, estimate, fleet, sister,
-    campaign, range, given."""
+    range, given."""
 
     values: Mapping[str, Any]
     origin: Mapping[str, str]
@@ -52,12 +49,8 @@ def known_before_fit(
     base: Tyre | None,
     fleet: Mapping[str, Prior],
     hand: Hand = NO_HAND,
-    elsewhere: Mapping[str, float] = NOTHING,
 ) -> Known:
-    """Every value before the fit; those held by hand stay as they are from here on.
-
-    ``elsewhere`` are vertical stiffness and radii of other campaigns of the tyre.
-    """
+    """Every value before the fit; those held by hand stay as they are from here on."""
     template = Tyre.from_values({}) if base is None else base
     known = Known(
         values={**template.values, **hand.held},
@@ -78,7 +71,6 @@ def known_before_fit(
     if base is None:  # already here, because the vertical terms among them decide the rolling radius
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
-    known = known.having(elsewhere, "campaign")
     known = known.having(covered_ranges(points), "range")
     r_e = dict(measured.by_load("r_e_measured"))
     if r_e:

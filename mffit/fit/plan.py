@@ -39,7 +39,6 @@ class FitPlan:
     """Standard uncertainty of coefficients that the fit takes as exact."""
     held_rig: Mapping[str, float] = field(default_factory=dict)
     """The same of declared rig errors."""
-    noise_stated: bool = True  #: whether the points state their uncertainty
     hand: Hand = NO_HAND  #: bounds that replace those of the table, and what is held as exact
 
     @property
@@ -146,7 +145,6 @@ def fit_plan(
         extra=tuple(extra),
         held=held,
         held_rig=held_rig(config, points.used_setups, turned=turned),
-        noise_stated=bool(np.any(np.isfinite(points.u_Fy))),
     )
     return _by_hand(plan, known.hand)
 

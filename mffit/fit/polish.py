@@ -1,15 +1,13 @@
-"""The joint fit: all free coefficients and rig errors together, fitted to all points, from one start or from several."""
+"""The joint fit: all free coefficients and rig errors together, fitted to all points."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
@@ -18,64 +16,21 @@ from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
-from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, SHAPES_OF_FX
-from mffit.least_squares import FreeNumber, Solution, minimum, solve
+from mffit.fit.start import SHAPES_OF_FX
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, minimum, solve
 from mffit.points import Points
-from mffit.progress import Progress
 from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
-CLEARLY_LESS = -2.0 * math.log(PREDICTION_FALSE_ALARM)
-"""Fall of a sum of squares that makes a fit so much likelier that chance seldom does it."""
 
-
-def best_fit(
-    problem: FitProblem,
-    start: Mapping[str, float],
-    plan: FitPlan,
-    progress: Progress,
-    *,
-    restarts: bool = True,
-    explained: Callable[[Fitted], bool] = lambda fitted: False,
-) -> Fitted:
-    """The best fit from ``start`` and, if that one ends far above the noise, from alternative starting values.
-
-    ``explained`` is called with the first fit before alternatives are tried: they are not if it returns True, and it may refuse
-    the data.
-    """
-    _require_enough_points(problem.points, plan.free)
-    progress("fitting tyre and rig")
-    best = _fit_from(start, problem, plan)
-    if not restarts or not restart_worthwhile(best, plan) or explained(best):
-        return best
-    for shape, values in ALTERNATIVE_STARTS.items():
-        progress(f"starting again from {shape}")
-        other = _fit_from({**start, **values}, problem, plan)
-        if _cost(other, best.problem) < _cost(best, best.problem) - CLEARLY_LESS:
-            best = other
-    return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
-
-
-def _cost(fitted: Fitted, weighted: FitProblem) -> float:
-    """Sum of squares of a fit by the weights of another: its own are reduced where it misses, which is no gain."""
-    data = replace(weighted, simulation=fitted.problem.simulation).misfit().values()
-    priors = [(n.start - n.expected) / n.spread for n in fitted.numbers]  # 0 without a prior
-    return float(sum(z @ z for z in data) + np.sum(np.square(priors)))
-
-
-def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
-    """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
-    far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
-    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES)
-
-
-def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan) -> Fitted:
+def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) -> Fitted:
     """The polish, after a pass in which only coefficients of the upright wheel on a straight path are free, and one with all.
 
     With every number free at once, a search can end where limits hold the curvature of a curve that camber or spin bent. Both
     passes have the weights of the start: those of an upright fit would count what it lacks as outliers.
     """
+    _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
     ends = []
@@ -139,7 +94,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
-        tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
+        tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)
         near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
         problem = problem.with_values(near.values)
@@ -157,7 +112,7 @@ def _strides(n: int) -> Iterator[int]:
 
 def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProblem, Solution]:
     numbers = problem.starting_here(numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
     return problem.with_values(solution.values), solution
 
 

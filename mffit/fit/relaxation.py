@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
@@ -24,6 +25,7 @@ from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_mode
 from mffit.points import Points, levels
 from mffit.points.constants import LONGEST_STEP
 from mffit.points.lag import rolled_distance
+from mffit.points.mean import autoregression
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -204,39 +206,36 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     )  # fmt: skip
     simulation = simulation.with_numbers({"hysteresis_deg": 0.0, LAG: 0.0})
     radius, turned = float(simulation.values["UNLOADED_RADIUS"]), _turned(samples, float(state.Re))
-    means = _Means.over(samples, constants.MEAN_OF_STEPS * radius)
-    read = means.of(samples.channel(direction.force))
-    beside = means.of(np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)]))
+    read = samples.channel(direction.force)
+    beside = np.column_stack([np.ones(len(samples)), np.cos(turned), np.sin(turned)])
     ends = _ends_of_steps(direction, samples, radius)
     free = [
         FreeNumber("sigma", radius, 1e-3 * radius),
         *(FreeNumber(f"share{row}", 0.5, 0.0, 1.0, 0.5, SPREAD_OF_UNIFORM) for row in ends),
     ]
-    first = means.of(_response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0])
+    first = _response(direction, samples, simulation, radius, dict.fromkeys(ends, 0.5))[0]
     known, *_ = np.linalg.lstsq(np.column_stack([beside, first]), read, rcond=None)
     free += [FreeNumber(f"beside{k}", value) for k, value in enumerate(known.tolist())]
 
     def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Readings (m,) and their derivatives (m, k) by the numbers."""
+        """Readings (n,) and their derivatives (n, k) by the numbers."""
         count = 1 + len(ends)
         shares = dict(zip(ends, x[1:count].tolist(), strict=True))
-        response, slope = map(means.of, _response(direction, samples, simulation, x[0], shares))
+        response, slope = _response(direction, samples, simulation, x[0], shares)
         design = np.column_stack([beside, response])
         return design @ x[count:], np.column_stack([x[-1] * slope, design])
 
-    sigma, u, move, keeps = radius, math.inf, math.inf, 0.0
-    noise = _scatter(read - model(np.array([n.start for n in free]))[0], len(free), keeps)
+    sigma, u, move = radius, math.inf, math.inf
+    noise = _Noise.of(read - model(np.array([n.start for n in free]))[0], len(free))
     for _ in range(constants.REFIT_STEPS):
-        end = solve(_whitened_problem(model, read, keeps, noise), free)
+        end = solve(_problem(model, read, noise), free)
         x = np.array(list(end.values.values()))
         free = [replace(n, start=value) for n, value in zip(free, x.tolist(), strict=True)]
         sigma, move = float(x[0]), float(x[0]) - sigma
         u = math.sqrt(float(end.covariance[0, 0]))
         if abs(move) < constants.REFIT_TOLERANCE * sigma:
             break
-        left = read - model(x)[0]
-        keeps = _kept(left)
-        noise = _scatter(left, len(free), keeps)
+        noise = _Noise.of(read - model(x)[0], len(free))
     u = u if abs(move) < max(u, constants.STAGE_TOLERANCE * sigma) else math.inf  # not converged
     C = abs(float(getattr(state, direction.K))) / sigma
     return StepLength(
@@ -246,26 +245,6 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
         Quantity(sigma, u, "m"),
         Quantity(C, u / sigma * C, "N/m"),
     )
-
-
-class _Means(NamedTuple):
-    """Means over short distances: what they leave of a fast sampling says nothing about a slow process."""
-
-    label: np.ndarray  #: (n,) of the mean to which a sample belongs
-    size: np.ndarray  #: (m,) number of samples of each mean
-
-    @classmethod
-    def over(cls, samples: Points, way: float) -> _Means:
-        """Means over a distance [m], or the samples themselves where these are farther apart."""
-        rolled = rolled_distance(samples.time, samples.V)
-        _, label, size = np.unique(np.floor(rolled / way), return_inverse=True, return_counts=True)
-        return cls(label, size)
-
-    def of(self, x: np.ndarray) -> np.ndarray:
-        """Means (m,) or (m, k) of a series (n,) or (n, k)."""
-        sums = np.zeros((len(self.size), *x.shape[1:]))
-        np.add.at(sums, self.label, x)
-        return np.asarray(sums / self.size.reshape(-1, *[1] * (x.ndim - 1)))
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:
@@ -306,49 +285,35 @@ def _response(
     return force[direction.force], slope[:, None] * np.column_stack(by)
 
 
-def _whitened_problem(
-    model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, keeps: float, noise: float
+class _Noise(NamedTuple):
+    """Noise of readings in their order, in which each remembers those before it."""
+
+    memory: np.ndarray  #: shares (k,) of the readings before that the next one keeps
+    size: float  #: standard deviation of what is new in a reading
+
+    @classmethod
+    def of(cls, residual: np.ndarray, numbers: int) -> _Noise:
+        """The noise in what so many fitted numbers leave."""
+        memory, new = autoregression(residual - residual.mean())
+        return cls(memory, math.sqrt(new * len(residual) / max(len(residual) - numbers, 1)) or 1.0)
+
+    def whitened(self, x: np.ndarray) -> np.ndarray:
+        """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""
+        new = lfilter(np.r_[1.0, -self.memory], 1.0, x, axis=0)[len(self.memory) :]
+        return np.asarray(new / self.size)
+
+
+def _problem(
+    model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, noise: _Noise
 ) -> LeastSquaresProblem:
-    """The problem of a model of readings (m,) whose noise keeps a share of itself from sample to sample."""
+    """The problem of a model of readings (n,) with a noise."""
     none = np.zeros(0)
 
     def linear(x: np.ndarray) -> Linear:
         found, slope = model(x)
-        data, slopes = _whitened(found - read, keeps) / noise, _whitened(slope, keeps) / noise
-        return Linear(data, slopes, none, np.zeros((0, len(x))))
+        return Linear(noise.whitened(found - read), noise.whitened(slope), none, np.zeros((0, len(x))))
 
-    return LeastSquaresProblem(lambda x: (_whitened(model(x)[0] - read, keeps) / noise, none), linear)
-
-
-def _scatter(residual: np.ndarray, numbers: int, keeps: float) -> float:
-    """Standard deviation of whitened residuals that were fitted with so many numbers, larger where they still correlate."""
-    white = _whitened(residual, keeps)
-    freedom = max(len(white) - numbers, 1)
-    return math.sqrt(float(white @ white) / freedom * _correlation(white)) or 1.0
-
-
-def _kept(residual: np.ndarray) -> float:
-    """Share of the noise that the next sample keeps, as of a first-order process."""
-    x = residual - residual.mean()
-    return float(np.clip(x[1:] @ x[:-1] / (float(x @ x) or 1.0), 0.0, constants.MOST_KEPT_NOISE))
-
-
-def _whitened(x: np.ndarray, keeps: float) -> np.ndarray:
-    """Series (n,) or (n, k) less what the sample before explains of its noise."""
-    return np.concatenate([x[:1] * math.sqrt(1.0 - keeps**2), x[1:] - keeps * x[:-1]])
-
-
-def _correlation(residual: np.ndarray) -> float:
-    """Factor by which correlation of the residuals in time increases the variance of what they determine."""
-    x = residual - residual.mean()
-    power = float(x @ x) or 1.0
-    total = 1.0
-    for k in range(1, len(x) // 4):
-        rho = float(x[k:] @ x[:-k]) / power
-        if rho < 2.0 / math.sqrt(len(x)):
-            break
-        total += 2.0 * rho
-    return total
+    return LeastSquaresProblem(lambda x: (noise.whitened(model(x)[0] - read), none), linear)
 
 
 def _stiffness(direction: Direction, values: Mapping[str, Any], load: Any, pressure: Any) -> Any:

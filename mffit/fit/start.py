@@ -1,4 +1,4 @@
-"""Starting values of the fit: read off the data, and alternatives for a fit that ends far above the noise."""
+"""Starting values of the fit, read off the data."""
 
 from __future__ import annotations
 
@@ -29,17 +29,8 @@ NONZERO_STARTS = {
     "RVY6": 10.0,
 }
 """Starting values instead of zero, where all derivatives vanish at zero and no step would leave it."""
-ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
-    "a round side-force curve": {"PCY1": 1.2, "PEY1": 0.3, "PEY2": 0.0},
-    "a peaked side-force curve": {"PCY1": 1.7, "PEY1": -1.5, "PEY2": 0.0},
-    "a short trail": {"QBZ1": 15.0, "QCZ1": 1.2, "QEZ1": -0.5, "QEZ2": 0.0},
-    "a long trail": {"QBZ1": 5.0, "QCZ1": 1.1, "QEZ1": -3.0, "QEZ2": 0.0},
-}
-"""Alternative starting values, tried if the first fit ends far above the noise."""
 SHAPES_OF_FX: Sequence[Mapping[str, float]] = ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4})
 """Further starts of the longitudinal force, whose shape factor can have several minima."""
-SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in values)
-"""Coefficients of the shape of a curve, which can compensate for each other."""
 
 
 def starting_values(

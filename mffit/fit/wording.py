@@ -10,8 +10,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from mffit.config import Config
-from mffit.constants import PREDICTION_FALSE_ALARM
-from mffit.fit import constants
+from mffit.constants import NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
 from mffit.fit.bands import BandOfCombined, BandOfOtherSide, BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage
@@ -175,7 +174,7 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
     degrees = [round(float(np.degrees(alpha)), 1) + 0.0 for alpha in sideslips]
     if not any(degrees):
         return "without sideslip"
-    if len(degrees) > constants.NAMED_COEFFICIENTS:
+    if len(degrees) > NAMED_IN_SENTENCE:
         return f"at sideslips of {degrees[0]:g} to {degrees[-1]:g} deg"
     *others, last = (f"{alpha:g}" for alpha in degrees)
     return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
@@ -307,9 +306,6 @@ def warnings(
         f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
         for word, origin in untested.items()
     ]
-    if fitted.attempts:
-        attempts = ", ".join(fitted.attempts)
-        out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
     out += _at_bounds(plain, fitted)
     out += by_hand_warnings(fitted, coverage)
     out += [doubt.sentence for doubt in doubts]

@@ -2,20 +2,21 @@
 
 Tyre i has numbers x_i, the rig has errors theta. The likelihood of its points is ``exp(-z L_i z / 2 + h_i z)`` with
 ``z = (x_i, theta)``. The priors are ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)`` and theta as the rig declares,
-once for all tyres. Everything but tau is linear and Gaussian and solved exactly; tau^2 is found by expectation maximisation.
+once for all tyres. Everything but tau is one linear Gaussian model, whose groups are the tyres; tau^2 is found by expectation
+maximisation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mffit.fit.priors import scatter
 from mffit.fleet import constants
 from mffit.fleet.information import Information
-from mffit.least_squares import inverse
+from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
 from tir.parameters import BY_NAME
 
 
@@ -69,23 +70,24 @@ def estimate(found: Sequence[Information]) -> Hierarchy:
     ----------
     found : information of each tyre's build on this rig
     """
-    model = _Model(found)
-    tau = model.general.copy()
-    learnt = model.count >= constants.FEWEST_TYRES_FOR_SCATTER
+    tyres = _Tyres(found)
+    tau = tyres.general.copy()
+    learnt = tyres.count >= constants.FEWEST_TYRES_FOR_SCATTER
     for _ in range(200 if learnt.any() else 0):
         # Division by one tyre less keeps the scatter off zero, where it would be overconfident.
-        mean_square = model.solved(tau).squares / np.maximum(model.count - 1, 1)
-        new = np.clip(np.sqrt(mean_square), 1e-3 * model.general, model.general)
-        new = np.where(learnt, new, model.general)
+        mean_square = tyres.squares(tau) / np.maximum(tyres.count - 1, 1)
+        new = np.clip(np.sqrt(mean_square), 1e-3 * tyres.general, tyres.general)
+        new = np.where(learnt, new, tyres.general)
         moved = np.max(np.abs(np.log(new / tau)))
         tau = new
         if moved < 1e-3:
             break
-    return model.described(tau)
+    return tyres.described(tau)
 
 
-class _Model:
-    """The tyres' information, and the exact solution for a given scatter."""
+class _Tyres:
+    """The points of all tyres as one linear model: common numbers are rig errors and means of the population, own ones the
+    differences of a tyre from these."""
 
     def __init__(self, found: Sequence[Information]) -> None:
         self.found = found
@@ -110,114 +112,99 @@ class _Model:
         )
         if len(found) == 1:  # the prior of its build, which had no population
             self.general, self.known = self.known, 1e-6 * self.known
+        self.mine = [[self.own.index(i.names[k]) for k in i.rows(rig=False)] for i in found]
+        self.model = self._model()
 
-    def prior(self) -> tuple[np.ndarray, np.ndarray]:
-        """Prior of the common numbers, theta and mu: precision (m + K, m + K) and vector."""
-        spread = np.concatenate([self.rig_spread, self.known])
-        return np.diag(spread**-2.0), np.concatenate([self.rig_centre, self.centre]) * spread**-2.0
+    def _model(self) -> Mixed:
+        """Rows whose likelihood is that of the tyres' points, as differences from the centres of the priors."""
+        names = (*self.shared, *self.own)
+        sizes = np.concatenate([self.rig_spread, np.maximum(self.known, self.general)])
+        centres = np.concatenate([self.rig_centre, self.centre])
+        residual, common = [], []
+        groups: list[np.ndarray] = []
+        for one in self.found:
+            place = [names.index(name) for name in one.names]
+            size = sizes[place]
+            information, axes = np.linalg.eigh(size[:, None] * one.matrix * size)
+            seen = information > np.finfo(float).eps * np.max(information, initial=0.0)
+            root, axes = np.sqrt(information[seen]), axes[:, seen]
+            slope = np.zeros((len(root), len(names)))
+            slope[:, place] = root[:, None] * axes.T / size
+            common.append(slope)
+            residual.append(axes.T @ (size * one.vector) / root - slope @ centres)
+            groups.append(np.arange(len(root)) + sum(len(rows) for rows in groups))
+        columns = np.concatenate(common)
+        return Mixed(np.concatenate(residual), columns, columns[:, len(self.shared) :], groups)
 
-    def part(self, one: Information, tau: np.ndarray) -> _Part:
-        """Information of one tyre about the common numbers, its own numbers eliminated."""
-        m, size = len(self.shared), len(self.shared) + len(self.own)
-        own, rig = one.rows(rig=False), one.rows(rig=True)
-        mine = [m + self.own.index(one.names[k]) for k in own]
-        theirs = [self.shared.index(one.names[k]) for k in rig]
-        ties = tau[[k - m for k in mine]] ** -2.0
-        inner = inverse(one.matrix[np.ix_(own, own)] + np.diag(ties))
-        B = np.zeros((len(own), size))
-        B[:, theirs] = one.matrix[np.ix_(own, rig)]
-        B[range(len(own)), mine] = -ties
-        gain = inner @ B
-        precision, vector = -B.T @ gain, -gain.T @ one.vector[own]
-        precision[np.ix_(theirs, theirs)] += one.matrix[np.ix_(rig, rig)]
-        precision[mine, mine] += ties
-        vector[theirs] += one.vector[rig]
-        return _Part(mine, inner, gain, inner @ one.vector[own], precision, vector)
+    def given(self, tau: np.ndarray) -> Variances:
+        """The priors for a scatter (K,) of the population."""
+        return Variances(2.0 * np.log(np.concatenate([self.rig_spread, self.known])), 2.0 * np.log(tau), 0.0)
 
-    def solved(self, tau: np.ndarray) -> _Solved:
-        """Mean and covariance of every number, given the population's scatter (K,)."""
-        precision, vector = self.prior()
-        parts = [self.part(one, tau) for one in self.found]
-        covariance = inverse(precision + sum(part.precision for part in parts))
-        common = covariance @ (vector + sum(part.vector for part in parts))
-        squares = np.zeros(len(self.own))
-        tyres = []
-        for part in parts:
-            x = part.own - part.gain @ common
-            C = part.inner + part.gain @ covariance @ part.gain.T
-            with_mean = -part.gain @ covariance[:, part.mine]
-            away = np.diag(C) + np.diag(covariance)[part.mine] - 2.0 * np.diag(with_mean)
-            k = [i - len(self.shared) for i in part.mine]
-            squares[k] += (x - common[part.mine]) ** 2 + np.maximum(away, 0.0)
-            tyres.append((x, C))
-        return _Solved(tuple(parts), tuple(tyres), common, covariance, squares)
+    def squares(self, tau: np.ndarray) -> np.ndarray:
+        """Expected sum (K,) over the tyres of the squared differences from the population's mean."""
+        found, out = self.model.posterior(self.given(tau)), np.zeros(len(self.own))
+        for k, mine in enumerate(self.mine):
+            difference, covariance = self._own(found, k, with_mean=False)
+            out[mine] += difference**2 + np.diag(covariance)
+        return out
+
+    def _own(self, found: MixedPosterior, k: int, *, with_mean: bool) -> tuple[np.ndarray, np.ndarray]:
+        """The numbers of tyre ``k`` beyond their centres and their covariance, ``with_mean`` of the population in them or not."""
+        rows, mine = self.model.groups[k], self.mine[k]
+        by_common = -found.through[k].T[mine]
+        alone = found.own[k][mine] @ (self.model.own[rows].T @ self.model.residual[rows])
+        if with_mean:
+            by_common[range(len(mine)), [len(self.shared) + j for j in mine]] += 1.0
+        root = by_common @ found.root
+        return alone + by_common @ found.mean, found.own[k][np.ix_(mine, mine)] + root @ root.T
 
     def described(self, tau: np.ndarray) -> Hierarchy:
         """The solution by name."""
-        found, m = self.solved(tau), len(self.shared)
-        u = np.sqrt(np.diag(found.covariance))
-        rig = {
-            n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared) if self.is_common(n)
-        }
-        population = {
-            name: Population(
-                mean=float(found.common[m + k]),
-                u_mean=float(u[m + k]),
-                scatter=float(tau[k]),
-                tyres=int(self.informing[k]),
-            )
-            for k, name in enumerate(self.own)
-            if self.informing[k] >= 2
-        }
-        tyres = tuple(
-            TyreEstimate(
-                tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(one, part, found)
-            )
-            for one, part, (x, C) in zip(self.found, found.parts, found.tyres, strict=True)
+        found, m = self.model.posterior(self.given(tau)), len(self.shared)
+        value = found.mean + np.concatenate([self.rig_centre, self.centre])
+        u = np.sqrt(np.sum(found.root**2, axis=1))
+        common = [k for k, name in enumerate(self.shared) if self._is_common(name)]
+        tyres = []
+        for k, mine in enumerate(self.mine):
+            x, covariance = self._own(found, k, with_mean=True)
+            names = tuple(self.own[j] for j in mine)
+            strain = self._strain(k, tau, found, common)
+            tyres.append(TyreEstimate(names, self.centre[mine] + x, covariance, strain))
+        return Hierarchy(
+            tyres=tuple(tyres),
+            rig={self.shared[k]: (float(value[k]), float(u[k])) for k in common},
+            declared={self.shared[k]: (float(self.rig_centre[k]), float(self.rig_spread[k])) for k in common},
+            population={
+                name: Population(
+                    mean=float(value[m + k]),
+                    u_mean=float(u[m + k]),
+                    scatter=float(tau[k]),
+                    tyres=int(self.informing[k]),
+                )
+                for k, name in enumerate(self.own)
+                if self.informing[k] >= 2
+            },
         )
-        known = zip(self.rig_centre.tolist(), self.rig_spread.tolist(), strict=True)
-        declared = {n: prior for n, prior in zip(self.shared, known, strict=True) if n in rig}
-        return Hierarchy(tyres, rig, declared, population)
 
-    def is_common(self, name: str) -> bool:
+    def _is_common(self, name: str) -> bool:
         """Whether an error of the rig is common to two or more tyres, or there is only one tyre."""
         return len(self.found) == 1 or sum(name in one.names for one in self.found) > 1
 
-    def _strain(self, one: Information, part: _Part, found: _Solved) -> dict[str, float]:
-        """How one tyre moves the errors of the rig. The covariances without and with it differ by that of the move."""
-        if len(found.parts) < 2:
+    def _strain(
+        self, k: int, tau: np.ndarray, found: MixedPosterior, common: Sequence[int]
+    ) -> dict[str, float]:
+        """How tyre ``k`` moves the errors of the rig. The covariances without and with it differ by that of the move."""
+        if len(self.found) < 2:
             return {}
-        precision, vector = self.prior()
-        others = [other for other in found.parts if other is not part]
-        covariance = inverse(precision + sum(other.precision for other in others))
-        moved = found.common - covariance @ (vector + sum(other.vector for other in others))
-        variance = np.diag(covariance - found.covariance)
+        others = replace(self.model, groups=[rows for j, rows in enumerate(self.model.groups) if j != k])
+        without = others.posterior(self.given(tau))
+        moved = found.mean - without.mean
+        variance = np.sum(without.root**2, axis=1) - np.sum(found.root**2, axis=1)
         return {
-            name: float(moved[k] / np.sqrt(variance[k]))
-            for k, name in enumerate(self.shared)
-            if self.is_common(name) and _informs(one, name, float(self.rig_spread[k]))
+            self.shared[i]: float(moved[i] / np.sqrt(variance[i]))
+            for i in common
+            if _informs(self.found[k], self.shared[i], float(self.rig_spread[i]))
         }
-
-
-@dataclass(frozen=True, slots=True)
-class _Part:
-    """Contribution of one tyre to the joint estimate."""
-
-    mine: list[int]  #: positions of the means of its numbers among the common numbers
-    inner: np.ndarray  #: (k, k) covariance of its numbers, given the common ones
-    gain: np.ndarray  #: (k, m + K) negative derivative of its numbers by the common ones
-    own: np.ndarray  #: (k,) its numbers if the common ones are zero
-    precision: np.ndarray  #: (m + K, m + K)
-    vector: np.ndarray  #: (m + K,)
-
-
-@dataclass(frozen=True, slots=True)
-class _Solved:
-    parts: tuple[_Part, ...]
-    tyres: tuple[tuple[np.ndarray, np.ndarray], ...]
-    common: np.ndarray  #: (m + K,) rig errors, then the population's means
-    covariance: np.ndarray
-    squares: np.ndarray  #: (K,) expected sum over the tyres of (x - mu)^2
 
 
 def _informs(one: Information, name: str, known: float) -> bool:

@@ -9,9 +9,9 @@ from mffit.pipeline.intake import init_from, project_of, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
-from mffit.pipeline.predicting import predict
 from mffit.pipeline.showing import show
 from mffit.pipeline.verifying import verify
+from mffit.prediction import predict
 
 __all__ = [
     "align",

@@ -11,24 +11,28 @@ import tomli_w
 
 from mffit import config as configuration
 from mffit import prediction
+from mffit.comparison import characteristics
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.fit import name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
-from mffit.pipeline.members import write_members
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
-from mffit.quantities import column
+from mffit.quantities import COMPARED, column
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.suspicion import marks
+from tir import Tyre
 
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
 REPORT = "report.html"
 WRITTEN = ("result.json", "information.json", prediction.FILE, "points.csv", REPORT)
 """Files that every build writes beside its property files."""
+FOLDER, INDEX = "ensemble", "index.csv"
+NUMBERS = ("epsilon_gamma", *COMPARED)
+"""Columns of the table of drawn tyres, after the file."""
 
 
 def write_build(
@@ -116,3 +120,27 @@ def origin(points: Points) -> dict[str, np.ndarray]:
     if len(points.used_setups) > 1:
         columns["setup"] = np.array(points.setups, dtype=object)[points.setup]
     return columns
+
+
+def write_members(result: BuildResult, out: Path) -> None:
+    """Write ``ensemble/<name>-001.tir`` and so on, and ``ensemble/index.csv``; nothing without members.
+
+    Every member is a model for turn slip on (off on a flat track) within the physical limits of the fit.
+    """
+    members = result.members
+    if not members:
+        return
+    folder = out / FOLDER
+    folder.mkdir()
+    rows = []
+    for i, member in enumerate(members, 1):
+        name = f"{result.config.tyre.name}-{i:0{len(str(len(members)))}d}.tir"
+        member.write(folder / name)
+        rows.append({"file": name, **numbers(member, turn_slip=result.on_disc)})
+    write_csv(pd.DataFrame(rows), folder / INDEX)
+
+
+def numbers(tyre: Tyre, *, turn_slip: bool) -> dict[str, float]:
+    """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
+    found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip)
+    return {key: found[key] for key in NUMBERS}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,19 +16,16 @@ from mffit import fit as fitting
 from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
-from mffit.fit.borrowed.campaign import FittedCampaign
 from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.campaigns import campaigns_of, projects_of
 from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged, said
 from mffit.pipeline.left_out import left_out_by_fit
-from mffit.pipeline.measuring import measure
+from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, without_outliers
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
-from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
 from mffit.points.loading import Reading
 from mffit.prediction import predictor
 from mffit.progress import Progress, silent
@@ -66,7 +63,6 @@ def build(
     """
     began = time.perf_counter()
     config = configuration.load(config)
-    projects = projects_of(config)
     progress("reading sweeps")
     reading = read_points(config)
     base = read_base(config)
@@ -77,9 +73,8 @@ def build(
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
-    campaigns, others, warned = campaigns_of(config, projects, reading.points, build, progress)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-        measured, fitted = _fitted(config, reading, parts, measured, base, progress, campaigns)
+        measured, fitted = _fitted(config, reading, parts, measured, base, progress)
         search = fitted.search
         assert search is not None
         assert fitted.left_by_formula is not None
@@ -119,7 +114,6 @@ def build(
         plain=fitting.plain_use(config),
         warnings=(
             *said(trust),
-            *warned,
             *base_warnings(config, base),
             *reading.warnings,
             *measured.warnings,
@@ -135,7 +129,6 @@ def build(
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,
-        campaigns=others,
     )
     if out is not None:
         progress("writing the report" if with_report else "writing the files")
@@ -150,14 +143,13 @@ def _fitted(
     measured: Measured,
     base: Tyre | None,
     progress: Progress,
-    campaigns: Sequence[FittedCampaign],
 ) -> tuple[Measured, FitResult]:
     """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
 
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, campaigns)
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)

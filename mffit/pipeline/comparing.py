@@ -23,7 +23,6 @@ from mffit.progress import Progress, silent
 from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
-from tir import Tyre
 from tir.errors import TirError
 
 
@@ -90,11 +89,11 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
 
 def _subject(path: Path) -> ComparedSubject:
     """A property file, or that of a build's folder, with its covariance if its build is beside it."""
-    if path.is_dir():
-        path = path / _file_of_build(path)
+    built = _build_in(path) if path.is_dir() else _build_beside(path)
+    path = path / built.file if built is not None and path.is_dir() else path
     tyre = tir.read(path)
-    built = _build_beside(path)
-    subject = ComparedSubject(path.name, tyre, _turn_slip(tyre))
+    use = use_of(tyre)
+    subject = ComparedSubject(path.name, tyre, tyre.turn_slip if use is None else use == "turn-slip")
     if built is not None:
         subject = replace(subject, rig=built.rig, setups=built.setups)
     posterior = posterior_of(tyre, path)
@@ -105,28 +104,22 @@ def _subject(path: Path) -> ComparedSubject:
     return replace(subject, covariance_of=built.file)
 
 
-def _build_beside(path: Path) -> Specimen | None:
-    """The build in the same folder; None without one."""
+def _build_in(folder: Path) -> Specimen:
+    """The build of a folder."""
     try:
-        return fleet.read(path.parent)
-    except (InputError, TirError):
-        return None
-
-
-def _file_of_build(folder: Path) -> str:
-    """Name of the property file with the plain name in the folder of a build."""
-    try:
-        return fleet.read(folder).file
+        return fleet.read(folder)
     except InputError:
         raise InputError(
             f"{folder} is not the folder of a build: it has no result.json that names a property file; give the .tir itself"
         ) from None
 
 
-def _turn_slip(tyre: Tyre) -> bool:
-    """Whether the file is meant for turn slip: from its provenance, otherwise from USE_MODE."""
-    use = use_of(tyre)
-    return use == "turn-slip" if use is not None else tyre.turn_slip
+def _build_beside(path: Path) -> Specimen | None:
+    """The build in the same folder; None without one."""
+    try:
+        return fleet.read(path.parent)
+    except (InputError, TirError):
+        return None
 
 
 def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:

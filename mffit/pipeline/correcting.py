@@ -14,6 +14,7 @@ from mffit.config import Config, axis_signs, path_curvature, resolved
 from mffit.csv_tables import write_csv
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
+from mffit.points.lag import Lag
 from mffit.points.loading import settled_sweeps
 from mffit.quantities import column, u_column
 
@@ -25,35 +26,9 @@ ABOUT = (
 )
 
 
-CAMPAIGN = "campaign-{}"
-"""Folder of the corrected points of another campaign."""
-
-
-def write_corrected(
-    diagnosis: Diagnosis, config: Config, out: Path, folder: Path, others: Mapping[str, Config]
-) -> None:
-    """Write the corrected points of every campaign and a ``tyre.toml`` that builds from them.
-
-    Parameters
-    ----------
-    diagnosis : what was found
-    config : the configuration that was diagnosed
-    out : final folder of the files
-    folder : temporary folder to write them to
-    others : configurations of other campaigns, by their name in the points
-    """
-    for k, (name, other) in enumerate(others.items(), 1):
-        (folder / CAMPAIGN.format(k)).mkdir()
-        _write_campaign(diagnosis, name, other, out / CAMPAIGN.format(k), folder / CAMPAIGN.format(k), [])
-    named = [{"toml": f"{CAMPAIGN.format(k)}/{CORRECTED_TOML}"} for k in range(1, len(others) + 1)]
-    _write_campaign(diagnosis, diagnosis.points.campaigns[0], config, out, folder, named)
-
-
-def _write_campaign(
-    diagnosis: Diagnosis, campaign: str, config: Config, out: Path, folder: Path, named: list[dict[str, Any]]
-) -> None:
-    """Write the corrected points of one campaign and its ``tyre.toml``, which names other campaigns."""
-    points = _corrected(diagnosis, config, campaign)
+def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Path) -> None:
+    """Write the corrected points and a ``tyre.toml`` that builds from them to a temporary ``folder``, to be moved to ``out``."""
+    points = _corrected(diagnosis, config)
     not_always = (*(name for name in diagnosis.noise.channels if name != "Fy"), "T", "t")
     sweeps: list[dict[str, Any]] = []
     for name, part in _files(points, not_always):
@@ -61,7 +36,6 @@ def _write_campaign(
         sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
     content["sweep"] = sweeps
-    content |= {"campaign": named} if named else {}
     content.get("fit", {}).pop("exclude", None)  # these points are not in the corrected files
     content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
     text = ABOUT.format(name=CORRECTED_TOML) + tomli_w.dumps(content)
@@ -116,15 +90,11 @@ def _files(points: Points, not_always: Sequence[str]) -> Iterator[tuple[str, Poi
             yield name if k == 1 else name.replace(".csv", f"-{k}.csv"), points.select(rows)
 
 
-def _corrected(diagnosis: Diagnosis, config: Config, campaign: str) -> Points:
-    """The corrected points of a campaign, steady: the angles of moving sweeps are corrected for the lag that was found."""
+def _corrected(diagnosis: Diagnosis, config: Config) -> Points:
+    """The corrected points, steady: the angles of moving sweeps are corrected for the lag that was found."""
     points = corrected_points(diagnosis.points, diagnosis.state, diagnosis.noise.channels)
-    if len(points.campaigns) > 1:
-        points = points.of_campaign(campaign)
-        if len(points.used_setups) < 2:  # the set-up had no name of its own
-            points = points.replace(setups=("",) * len(points.setups))
     if not np.any(points.continuous):
         return points
     if config.rig.on_disc:
         return points.select(~points.continuous)
-    return settled_sweeps(points, (diagnosis.state.faults["relaxation_m"], 0.0))
+    return settled_sweeps(points, Lag(diagnosis.state.faults["relaxation_m"], 0.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from threadpoolctl import threadpool_limits
 
@@ -21,7 +21,6 @@ from mffit.effects import CATALOG, Effect
 from mffit.made import made
 from mffit.output import digest, output_folder, refuse_early
 from mffit.pipeline.building import build
-from mffit.pipeline.campaigns import points_of_all, projects_of
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_diagnosis
@@ -64,36 +63,24 @@ def diagnose(
     """
     config = configuration.load(config)
     progress("reading sweeps")
-    own = read_points(config, continuous=True)
-    reading, others = points_of_all(config, projects_of(config), own, continuous=True)
-    points = reading.points
-    base = read_base(config)
-    inputs = [*inputs_of(config), last_build(config)]
-    if isinstance(model, str | Path):
-        inputs.append(Path(model))
+    reading = read_points(config, continuous=True)
+    points, base = reading.points, read_base(config)
+    read = [*inputs_of(config), last_build(config), *([Path(model)] if isinstance(model, str | Path) else [])]
     if out is not None:
         names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
-        refuse_early(Path(out), names, inputs)
-    tyre, choice = chosen_model(config, model, progress)
-    other = another_tyre(tyre, config)
+        refuse_early(Path(out), names, read)
+    chosen = chosen_model(config, model, progress)
+    other = another_tyre(chosen.tyre, config)
     if other is not None:
         progress(other.sentence)
-        choice = (other, *choice)
     with threadpool_limits(1):
-        same = fitted_to(tyre, config)
-        known, seen = known_of_model(
-            tyre,
-            config,
-            _file_of_model(config, model),
-            same=same,
-            fresh=any(isinstance(note, ModelFittedFirst) for note in choice),
-        )
+        same = fitted_to(chosen.tyre, config)
+        known, seen = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
         diagnosis = find_effects(
             points,
-            tyre,
+            chosen.tyre,
             config,
-            rig=rig_of_build(tyre) if same else None,
-            others=others,
+            rig=rig_of_build(chosen.tyre) if same else None,
             effects=effects,
             coefficients=known,
             seen=seen,
@@ -104,13 +91,12 @@ def diagnose(
             progress=progress,
         )
     hashes = input_hashes(config)
-    file = _file_read(config, model, choice)
-    if file is not None:
-        hashes[str(file)] = digest(file)
-    notes = (*choice, *diagnosis.notes, *_redone(config, own.points, diagnosis, base))
+    if chosen.file is not None:
+        hashes[str(chosen.file)] = digest(chosen.file)
+    notes = [*([] if other is None else [other]), *chosen.notes, *diagnosis.notes]
     diagnosis = replace(
         diagnosis,
-        notes=notes,
+        notes=(*notes, *_redone(config, points, diagnosis, base)),
         made=made(hashes),
         lab=config.lab,
         left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
@@ -123,43 +109,36 @@ def diagnose(
         with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, diagnosis.trust),
     )
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config, others=others)
+        write_diagnosis(diagnosis, Path(out), protected=read, config=config)
     return diagnosis
 
 
-def chosen_model(
-    config: Config, model: Tyre | str | Path | None, progress: Progress
-) -> tuple[Tyre, tuple[DiagnosisNote, ...]]:
-    """The given model, otherwise that of the last build, otherwise one fitted now; and notes on the choice."""
+class ChosenModel(NamedTuple):
+    """The model that a diagnosis looks at."""
+
+    tyre: Tyre
+    notes: tuple[DiagnosisNote, ...] = ()  #: on the choice
+    file: Path | None = None  #: that it was read from
+
+    @property
+    def fresh(self) -> bool:
+        """Whether it was fitted just now."""
+        return any(isinstance(note, ModelFittedFirst) for note in self.notes)
+
+
+def chosen_model(config: Config, model: Tyre | str | Path | None, progress: Progress) -> ChosenModel:
+    """The given model, otherwise that of the last build, otherwise one fitted now."""
     if isinstance(model, Tyre):
-        return model, ()
+        return ChosenModel(model)
     if model is not None:
-        return tir.read(model), ()
+        return ChosenModel(tir.read(model), file=Path(model))
     plain = last_build(config)
     wanted = "turn-slip" if config.model.turn_slip and config.rig.on_disc else "normal"
     for path in (plain, plain.with_name(f"{config.tyre.name}-{wanted}.tir")):
         if path.is_file() and use_of(tyre := tir.read(path)) in (wanted, None):
-            return tyre, () if path == plain else (ModelOfLastBuild(path.name),)
+            return ChosenModel(tyre, () if path == plain else (ModelOfLastBuild(path.name),), path)
     fitted = build(config, progress=progress).tyres[wanted]
-    return fitted, (ModelFittedFirst(turn_slip=wanted == "turn-slip"),)
-
-
-def _file_of_model(config: Config, model: Tyre | str | Path | None) -> Path | None:
-    """The file beside which a build may have left its posterior."""
-    if isinstance(model, Tyre):
-        return None
-    return last_build(config) if model is None else Path(model)
-
-
-def _file_read(
-    config: Config, model: Tyre | str | Path | None, choice: Sequence[DiagnosisNote]
-) -> Path | None:
-    """The file that the model was read from; None if it was given as a record or fitted now."""
-    if any(isinstance(note, ModelFittedFirst) for note in choice):
-        return None
-    file = _file_of_model(config, model)
-    siblings = [note.file for note in choice if isinstance(note, ModelOfLastBuild)]
-    return file.with_name(siblings[0]) if file is not None and siblings else file
+    return ChosenModel(fitted, (ModelFittedFirst(turn_slip=wanted == "turn-slip"),))
 
 
 def last_build(config: Config) -> Path:
@@ -171,17 +150,10 @@ def _redone(
     config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
 ) -> tuple[DirectMethodRedone, ...]:
     """The direct method on points corrected for the rig effects, if any were found."""
-    first = {"", diagnosis.points.campaigns[0]}
-    causes = tuple(
-        found.effect.name
-        for found in diagnosis.repaired
-        if found.effect.kind == "rig" and found.effect.campaign in first
-    )
+    causes = tuple(found.effect.name for found in diagnosis.repaired if found.effect.kind == "rig")
     if not config.rig.on_disc or not causes:
         return ()
-    corrected = corrected_points(
-        points, diagnosis.state.of_campaign(diagnosis.points.campaigns[0], diagnosis.points)
-    )
+    corrected = corrected_points(points, diagnosis.state)
     before = epsilon_gamma(config, points, base)
     return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), corrected, base)),)
 
@@ -191,12 +163,10 @@ def write_diagnosis(
     out: Path,
     protected: Iterable[Path] = (),
     config: Config | None = None,
-    others: Mapping[str, Config] | None = None,
 ) -> None:
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
 
-    With ``config`` and those of the ``others``, by campaign, the corrected points and configurations to build from them are
-    written as well.
+    With ``config`` the corrected points and a configuration to build from them are written as well.
     """
     from mffit import report
 
@@ -206,5 +176,5 @@ def write_diagnosis(
             diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
         as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
         if config is not None:
-            write_corrected(diagnosis, config, out, folder, others or {})
+            write_corrected(diagnosis, config, out, folder)
         report.write_diagnosis(diagnosis, folder)

@@ -8,8 +8,8 @@ from scipy.special import ndtri
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fleet import Hierarchy, Row, Specimen
-from mffit.pipeline.fleet_output import nominal_conditions
 from mffit.rig_errors import words_of
+from tir import Tyre
 
 
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -97,3 +97,8 @@ def _mixed_conditions(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> 
         "The tyres have different nominal loads or pressures, to which the coefficients refer: the population mixes them"
         + (", and priors.json is not written." if len(rigs) == 1 else ".")
     ]
+
+
+def nominal_conditions(tyre: Tyre) -> tuple[float, float]:
+    """Nominal load [N] and pressure [Pa], to which the coefficients refer."""
+    return float(tyre["FNOMIN"]), float(tyre["NOMPRES"])

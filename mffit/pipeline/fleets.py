@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
 from mffit.comparison import with_u
+from mffit.csv_tables import write_csv
 from mffit.errors import InputError
+from mffit.fit import priors
 from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
-from mffit.output import refuse_early
-from mffit.pipeline.fleet_notes import fleet_notes, note_on_sharing
-from mffit.pipeline.fleet_output import WRITTEN, write_fleet
-from mffit.pipeline.members import numbers
+from mffit.output import output_folder, refuse_early
+from mffit.pipeline.build_output import numbers
+from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_sharing
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
+from mffit.results import as_json
 from mffit.rig_errors import OF_RUN
 from tir import Quantity, Tyre
+
+WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
 
 
 def fleet(
@@ -55,12 +61,13 @@ def fleet(
             _estimated([s for s, rig in zip(specimens, rig_of, strict=True) if rig == k])
             for k in range(max(rig_of) + 1)
         )
+        together = [iter(() if rig is None else rig.tyres) for rig in rigs]
         rows = []
         for specimen, rig in zip(specimens, rig_of, strict=True):
             progress(f"comparing {specimen.name}")
-            rows.append(_row(specimen, rig))
-    shown = _with_estimates(rows, rigs)
-    found = Fleet(shown, rigs, (*fleet_notes(shown, rigs), *note_on_sharing(specimens, rig_of)))
+            tyre = None if specimen.information is None else next(together[rig])
+            rows.append(_row(specimen, rig, tyre))
+    found = Fleet(tuple(rows), rigs, (*fleet_notes(rows, rigs), *note_on_sharing(specimens, rig_of)))
     if out is not None:
         progress("writing the page")
         write_fleet(found, Path(out))
@@ -96,10 +103,18 @@ def _plainly_named(found: Sequence[Information]) -> list[Information]:
     ]
 
 
-def _row(specimen: Specimen, rig: int) -> Row:
-    alone = _estimated([specimen])
-    tyre = alone.tyres[0] if alone is not None else None
-    return Row(specimen, rig, _compared(specimen.tyre, tyre, turn_slip=specimen.on_disc), _epsilon(tyre))
+def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
+    """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
+    own = _estimated([specimen])
+    alone = None if own is None else own.tyres[0]
+    return Row(
+        specimen,
+        rig,
+        numbers=_compared(specimen.tyre, alone, turn_slip=specimen.on_disc),
+        alone=_epsilon(alone),
+        together=_epsilon(together),
+        strain={} if together is None else together.strain,
+    )
 
 
 def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
@@ -114,14 +129,47 @@ def _epsilon(found: TyreEstimate | None) -> Quantity | None:
     return None if number is None else Quantity(*number, "-")
 
 
-def _with_estimates(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> tuple[Row, ...]:
-    """The rows with the joint estimates of each rig."""
-    left = [list(rig.tyres) if rig is not None else [] for rig in rigs]
-    out = []
-    for row in rows:
-        if row.specimen.information is None:
-            out.append(row)
-            continue
-        tyre = left[row.rig].pop(0)
-        out.append(replace(row, together=_epsilon(tyre), strain=tyre.strain))
-    return tuple(out)
+def write_fleet(found: Fleet, out: Path) -> None:
+    """Write every output of a fleet, or nothing."""
+    from mffit import report
+
+    known = priors_of_fleet(found)
+    read = [row.specimen.folder / combining.INFORMATION for row in found.rows]
+    with output_folder(out, by="fleet", protected=read, outdated=WRITTEN) as folder:
+        write_csv(fleet_table(found), folder / "fleet.csv")
+        as_json.write(folder / "fleet.json", as_json.fleet(found))
+        if known is not None:
+            as_json.write(folder / "priors.json", known)
+        report.write_fleet(found, folder, priors=known is not None)
+
+
+def priors_of_fleet(found: Fleet) -> dict[str, object] | None:
+    """The content of ``priors.json``; None with too few tyres, several rigs or several nominal conditions."""
+    if len(found.rigs) > 1 or len({nominal_conditions(row.specimen.tyre) for row in found.rows}) > 1:
+        return None
+    rig = found.rigs[0]
+    return None if rig is None else priors_of_rig(rig, found.rows[0].specimen.tyre, len(found.rows))
+
+
+def priors_of_rig(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict[str, object] | None:
+    """The content of ``priors.json`` from ``tyres`` tyres of the kind of ``tyre``; None if there are too few."""
+    known = {
+        name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
+        for name, p in rig.population.items()
+        if p.tyres >= combining.constants.FEWEST_TYRES_FOR_SCATTER
+    }
+    load, pressure = nominal_conditions(tyre)
+    return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None
+
+
+def fleet_table(found: Fleet) -> pd.DataFrame:
+    """The content of ``fleet.csv``: a row per specimen."""
+    rows = []
+    for row in found.rows:
+        numbers = {f"epsilon_gamma_{key}": getattr(row, key) for key in combining.EPSILON} | dict(row.numbers)
+        out = {"name": row.specimen.name, "folder": str(row.specimen.folder), "rig": row.rig + 1}
+        for key, q in numbers.items():
+            out |= {key: None if q is None else q.value, f"u_{key}": None if q is None else q.u}
+        out |= {f"rmse_{channel}": value for channel, value in row.specimen.misfit.items()}
+        rows.append(out | {"warnings": len(row.specimen.warnings)})
+    return pd.DataFrame(rows)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import tir
-from mffit import config as configuration
 from mffit import points
 from mffit.config import Config
 from mffit.conversion import convert, is_old
@@ -16,7 +15,6 @@ from mffit.fit.known import given_values
 from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading
-from mffit.recordings import with_recognised
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from tir import Tyre
@@ -31,9 +29,8 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
     continuous : see :func:`mffit.points.read`
     """
     with formats.reading_once():
-        config, recognised = with_recognised(config)
         found = points.read(config, continuous=continuous)
-    return found._replace(warnings=(*recognised, *found.warnings, *before_the_fit(found.points, config)))
+    return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
 
 
 def read_base(config: Config) -> Tyre | None:
@@ -96,32 +93,6 @@ def input_hashes(config: Config) -> dict[str, str]:
 
 
 def input_names(config: Config) -> list[str]:
-    """The files that a configuration names: sweeps in their order, base file, priors, and other campaigns with theirs."""
+    """The files that a configuration names: sweeps in their order, base file, priors."""
     named = (*(sweep.file for sweep in config.sweep), config.tyre.base, config.tyre.priors)
-    names = [name for name in named if name]
-    for index, row in enumerate(config.campaign):
-        folder = Path(row.toml).parent
-        theirs = input_names(other_project(config, index))
-        names += [row.toml, *((folder / name).as_posix() for name in theirs)]
-    return list(dict.fromkeys(names))
-
-
-def other_project(config: Config, index: int) -> Config:
-    """The configuration of another campaign, which names no campaigns itself."""
-    name = config.campaign[index].toml
-    path = config.folder / name
-    if not path.is_file():
-        raise wrong_campaign(
-            config, index, f"there is no file {path}; name the tyre.toml of the other campaign"
-        )
-    other = configuration.load(path)
-    if other.campaign:
-        raise wrong_campaign(config, index, f"{name} names campaigns itself; name all of them here")
-    return other
-
-
-def wrong_campaign(config: Config, index: int, sentence: str) -> InputError:
-    """An error about an entry of ``[[campaign]]``."""
-    return InputError(
-        sentence, file=config.path, line=config.line_of(f"campaign.{index}.toml"), key="campaign.toml"
-    )
+    return list(dict.fromkeys(name for name in named if name))

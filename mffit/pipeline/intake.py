@@ -7,12 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from mffit import config as configuration
+from mffit.config.loading import STAND_IN
 from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.project_file import load_beyond, slug
-from mffit.recordings.sniffed import STAND_IN, configuration_of
+from mffit.recordings.sniffed import configuration_of
 from mffit.recordings.stretch_table import stretch_table
 from mffit.sweeps import formats
 

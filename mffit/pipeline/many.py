@@ -10,18 +10,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import mffit
-import tir
 from mffit import config as configuration
-from mffit import made
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
+from mffit.made import made
 from mffit.output import written_by
-from mffit.pipeline.build_output import REPORT, WRITTEN, resolved_text
+from mffit.pipeline.build_output import FOLDER, REPORT, WRITTEN, resolved_text
 from mffit.pipeline.building import build
-from mffit.pipeline.members import FOLDER
-from mffit.pipeline.provenance import METHOD, PROGRAM, fitted_to
+from mffit.pipeline.inputs import input_hashes
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
 from mffit.results import BuildOutcome
 from tir.errors import TirError
@@ -171,17 +168,14 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
     try:
         result = json.loads((out / "result.json").read_text(encoding="utf-8"))
         files = [*WRITTEN, "resolved.toml", *result["files"].values()]
-        files = [name for name in files if with_report or name != REPORT]
-        tyre = tir.read(out / result["tir"])
         drawn = sum(name.startswith(f"{FOLDER}/") and name.endswith(".tir") for name in kept)
+        stated, now = result["made"], made(input_hashes(config))
         return (
-            set(files) <= kept
+            {name for name in files if with_report or name != REPORT} <= kept
             and ensemble in (0, drawn)
             and (out / "resolved.toml").read_bytes() == resolved_text(config, out)
-            and tyre.provenance.get(PROGRAM) == f"mffit {mffit.__version__}"
-            and tyre.provenance.get(METHOD) == str(made.METHOD)
-            and fitted_to(tyre, config)
-            and "trusted" in result
+            and (stated["version"], stated["method"]) == (now.version, now.method)
+            and stated["inputs"] == now.inputs
         )
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, TirError):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return False

@@ -10,19 +10,18 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-import mffit.planning as search
 from mffit import config as configuration
+from mffit import planning
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
-from mffit.pipeline.measuring import measure
-from mffit.pipeline.refining import finite_spin_bias, undistorted
+from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
-from mffit.planning.outlook import Direct, DirectU
+from mffit.planning.prospect import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import column
@@ -47,8 +46,8 @@ def plan(
     Parameters
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
-    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"tie:ply-steer"`` or the name of
-        a coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
+    goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"file"`` or the name of a
+        coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
     runs : largest number of runs in the list
     without : kinds of runs that this rig cannot make, for example ``"other-side"``
     out : folder to write to; nothing is written if None
@@ -87,7 +86,7 @@ def plan_of(
     """:func:`plan` for a finished build."""
     config = result.config
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        return search.plan(
+        return planning.plan(
             config,
             result.points,
             result.measured,
@@ -106,22 +105,18 @@ def _direct_method(result: BuildResult) -> Direct:
 
     def direct(config: Config, points: Points) -> DirectU | None:
         try:
-            _, measured = measure(config, points, base)
+            measured = measure(config, points, base)[1]
         except InputError:
             return None
         raw = measured.epsilon_gamma
         if raw is None:
             return None
         bias = finite_spin_bias(config, points, model, base)
-        if bias is None:
-            return DirectU(stated=raw.u, held=raw.u)
-        measured = measured.debiased(bias)
-        assert measured.epsilon_gamma is not None
-        assert measured.epsilon_gamma_debiased is not None
-        if config.spin.pecp1 == "debiased":
-            u = measured.epsilon_gamma_debiased.u
-            return DirectU(stated=u, held=u)
-        return DirectU(stated=measured.epsilon_gamma.u, held=raw.u)
+        known = measured if bias is None else measured.debiased(bias)
+        if known.epsilon_gamma_debiased is not None and config.spin.pecp1 == "debiased":
+            return DirectU(known.epsilon_gamma_debiased.u, known.epsilon_gamma_debiased.u)
+        assert known.epsilon_gamma is not None
+        return DirectU(stated=known.epsilon_gamma.u, held=raw.u)
 
     return direct
 

@@ -70,8 +70,6 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             **inputs,
         }
         quantities = {**measured.quantities(), **_of_rig(fitted.rig if special is None else special.rig)}
-        for other in fitted.joined:
-            quantities |= _of_rig(other.campaign.rig)
         if special is not None:
             low, high = special.T_range
             quantities |= {LOWEST: tir.Quantity(low, 0.0, "degC"), HIGHEST: tir.Quantity(high, 0.0, "degC")}

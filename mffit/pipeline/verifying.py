@@ -14,12 +14,12 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.errors import InputError, readable
 from mffit.output import digest, written_by
+from mffit.pipeline.build_output import FOLDER, write_members
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_names
-from mffit.pipeline.members import FOLDER, write_members
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult, Verification, as_json
-from mffit.results.verification import ComparedNumbers, compared, largest_first
+from mffit.results.verification import NumberAgain, compared
 from tir import Tyre
 
 RESULT, RESOLVED = "result.json", "resolved.toml"
@@ -50,14 +50,11 @@ def verify(out: str | Path, *, progress: Progress = silent) -> Verification:
     drawn = sorted(path.name for path in (out / FOLDER).glob("*.tir"))
     result = build(config, ensemble=len(drawn), progress=progress)
     progress("comparing")
-    parts = [compared(RESULT, stored, json.loads(as_json.text(as_json.build(result))))]
-    parts += _property_files(out, stored, drawn, result)
+    again = compared(RESULT, stored, json.loads(as_json.text(as_json.build(result))))
     made = stored["made"]
     return Verification(
         folder=str(out),
-        numbers=sum(part.numbers for part in parts),
-        exact=sum(part.exact for part in parts),
-        changes=largest_first(change for part in parts for change in part.changes),
+        compared=(*again, *_property_files(out, stored, drawn, result)),
         method=(made["method"], result.made.method),
         version=(made["version"], result.made.version),
         libraries=(dict(made.get("libraries", {})), result.made.libraries),
@@ -71,8 +68,6 @@ def _stored(out: Path) -> dict[str, Any]:
         text = path.read_bytes()
     try:
         found: dict[str, Any] = json.loads(text)
-        if old := "made" not in found:
-            found["made"] = {"inputs": {}, "method": 0, "version": ""}
         tables = (found["files"], found["fit"]["coefficients"], found["made"]["inputs"])
         whole = all(isinstance(table, dict) for table in tables) and {"method", "version"} <= set(
             found["made"]
@@ -80,9 +75,9 @@ def _stored(out: Path) -> dict[str, Any]:
     except (ValueError, LookupError, TypeError, AttributeError):
         whole = False
     if not whole:
-        raise InputError("is not the result of a build, or was damaged; build it again", file=path)
-    if old:
-        raise InputError("does not state its inputs, as an older version left it; build it again", file=path)
+        raise InputError(
+            "is not the result of a build of this version, or was damaged; build it again", file=path
+        )
     return found
 
 
@@ -117,7 +112,7 @@ def _check_inputs(config: Config, hashes: Mapping[str, str]) -> None:
 
 def _property_files(
     out: Path, stored: Mapping[str, Any], drawn: list[str], result: BuildResult
-) -> Iterator[ComparedNumbers]:
+) -> Iterator[NumberAgain]:
     """Every property file against the new one, which is written to a temporary folder as a build would write it."""
     spread = {name: row["stderr"] for name, row in stored["fit"]["coefficients"].items()}
     with tempfile.TemporaryDirectory() as folder:
@@ -130,7 +125,7 @@ def _property_files(
             if not path.is_file():
                 raise InputError(f"is gone, but {RESULT} names it; build again", file=path)
             again = _numbers(tir.read(new / name), spread) if (new / name).is_file() else {}
-            yield compared(name, _numbers(tir.read(path), spread), again)
+            yield from compared(name, _numbers(tir.read(path), spread), again)
 
 
 def _numbers(tyre: Tyre, spread: Mapping[str, float | None]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
@@ -70,19 +70,12 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
             f"no Dask scheduler answers at {address} ({type(error).__name__}): start one with `dask scheduler`, "
             "or correct --dask"
         ) from None
-    absolute = [Job(job.source.absolute(), job.name, job.out, job.ensemble) for job in wanted]
+    absolute = [replace(job, source=job.source.absolute()) for job in wanted]
     given = {job.source.absolute(): job.source for job in wanted}
     with client:
         executor = client.get_executor(pure=False)
         for outcome in _submitted(executor, deque(absolute), CLUSTER_BUILDS_IN_FLIGHT, build_one):
             yield replace(outcome, source=given[outcome.source])
-
-
-class _WorkerDied(Exception):
-    """A worker process ended and the pool with it; ``jobs`` were in progress."""
-
-    def __init__(self, jobs: list[Job]) -> None:
-        self.jobs = jobs
 
 
 def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[BuildOutcome, None, list[Job]]:
@@ -92,10 +85,7 @@ def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[Build
     )
     others = set(multiprocessing.active_children())
     try:
-        yield from _submitted(pool, left, jobs, partial(_interruptible, build_one))
-        return []
-    except _WorkerDied as died:
-        return died.jobs
+        return (yield from _submitted(pool, left, jobs, partial(_interruptible, build_one)))
     except (KeyboardInterrupt, GeneratorExit):
         _interrupt(set(multiprocessing.active_children()) - others)
         raise
@@ -105,8 +95,11 @@ def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[Build
 
 def _submitted(
     executor: Executor, left: deque[Job], at_once: int, build_one: BuildOne
-) -> Iterator[BuildOutcome]:
-    """Outcomes as they arrive; at most ``at_once`` jobs are submitted, so that an interruption leaves none queued."""
+) -> Generator[BuildOutcome, None, list[Job]]:
+    """Outcomes as they arrive; returns the jobs in progress if a process died and the pool with it, else none.
+
+    At most ``at_once`` jobs are submitted, so that an interruption leaves none queued.
+    """
     in_flight: dict[Future[BuildOutcome], Job] = {}
     while left or in_flight:
         try:
@@ -114,23 +107,18 @@ def _submitted(
                 in_flight[executor.submit(build_one, left[0])] = left[0]
                 left.popleft()
         except BrokenProcessPool:
-            raise _WorkerDied(list(in_flight.values()) or [left.popleft()]) from None
-        done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
-        pool_broke = False
-        for future in done:
-            error = future.exception()
+            return list(in_flight.values()) or [left.popleft()]
+        wait(in_flight, return_when=FIRST_COMPLETED)
+        ended = {future: future.exception() for future in in_flight if future.done()}
+        for future, error in ended.items():
             if isinstance(error, KeyboardInterrupt):
                 raise error
-            if isinstance(error, BrokenProcessPool):
-                pool_broke = True
-                continue
-            job = in_flight.pop(future)
-            yield future.result() if error is None else _lost(job, error)
-        if pool_broke:
-            for future in [f for f in in_flight if f.done() and f.exception() is None]:
-                del in_flight[future]
-                yield future.result()
-            raise _WorkerDied(list(in_flight.values()))
+            if not isinstance(error, BrokenProcessPool):
+                job = in_flight.pop(future)
+                yield future.result() if error is None else _lost(job, error)
+        if any(isinstance(error, BrokenProcessPool) for error in ended.values()):
+            return list(in_flight.values())
+    return []
 
 
 def _lost(job: Job, error: BaseException | None = None) -> BuildOutcome:

@@ -2,9 +2,8 @@
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal
-from mffit.planning.record import Identified, Plan, PlanStep, Tie
+from mffit.planning.plan import Identified, Plan, PlanStep, Tie, Trial, plan
 from mffit.planning.runs import PlannedRun, candidates
-from mffit.planning.search import plan
 
 __all__ = [
     "ADDITIONS",
@@ -16,6 +15,7 @@ __all__ = [
     "PlanStep",
     "PlannedRun",
     "Tie",
+    "Trial",
     "addition_named",
     "candidates",
     "plan",

@@ -9,10 +9,8 @@ from typing import Literal, NamedTuple
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.errors import InputError
 from mffit.planning import constants
-from mffit.quantities import CHANNELS, DIRECT
+from mffit.quantities import CHANNELS
 from mffit.rig_errors import DECLARED
-
-_EPSILON = DIRECT["epsilon_gamma"].ascii
 
 
 class LineOfPoints(NamedTuple):
@@ -43,7 +41,6 @@ class Addition:
     pressures: Sequence[float] = (1.0,)  #: over the programme's pressure, one run each
     declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
     declares_unit: str = ""
-    revolution: bool = False  #: adds a [rolling_radius] table
 
 
 _NEW_SETUP = (
@@ -120,14 +117,6 @@ ADDITIONS = (
         rig="disc",
     ),
     *_RIG_MEASUREMENTS,
-    Addition(
-        id="revolution",
-        title="one revolution of the disc",
-        reason=f"{_EPSILON} cannot be measured without an effective radius.",
-        loads="nominal",
-        rig="disc",
-        revolution=True,
-    ),
     Addition(
         id="backward-camber",
         title="camber sweep rolled backwards",

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config import Config, RollingRadiusTable, SweepTable, setup_names
+from mffit.config import Config, SweepTable, setup_names
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.measured import measured_path_radius
 from mffit.planning import constants
@@ -31,7 +31,6 @@ class PlannedRun:
     held_deg: float = 0.0  #: camber of coupled sweeps, sideslip of sweeps of combined slip
     pressure_kPa: float | None = None  #: where it differs from the programme's
     rig: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] and their values from then on
-    revolution: RollingRadiusTable | None = None
 
     @property
     def cost(self) -> int:
@@ -45,21 +44,9 @@ class PlannedRun:
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
         return f"{self.addition.id}-{self.load:.0f}N{angle}{pressure}"
 
-    def declared(self, config: Config) -> Config:
-        """The configuration once this has been done."""
-        if self.rig:
-            config = config.model_copy(update={"rig": config.rig.model_copy(update=dict(self.rig))})
-        if self.revolution is not None:
-            tables = (*config.rolling_radius, self.revolution)
-            config = config.model_copy(update={"rolling_radius": tables})
-        return config
 
-
-def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[PlannedRun, ...]:
-    """Every run that a rig could add to these points.
-
-    ``r_e`` is the effective radius of the model at the nominal load [m], to predict a disc revolution.
-    """
+def candidates(config: Config, points: Points) -> tuple[PlannedRun, ...]:
+    """Every run that a rig could add to these points."""
     programme = _Programme(config, points)
     here = "disc" if config.rig.on_disc else "belt"
     return tuple(
@@ -67,24 +54,19 @@ def candidates(config: Config, points: Points, r_e: float | None = None) -> tupl
         for addition in ADDITIONS
         if addition.rig in ("any", here)
         for load in programme.loads_of(addition)
-        for run in _runs_of(programme, addition, load, r_e)
+        for run in _runs_of(programme, addition, load)
     )
 
 
-def _runs_of(
-    programme: _Programme, addition: Addition, load: float, r_e: float | None
-) -> Iterator[PlannedRun]:
+def _runs_of(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:
     """The runs of an addition at one load."""
     if addition.declares:
         yield from _better_declared(programme.config, addition, load)
-    elif addition.revolution:
-        yield from _revolution(programme.config, addition, load, r_e)
-    else:
-        for held_deg, factor in product(programme.held_deg(addition, load), addition.pressures):
-            p = factor * programme.pressure
-            lines = [programme.line(line, addition, load, p, held_deg) for line in addition.lines]
-            pressure = None if factor == 1.0 else 1e-3 * p
-            yield PlannedRun(addition, load, concatenate(lines), held_deg, pressure)
+        return
+    for held_deg, factor in product(programme.held_deg(addition, load), addition.pressures):
+        p = factor * programme.pressure
+        lines = [programme.line(line, addition, load, p, held_deg) for line in addition.lines]
+        yield PlannedRun(addition, load, concatenate(lines), held_deg, None if factor == 1.0 else 1e-3 * p)
 
 
 def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[PlannedRun]:
@@ -93,17 +75,6 @@ def _better_declared(config: Config, addition: Addition, load: float) -> Iterato
     u = getattr(config.rig, addition.declares) if R is None else float(R.std_dev)
     if u:
         yield PlannedRun(addition, load, rig={addition.declares: constants.RIG_IMPROVEMENT * u})
-
-
-def _revolution(config: Config, addition: Addition, load: float, r_e: float | None) -> Iterator[PlannedRun]:
-    """The disc revolution that would measure r_e, where none was made."""
-    if config.rolling_radius or r_e is None or config.rig.radius is None:
-        return
-    turns, rest = divmod(config.rig.radius / r_e, 1.0)
-    table = RollingRadiusTable(
-        load_N=round(load, 1), revolutions=turns, angle_start_deg=0.0, angle_end_deg=round(360.0 * rest, 1)
-    )
-    yield PlannedRun(addition, load, revolution=table)
 
 
 def swept(points: Points) -> Points:

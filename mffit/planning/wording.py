@@ -8,8 +8,8 @@ from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import NAMES
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
-from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE
-from mffit.planning.record import Identified, Plan, Tie
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
+from mffit.planning.plan import Identified, Plan, Tie
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.rounding import decimals_of
@@ -34,24 +34,12 @@ def headline(plan: Plan) -> str:
         least = f"{100 * constants.WORTHWHILE_FALL:g} %"
         return (
             f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget and "
-            f"the ties show what limits it.{_tie_resolved(plan)}"
+            f"the ties show what limits it."
         )
     count = len(plan.steps)
     runs = "1 addition" if count == 1 else f"{count} additions"
     cost = f" with {plan.points} points" if plan.points else ""
-    return f"{runs}{cost}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}.{_tie_resolved(plan)}"
-
-
-def _tie_resolved(plan: Plan) -> str:
-    """Whether the whole list separates a tie; empty for other goals."""
-    if plan.told_below is None:
-        return ""
-    limit = f"{shown(plan, plan.told_below)}"
-    if plan.now < plan.told_below:
-        return f" The effects are separated already, because that is below {limit}."
-    if plan.then < plan.told_below:
-        return f" That separates the effects, because it is below {limit}."
-    return f" The tie remains: the effects are separated only below {limit}."
+    return f"{runs}{cost}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
 
 
 def measure(plan: Plan) -> str:
@@ -67,42 +55,27 @@ def shown(plan: Plan, u: float) -> str:
     return f"{_u(u)}{unit}"
 
 
+ESTIMATES = {
+    EPSILON: f"{EPS} of the direct method as a build states it%s: its own budget, computed from your points and from the "
+    "readings that the fitted rig would give at the new points",
+    JOINT: 'PECP1 of the joint fit of tyre and rig (spin.pecp1 = "model"), from its posterior, linearised at the present '
+    "solution",
+    BANDS: "the 95 % band of the fitted curves on a straight path: rms over the tested sideslip and camber at three loads, from "
+    "the posterior, linearised at the present solution",
+    FILE: "the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and slip at three loads, at "
+    "which the wheel has been steered, leaned or driven so far. What was not measured counts with its prior",
+}
+OF_COEFFICIENT = "the standard error in the file, from the posterior, linearised at the present solution"
+
+
 def promise(plan: Plan) -> str:
     """What the numbers mean, and for which estimate they hold."""
-    kind, name = plan.goal.kind, plan.goal.name
-    if kind == EPSILON:
-        debiased = plan.config.spin.pecp1 == "debiased"
-        which = " (debiased, without the line of finite spin)" if debiased else ""
-        estimate = (
-            f"The prediction is for {EPS} of the direct method as a build states it{which}: its own budget, computed from your "
-            "points and from the readings that the fitted rig would give at the new points."
-        )
-    elif kind == JOINT:
-        estimate = (
-            'The prediction is for PECP1 of the joint fit of tyre and rig (spin.pecp1 = "model"), from its posterior, linearised '
-            "at the present solution."
-        )
-    elif kind == BANDS:
-        estimate = (
-            "The prediction is for the 95 % band of the fitted curves on a straight path: rms over the tested sideslip and "
-            "camber at three loads, from the posterior, linearised at the present solution."
-        )
-    elif kind == FILE:
-        estimate = (
-            "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values: rms over sideslip, camber and "
-            "slip at three loads, at which the wheel has been steered, leaned or driven so far. What was not measured counts "
-            "with its prior."
-        )
-    elif kind == TIE:
-        limit = f", {shown(plan, plan.told_below)}" if plan.told_below else ""
-        estimate = (
-            f"The prediction is for {NAMES.get(name, name)} from the data alone, with all fitted numbers and its rival effects "
-            f"free. The effects are separated below a third of the usual size{limit}."
-        )
-    else:
-        estimate = "The prediction is for the standard error in the file, from the posterior, linearised at the present solution."
+    kind = plan.goal.kind
+    debiased = plan.config.spin.pecp1 == "debiased"
+    which = " (debiased, without the line of finite spin)" if debiased else ""
+    estimate = ESTIMATES.get(kind, OF_COEFFICIENT).replace("%s", which)
     size = "" if kind in (BANDS, FILE) else " are standard uncertainties (k = 1) and"
-    return f"{estimate} All numbers{size} assume the noise of your present points."
+    return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 
 def estimates(plan: Plan) -> str:
@@ -198,10 +171,4 @@ def instructions(run: PlannedRun) -> list[str]:
         share = f"{constants.RIG_IMPROVEMENT:.2g} of the uncertainty declared now"
         # Comments, because tyre.toml already has a [rig] table and TOML allows only one.
         return [f"# change in [rig]: {key} = {value:.3g} ({share})" for key, value in run.rig.items()]
-    if run.revolution is not None:
-        return [
-            "[[rolling_radius]]",
-            f"load_N = {run.load:.0f}",
-            "# revolutions, angle_start_deg, angle_end_deg",
-        ]
     return []

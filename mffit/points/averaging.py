@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -31,27 +32,29 @@ AVERAGED_RANGE = {
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
     """Some rows of a sweep as points."""
-    return _points(sweep, phi_t, {}, sweep.table, rows)
+    means = {name: getattr(sweep, name)[rows] for name in AVERAGED_CHANNELS}
+    return _points(sweep, phi_t, rows, means, sweep.table.iloc[rows])
 
 
 def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.ndarray) -> Points:
     """Means over the stretches without faulty samples, with their standard errors if the file states none."""
     if not kept:
-        return _no_points(sweep, phi_t)
+        return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int))
     parts = [sound_rows(stretch, faulty) for stretch in kept]
-    means = {
-        name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in AVERAGED_CHANNELS
-    }
-    table = _averaged_table(sweep.table, parts)
+    found = _means(sweep, phi_t, np.concatenate(parts), _begins([len(part) for part in parts]))
+    u = {}
     for channel in CHANNELS:
-        values, u = getattr(sweep, channel), f"u_{channel}"
+        values, stated = getattr(sweep, channel), found.u(channel)
         if np.any(np.isfinite(values)):
             errors = errors_of_means([values[part] for part in parts])
             # A record without scatter does not show how exact it is.
-            means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
-        table[u_column(channel)] = means[u]
-    first = np.array([part[0] for part in parts])
-    return _points(sweep, phi_t, means, table.dropna(axis="columns", how="all"), first)
+            stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
+        u[channel] = stated
+    table = found.table.assign(**{u_column(channel): values for channel, values in u.items()})
+    return found.replace(
+        **{f"u_{channel}": values for channel, values in u.items()},
+        table=table.dropna(axis="columns", how="all"),
+    )
 
 
 def sound_rows(stretch: Stretch, faulty: np.ndarray) -> np.ndarray:
@@ -59,58 +62,29 @@ def sound_rows(stretch: Stretch, faulty: np.ndarray) -> np.ndarray:
     return np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
 
 
-def _averaged_table(table: pd.DataFrame, parts: list[np.ndarray]) -> pd.DataFrame:
-    """Mean of every number and first of every text; without time, so that the rows are read as finished points."""
-    averaged = {
-        name: [
-            column.iloc[part].mean() if pd.api.types.is_numeric_dtype(column) else column.iloc[part[0]]
-            for part in parts
-        ]
-        for name, column in table.items()
-        if name != "time_s"
-    }
-    return pd.DataFrame(averaged)
-
-
 def along_sweeps(
     sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], faulty: np.ndarray
 ) -> tuple[Points, np.ndarray]:
     """Means over short blocks of sweeps, without faulty samples; and the samples (m,) that they average."""
     if not stretches:
-        return _no_points(sweep, phi_t), np.zeros(0, dtype=int)
-    whole, begins, numbers, count = [], [], [], 0
+        return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int)), np.zeros(0, dtype=int)
+    kept, sizes, numbers = [], [], []
     for k, stretch in enumerate(stretches):
         rows = sound_rows(stretch, faulty)
-        first, size = _blocks(sweep, rows)
-        enough = 2 * np.diff(np.r_[first, len(rows)]) >= size  # most of its samples
-        whole.append(rows)
-        begins.append(np.column_stack([first + count, enough]))
-        numbers.append(np.full(len(first), k))
-        count += len(rows)
-    rows, blocks, number = np.concatenate(whole), np.concatenate(begins), np.concatenate(numbers)
-    first, enough = blocks[:, 0], blocks[:, 1].astype(bool)
-    counts = np.diff(np.r_[first, len(rows)])
-
-    def mean(values: np.ndarray) -> np.ndarray:
-        if values.strides == (0,):  # not measured, or one value for all samples
-            return np.broadcast_to(values[:1], (int(enough.sum()),))
-        return np.asarray((np.add.reduceat(values[rows], first) / counts)[enough])
-
-    means = {name: mean(getattr(sweep, name)) for name in AVERAGED_CHANNELS}
-    table = pd.DataFrame(
-        {
-            name: mean(column.to_numpy(dtype=float))
-            if pd.api.types.is_numeric_dtype(column)
-            else column.to_numpy()[rows[first[enough]]]
-            for name, column in sweep.table.items()
-            if name != "time_s"
-        }
+        first, usual = _blocks(sweep, rows)
+        counts = np.diff(np.r_[first, len(rows)])
+        enough = 2 * counts >= usual  # most of its samples
+        kept.append(rows[np.repeat(enough, counts)])
+        sizes.append(counts[enough])
+        numbers.append(np.full(int(enough.sum()), k))
+    averaged, first = np.concatenate(kept), _begins(np.concatenate(sizes))
+    found = _means(sweep, phi_t, averaged, first).replace(
+        continuous=True,
+        time=_mean(sweep.time, averaged, first),
+        sweep=np.concatenate(numbers),
+        sweep_names=tuple(labels),
     )
-    found = _points(sweep, phi_t, means, table, rows[first[enough]])
-    found = found.replace(
-        continuous=True, time=mean(sweep.time), sweep=number[enough], sweep_names=tuple(labels)
-    )
-    return found, rows[np.repeat(enough, counts.astype(int))]
+    return found, averaged
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
@@ -130,15 +104,36 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
 
 
-def _no_points(sweep: Sweep, phi_t: float) -> Points:
-    return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int))
+def _begins(sizes: Sequence[int] | np.ndarray) -> np.ndarray:
+    """Where each of successive blocks begins."""
+    return np.cumsum(np.r_[0, sizes])[:-1].astype(int)
+
+
+def _mean(values: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Means (k,) over blocks of rows (m,), which begin at ``first`` (k,)."""
+    if values.strides == (0,) or not len(first):  # not measured, or one value for all samples
+        return np.broadcast_to(values[:1], first.shape)
+    return np.asarray(np.add.reduceat(values[rows], first) / np.diff(np.r_[first, len(rows)]))
+
+
+def _means(sweep: Sweep, phi_t: float, rows: np.ndarray, first: np.ndarray) -> Points:
+    """Points from the means over blocks; of every text the first, and no time, so that they are read as finished points."""
+    means = {name: _mean(getattr(sweep, name), rows, first) for name in AVERAGED_CHANNELS}
+    table = {
+        name: _mean(column.to_numpy(dtype=float), rows, first)
+        if pd.api.types.is_numeric_dtype(column)
+        else column.to_numpy()[rows[first]]
+        for name, column in sweep.table.items()
+        if name != "time_s"
+    }
+    return _points(sweep, phi_t, rows[first], means, pd.DataFrame(table))
 
 
 def _points(
-    sweep: Sweep, phi_t: float, means: dict[str, np.ndarray], table: pd.DataFrame, first: np.ndarray
+    sweep: Sweep, phi_t: float, first: np.ndarray, means: dict[str, np.ndarray], table: pd.DataFrame
 ) -> Points:
     """Points from means by channel, and from the first samples for every other channel."""
-    values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in AVERAGED_CHANNELS} | means
+    values: dict[str, Any] = means
     return make_points(
         **values,
         phi_t=phi_t,
@@ -148,5 +143,5 @@ def _points(
         sweep_names=(sweep.name,),
         files=(sweep.file,),
         setups=(sweep.setup,),
-        table=table.iloc[first] if len(table) != len(first) else table,
+        table=table,
     )

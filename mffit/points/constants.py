@@ -17,7 +17,6 @@ SLIP = Real(
     "-",
     "Longitudinal slips of one level differ by less: a wheel rolls freely up to it, a sweep is averaged over it.",
 )
-SMALLEST_LEVEL = Real(0.02, "-", "Fewest values of a level over those of the largest level.")
 LEVEL_FLANK = Real(
     0.3, "-", "Density over that half a tolerance away below which values are a flank of that level."
 )
@@ -34,12 +33,6 @@ CORE = Series(
 UNLOADED = Real(
     0.1, "-", "Share of the usual load, or speed, below which the tyre is off the belt, or stands."
 )
-STUCK_TIME = Real(
-    0.5, "s", "Time for which a sensor repeats one value, more often than chance lets it, if it is stuck."
-)
-FAR_FROM_NOISE = Real(
-    12.0, "-", "Standard deviations of a sample that no noise reaches, correlated or with heavy tails."
-)
 SPIKE = Real(0.15, "-", "Smallest spike of a force over the usual load.")
 HARMLESS_DRIFT = Real(0.02, "-", "Drift of a force within a stretch, over the load, that is averaged.")
 ARM = Real(
@@ -52,7 +45,11 @@ SPIKE_WINDOW = Count(5, "-", "Samples of the running median that shows spikes.")
 STEP_OF_ANGLE = Real(
     0.15, "deg", "Smallest change that makes another set-point; the noise of a logger is below it."
 )
-COMPARED_APART = Real(0.5, "s", "Time between settings that are compared to find a change.")
+COMPARED_APART = Real(
+    0.5,
+    "s",
+    "Time between readings that are compared: a setting that changed, a sensor that is stuck shows over it.",
+)
 SHORTEST_STRETCH = Real(2.0, "s", "Shortest stretch after its transient.")
 FEWEST_POINTS = Count(8, "-", "Fewest samples or points that show a level, a line or a noise.")
 TRANSIENT_ROLL = Real(2.0, "m", "Distance dropped after a change: three to ten relaxation lengths.")
@@ -70,11 +67,6 @@ BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compar
 COLD_TREAD = Real(
     10.0, "K", "First sweeps are dropped if the tread is this much colder than in the middle one."
 )
-COLDER_BEGINNING = Real(
-    3.0,
-    "K",
-    "A recording begins cold if its first sweeps are this much colder than later ones: grip changes by 1 %.",
-)
 FEWEST_SWEEPS = Count(3, "-", "Fewest sweeps that show what is usual and its scatter.")
 
 # Means and lag of moving sweeps
@@ -86,9 +78,6 @@ NEAR_ZERO = Real(
     0.25,
     "-",
     "Fy over the largest of its sweep, or Fx over the load, below which the curve is nearly straight.",
-)
-EVEN_RATE = Real(
-    0.5, "-", "Relative deviation from the usual rate of sideslip up to which a sample shows the lag."
 )
 
 # Definition of slip
@@ -102,14 +91,6 @@ SOFTEST_SLIP_STIFFNESS = Real(
     2.0,
     "-",
     "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
-)
-SMALLEST_DRIVEN_FORCE = Real(
-    0.02, "-", "|Fx| over load that every driven tyre exceeds: kN read as N are at most 0.002."
-)
-LARGEST_SHIFT_OF_SLIP = Real(
-    0.12,
-    "-",
-    "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
 )
 WEAKEST_DIRECTION_OF_ZERO = Real(
     1e-3,

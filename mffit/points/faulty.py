@@ -14,7 +14,7 @@ from scipy.ndimage import median_filter
 from mffit.constants import FALSE_ALARM
 from mffit.points import constants
 from mffit.points.stretch import runs
-from mffit.scatter import robust
+from mffit.scatter import beyond, robust
 from mffit.sweeps import Sweep
 
 DRIVEN_RULE = "driven-or-braked"
@@ -81,7 +81,12 @@ def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
     values = getattr(sweep, channel)
     smallest = constants.SPIKE * _usual_load(sweep) * (constants.ARM if channel == "Mz" else 1.0)
     away = np.abs(values - median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
-    return np.asarray(away > np.fmax(constants.FAR_FROM_NOISE * robust(away), smallest))
+    return np.asarray(away > np.fmax(_span_of_noise(len(sweep)) * robust(away), smallest))
+
+
+def _span_of_noise(n: int) -> float:
+    """Distance between two of n samples that no noise reaches, in its standard deviations."""
+    return 2.0 * beyond(FALSE_ALARM / n)
 
 
 def _clipped(sweep: Sweep, channel: str) -> np.ndarray:
@@ -104,7 +109,7 @@ def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
     out = np.zeros(len(sweep), dtype=bool)
     noise = robust(np.diff(sweep.Fy)) / np.sqrt(2.0)
     for begin, end in runs(_still(sweep, getattr(sweep, channel), ~out)):
-        out[begin:end] = np.ptp(sweep.Fy[begin:end]) > constants.FAR_FROM_NOISE * noise
+        out[begin:end] = np.ptp(sweep.Fy[begin:end]) > _span_of_noise(len(sweep)) * noise
     return out
 
 
@@ -133,7 +138,7 @@ def _longest_by_chance(values: np.ndarray, some: np.ndarray) -> int:
 def _still(sweep: Sweep, values: np.ndarray, some: np.ndarray) -> np.ndarray:
     """Samples (n,) in runs of one value to the last digit that are longer than chance and a moment."""
     rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
-    shortest = max(_longest_by_chance(values, some), round(constants.STUCK_TIME * rate) - 1)
+    shortest = max(_longest_by_chance(values, some), round(constants.COMPARED_APART * rate) - 1)
     return _long_runs(np.r_[False, np.diff(values) == 0.0], shortest)
 
 
@@ -177,7 +182,7 @@ FAULTS = (
     FaultRule(
         id="spike",
         looks_at="Distance of a reading from the median of its neighbours",
-        limits=(constants.FAR_FROM_NOISE, constants.SPIKE, constants.ARM),
+        limits=(FALSE_ALARM, constants.SPIKE, constants.ARM),
         reason="spikes of {channel}",
         channels=SENSORS,
         ends_stretch=False,
@@ -194,7 +199,7 @@ FAULTS = (
     FaultRule(
         id="stuck-channel",
         looks_at="Readings in a row of one value, against the chance of them",
-        limits=(constants.STUCK_TIME, FALSE_ALARM),
+        limits=(constants.COMPARED_APART, FALSE_ALARM),
         reason="{channel} stuck",
         channels=SENSORS,
         find=_stuck,
@@ -202,7 +207,7 @@ FAULTS = (
     FaultRule(
         id="stuck-angle",
         looks_at="Sideslip readings in a row of one value while the side force moves",
-        limits=(constants.STUCK_TIME, FALSE_ALARM, constants.FAR_FROM_NOISE),
+        limits=(constants.COMPARED_APART, FALSE_ALARM),
         reason="{channel} stuck while Fy moves",
         channels=("alpha",),
         find=_stuck_while_moving,

@@ -190,7 +190,7 @@ def _centres(scaled: np.ndarray) -> np.ndarray:
             sizes.append(int(about.counts.sum()))
         left = left.part(np.abs(left.values - place) >= 1.0)
     # Below the scatter of a count: among few values a single one may be a level.
-    fewest = max(np.sqrt(max(sizes)) * SCATTER, constants.SMALLEST_LEVEL * max(sizes))
+    fewest = np.sqrt(max(sizes)) * SCATTER
     return np.sort([place for place, size in zip(places, sizes, strict=True) if size >= fewest])
 
 

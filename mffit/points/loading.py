@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
+from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
+from mffit.config.loading import STAND_IN
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.errors import InputError
 from mffit.points import levels
@@ -20,7 +21,7 @@ from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import common, rolled_distance
+from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -28,13 +29,10 @@ from mffit.points.slip_zero import Driven, SlipZero, against_free_rolling
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
-from mffit.scatter import rms
 from mffit.sweeps.sweep import ExcludedRows
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
-STAND_IN = {"p": 250e3, "V": 1.0}
-"""Pressure [Pa] and speed [m/s] of a bare table without them; the alignment does not depend on either."""
 
 
 class Reading(NamedTuple):
@@ -178,12 +176,12 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
     return f"no sweep rests long enough for a steady point{most}; {remedy}"
 
 
-def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
+def settled_sweeps(points: Points, lag: Lag) -> Points:
     """Continuous sweeps as points, at the angle that the force answers to; they keep the times within their sweep.
 
-    ``lag`` is the rolled distance by which the force lags and its standard uncertainty [m]; it is taken off where it is proven.
+    ``lag`` is taken off where it is proven.
     """
-    value, u = lag
+    value, u, _ = lag
     alpha, taken = points.alpha.copy(), np.zeros(len(points))
     if np.isfinite(value) and abs(value) > COVERAGE_FACTOR_95 * u:
         for k in np.unique(points.sweep[points.continuous]):
@@ -196,8 +194,8 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     return points.replace(alpha=alpha - taken, continuous=False, table=table)
 
 
-def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: float | None) -> list[str]:
-    """A sentence about the lag and hysteresis of the moving sweeps; a time if the speed is only ``assumed`` [m/s]."""
+def _of_motion(reduced: Sequence[Reduced], lag: Lag, assumed: float | None) -> list[str]:
+    """A sentence about the lag of the moving sweeps; a time if the speed is only ``assumed`` [m/s]."""
     if not any(part.lags for part in reduced):
         return []
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
@@ -206,20 +204,16 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float], assumed: fl
             "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "
             "unknown and not taken off; sweep up and down"
         ]
-    value, u = lag
+    value, u, _ = lag
     proven = abs(value) > COVERAGE_FACTOR_95 * u
     said = "taken off the angle" if proven else "not proven and not taken off"
-    hysteresis = rms(np.array([one.hysteresis for one in known]))
     size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"
     if assumed is not None:
         size = (
             f"{1e3 * value / assumed:.3g} +- {1e3 * u / assumed:.2g} ms (k = 1; a way only with a speed: name its column V_mps "
             "under [columns], or give nominal_speed)"
         )
-    return [
-        f"the side force of {len(known)} continuous sweeps lags {size} behind the sideslip angle: {said}; the remaining "
-        f"difference between the ways up and down is +-{hysteresis:.0f} N"
-    ]
+    return [f"the side force of {len(known)} continuous sweeps lags {size} behind the sideslip angle: {said}"]
 
 
 def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:
@@ -240,17 +234,13 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
     -----
     A continuous sweep has no zero points and is left out.
     """
-    axes = _given("axes", axes, tuple(FLIPPED), path)
-    path_centre = _given("path_centre", path_centre, SIDES, path)
-    phi_t = -1.0 if path_centre == "left" else 1.0
-    found = files.load_file(path, axes=axes).sweeps
-
-    def completed(sweep: files.Sweep) -> files.Sweep:
-        filled = {name: np.nan_to_num(getattr(sweep, name), nan=value) for name, value in STAND_IN.items()}
-        return replace(sweep, p=filled["p"], V=filled["V"])
-
-    points = concatenate([reduce(completed(evenly_timed(sweep)[0]), phi_t).points for sweep in found])
-    return points.select(~points.continuous)
+    rig = {
+        "axes": _given("axes", axes, tuple(FLIPPED), path),
+        "path_centre": _given("path_centre", path_centre, SIDES, path),
+        "path_radius": 1.0,
+    }
+    content = {"tyre": {"name": "table", **STAND_IN}, "rig": rig, "sweep": [{"file": Path(path).name}]}
+    return read(configuration.load(content, folder=Path(path).parent), may_be_empty=True).points
 
 
 def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Path) -> str:

@@ -13,17 +13,17 @@ from mffit.brief import Brief
 from mffit.points import constants
 from mffit.quantities import CHANNELS, CONDITIONS
 
-INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup", "campaign"})
-SHARED = frozenset({"sweep_names", "files", "setups", "campaigns", "table"})
+INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
+SHARED = frozenset({"sweep_names", "files", "setups", "table"})
 OF_SI = {"deg": 180.0 / np.pi, "kPa": 1e-3}
 """Factors from SI to units of conditions."""
-COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups", "campaign": "campaigns"}
+COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
 """Fields of indices, and the field with the names that they count."""
 OPTIONAL: Mapping[str, Any] = {
     **dict.fromkeys((*CHANNELS, *(f"u_{name}" for name in CHANNELS), "T", "t", "iteration", "time"), np.nan),
     "kappa": 0.0,
     **dict.fromkeys(("direction", "mount"), 1),
-    **dict.fromkeys(("sweep", "file", "line", "setup", "campaign"), 0),
+    **dict.fromkeys(("sweep", "file", "line", "setup"), 0),
     "continuous": False,
 }
 """Defaults of :func:`make_points`: not measured, rolling freely, forwards, normal mount, one of everything."""
@@ -70,13 +70,9 @@ class Points(Brief):
     file: np.ndarray  #: index into ``files``
     line: np.ndarray  #: line in that file, counted from 1
     setup: np.ndarray  #: set-up of the rig, index into ``setups``
-    campaign: np.ndarray  #: index into ``campaigns``
     sweep_names: tuple[str, ...]
     files: tuple[str, ...]
     setups: tuple[str, ...]  #: names of the set-ups of the rig; one empty name if none is declared
-    campaigns: tuple[
-        str, ...
-    ]  #: names of the campaigns that are looked at together; one empty name for a single one
     table: pd.DataFrame  #: input columns as in docs/files.md, rig's axes; a row per point
 
     def __len__(self) -> int:
@@ -124,11 +120,6 @@ class Points(Brief):
         """Names of the set-ups that have points, in the order of ``setups``."""
         return tuple(self.setups[k] for k in np.unique(self.setup))
 
-    def of_campaign(self, name: str) -> Points:
-        """The points of one campaign, as if there were no other."""
-        own = self.select(self.campaign == self.campaigns.index(name))
-        return own.replace(campaign=0, campaigns=("",))
-
     @property
     def Vx(self) -> np.ndarray:
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
@@ -148,7 +139,6 @@ class Points(Brief):
             sweep_names=self.sweep_names,
             files=self.files,
             setups=self.setups,
-            campaigns=self.campaigns,
             table=self.table.iloc[which].reset_index(drop=True)
             if with_table
             else _no_table(len(taken["alpha"])),
@@ -174,7 +164,6 @@ def make_points(
     sweep_names: Sequence[str] = ("sweep",),
     files: Sequence[str] = ("",),
     setups: Sequence[str] = ("",),
-    campaigns: Sequence[str] = ("",),
     table: pd.DataFrame | None = None,
     **fields: Any,
 ) -> Points:
@@ -184,7 +173,7 @@ def make_points(
     ----------
     alpha, gamma : scalar or (n,) [rad]
     Fz : scalar or (n,) load, positive [N]
-    sweep_names, files, setups, campaigns : names that the fields ``sweep``, ``file``, ``setup`` and ``campaign`` count
+    sweep_names, files, setups : names that the fields ``sweep``, ``file`` and ``setup`` count
     table : input columns as reported, (n,) rows; empty if not given
     fields : other fields of :class:`Points`, scalar or (n,); ``p``, ``V`` and ``phi_t`` are required, the others are
         optional (``OPTIONAL`` has their defaults)
@@ -214,12 +203,11 @@ def make_points(
     if len(table) != n:
         raise ValueError(f"the table has {len(table)} rows for {n} points")
     names = {"sweep_names": tuple(sweep_names), "files": tuple(files), "setups": tuple(setups)}
-    names["campaigns"] = tuple(campaigns)
     return _sealed(arrays, **names, table=table)
 
 
 def concatenate(parts: Sequence[Points]) -> Points:
-    """Join points one after the other; sweeps, files, set-ups and campaigns are renumbered, tables joined by column name."""
+    """Join points one after the other; sweeps, files and set-ups are renumbered, tables joined by column name."""
     arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
     names: dict[str, tuple[str, ...]] = {}
     for field, of_field in COUNTED.items():

@@ -72,7 +72,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried)
     return Reduced(
         points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
-        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried), *remarks.cold_beginning(notes)),
+        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried)),
         stretches=notes,
         lags=tuple(lags.values()),
         left_out=(*repeats, *of_recording(sweep, wrong, tried, used)),

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from mffit.constants import NAMED_IN_SENTENCE
-from mffit.points import constants
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
-from mffit.points.levels import SIDESLIP
 from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
-from mffit.scatter import ALARM, finite_median, robust
+from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
 
 COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
@@ -24,37 +20,6 @@ COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
 def left_out(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
     """Sentences about plateaus, samples and sweeps that are left out."""
     return (*_of_plateaus(sweep, tried), *_of_samples_and_sweeps(sweep, wrong, tried))
-
-
-def cold_beginning(notes: Sequence[StretchNote]) -> tuple[str, ...]:
-    """A sentence about a recording whose first sweeps are colder than the later ones of their kind and sideslip."""
-    sweeps = [note for note in notes if note.kind == SWEEP and note.points and np.isfinite(note.T_degC)]
-    if not sweeps:
-        return ()
-    sideslip = np.array([0.5 * (note.alpha_from_deg + note.alpha_to_deg) for note in sweeps])
-    kind = [note.swept for note in sweeps]
-    alike = [
-        k
-        for k in range(len(sweeps))
-        if kind[k] == kind[0] and abs(sideslip[k] - sideslip[0]) < np.degrees(SIDESLIP.tolerance)
-    ]
-    T = np.array([sweeps[k].T_degC for k in alike])
-    later = T[len(T) // 2 :]
-    if len(later) < constants.FEWEST_SWEEPS:
-        return ()
-    usual = float(np.median(later))
-    limit = usual - max(constants.COLDER_BEGINNING, ALARM * robust(later, usual))
-    cold = limit > T
-    count = len(T) if np.all(cold) else int(np.argmin(cold))
-    if not count:
-        return ()
-    first = T[:count]
-    span = f"{first.min():.0f} to {first.max():.0f}" if round(float(np.ptp(first))) else f"{first.min():.0f}"
-    which = f"the first {count} sweeps" if count > 1 else "the first sweep"
-    return (
-        f"{sweeps[0].file}: begins cold: the tread has {span} degC in {which} and {usual:.0f} degC in later sweeps under such "
-        "conditions; the model of temperature, or leaving them out under [fit] exclude, accounts for it",
-    )
 
 
 def driven(sweep: Sweep, free: np.ndarray) -> tuple[str, ...]:
@@ -92,7 +57,6 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
         points=points,
         lag_m=lag.lag,
         u_lag_m=float(np.hypot(lag.u, lag.u_shape)),
-        hysteresis_N=lag.hysteresis,
         dropped=stretch.dropped,
     )
 

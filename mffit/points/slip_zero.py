@@ -18,10 +18,13 @@ from mffit.errors import InputError
 from mffit.points import constants
 from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
+from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
 
 FREE, LOADED = "free-rolling", "loaded-radius"
 """What the slip of a column may be against."""
+WEAKEST = constants.SOFTEST_SLIP_STIFFNESS * constants.SMALLEST_SWEEP_OF_SLIP
+"""|Fx| over load that every driven tyre exceeds."""
 FROM_SPEEDS = "slip from wheel and road speed"
 """In place of a heading, where a rig records no slip."""
 
@@ -224,7 +227,7 @@ def _too_weak(of: Driven) -> bool:
     shown = (np.abs(of.slip) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
     if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.slip[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
         return False  # a wheel without drive: its slip says nothing
-    return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < constants.SMALLEST_DRIVEN_FORCE)
+    return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < WEAKEST)
 
 
 def _weak(of: Driven, config: Config) -> str:
@@ -247,7 +250,7 @@ def _contradiction(heading: str, zero: SlipZero) -> str:
         )
     if zero.slope < 0.0:
         return f"Fx falls with {heading}, so braking is positive there; write scale = -1 for kappa under [columns]"
-    if zero.largest > constants.LARGEST_SHIFT_OF_SLIP:
+    if zero.largest > 1.0 - EFFECTIVE_RADIUS_RANGE[0]:
         return f"Fx = 0 lies at {heading} {zero.said}, which no radius explains; check this column"
     return ""
 

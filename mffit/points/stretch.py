@@ -40,7 +40,6 @@ class StretchNote(NamedTuple):
     points: int  #: that it gives
     lag_m: float  #: rolled distance by which the side force lags behind the sideslip angle
     u_lag_m: float
-    hysteresis_N: float  #: half the difference between the ways up and down, rms
     dropped: str  #: why it gives no point; empty if it does
 
 

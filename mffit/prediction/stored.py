@@ -1,4 +1,4 @@
-"""``prediction.json``: what ``mffit predict`` needs of a build, in its folder."""
+"""``mffit predict``, and ``prediction.json``: what it needs of a build, in its folder."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 import tir
 from mffit.errors import InputError
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.prediction.conditions import checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import BY_NAME as ERROR_OF
@@ -73,6 +75,34 @@ def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
         raise InputError("is not as a build writes it; build the tyre again", file=path) from None
     file, fitted = (tir.read(folder / name) for name in names)
     return known, file, fitted
+
+
+def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.DataFrame:
+    """Forces at conditions, with standard uncertainties (k = 1).
+
+    Parameters
+    ----------
+    folder : of a build
+    conditions : table, or the path of one, with the columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``, in ISO-W; ``kappa``,
+        ``p_kPa``, ``V_mps``, ``T_degC`` and, of a disc, ``phi_t_per_m`` are optional
+
+    Returns
+    -------
+    DataFrame
+        The conditions in the units of their names, and for each fitted channel, here Fy: ``Fy_N`` of the plain file;
+        ``u_Fy_N``, with which a reading of a new run lies around it; ``Fy_best_N`` with what the formula misses;
+        ``u_Fy_best_N`` of that as the tyre's mean force; ``u_Fy_run_N`` of a reading of a new run around it. Columns of these
+        names in the conditions are replaced.
+
+    Raises
+    ------
+    InputError
+        The folder is not that of a build, or the table lacks a column or has a value that is no number or impossible.
+    """
+    known, tyre, fitted = load(Path(folder))
+    if isinstance(conditions, pd.DataFrame):
+        return known.predict(tyre, fitted, checked(conditions))
+    return known.predict(tyre, fitted, read_conditions(Path(conditions)))
 
 
 def _predictor(content: dict[str, Any]) -> Predictor:

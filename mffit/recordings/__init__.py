@@ -2,7 +2,6 @@
 
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.project_file import Stated, project_text
-from mffit.recordings.recognised import with_recognised
 from mffit.recordings.sniffed import Sniffed, sniff
 
-__all__ = ["DiscPath", "Sniffed", "Stated", "disc_signs", "project_text", "sniff", "with_recognised"]
+__all__ = ["DiscPath", "Sniffed", "Stated", "disc_signs", "project_text", "sniff"]

@@ -37,12 +37,6 @@ ROLLING_RADIUS_RANGE = Series(
 
 # Summaries of a test
 LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are not taken for the summary of a test.")
-SET_POINT_TOLERANCE = Real(
-    2.0,
-    "-",
-    "Distance of a recorded level from its set-point, in tolerances of a level: 16 % of the load, which programmes step by a "
-    "quarter.",
-)
 
 # Disc or belt
 ZERO_OF_A_DISC = Real(
@@ -52,4 +46,3 @@ ZERO_OF_A_DISC = Real(
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
 NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
-FEWEST_FOR_PATTERN = Count(4, "-", "Fewest recordings that are named by one pattern instead of one by one.")

@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import tomli_w
 
-from mffit.config.globs import WILD
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
-from mffit.recordings import constants
 from mffit.recordings.directions import rolls_backward
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.guess import Guess
@@ -240,35 +237,16 @@ def _sweeps(
     shared: Mapping[str, Guess],
     remarks_of_all: Collection[str],
 ) -> list[list[str]]:
-    """A [[sweep]] for every recording; one with a pattern for those that differ in nothing but their names."""
-    alike: dict[tuple[tuple[str, ...], tuple[str, ...]], list[SniffedRecording]] = {}
-    for recording in recordings:
-        remarks = _comments(remark for remark in recording.remarks if remark not in remarks_of_all)
-        alike.setdefault((tuple(remarks), _content(recording, shared)), []).append(recording)
+    """A [[sweep]] for every recording."""
     return [
-        ["[[sweep]]", *remarks, f"file = {quoted(relative(path, folder))}{count}", *content]
-        for (remarks, content), members in alike.items()
-        for path, count in _files([recording.path for recording in members])
+        [
+            "[[sweep]]",
+            *_comments(remark for remark in recording.remarks if remark not in remarks_of_all),
+            f"file = {quoted(relative(recording.path, folder))}",
+            *_content(recording, shared),
+        ]
+        for recording in recordings
     ]
-
-
-def _files(paths: Sequence[Path]) -> list[tuple[Path, str]]:
-    """One pattern for files that it alone matches, with a comment on how many; else each file by its name."""
-    names = [path.name for path in paths]
-    start = _shared_start(names)
-    end = _shared_start([name[len(start) :][::-1] for name in names])[::-1]
-    folders = {path.parent for path in paths}
-    if len(paths) >= constants.FEWEST_FOR_PATTERN and len(folders) == 1 and not WILD & set(start + end):
-        pattern = f"{start}*{end}"
-        if {path.name for path in paths[0].parent.glob(pattern)} == set(names):
-            return [(paths[0].parent / pattern, f"  # {len(paths)} files")]
-    return [(path, "") for path in paths]
-
-
-def _shared_start(names: Iterable[str]) -> str:
-    """The characters with which all names begin."""
-    alike = takewhile(lambda chars: len(set(chars)) == 1, zip(*names, strict=False))
-    return "".join(chars[0] for chars in alike)
 
 
 def _content(recording: SniffedRecording, shared: Mapping[str, Guess]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ import numpy as np
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.config.globs import is_pattern, matches
+from mffit.config.loading import STAND_IN
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.clock import spread
@@ -22,7 +23,6 @@ from mffit.points.stretch import MOVE
 from mffit.recordings.directions import rolls_backward
 from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
-from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
@@ -32,9 +32,6 @@ from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted
 from tir.conventions import FLIPPED
-
-STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
-"""Placeholder for a tyre that is not known yet; no result of reading depends on it."""
 
 
 class SniffedRecording(NamedTuple):
@@ -130,7 +127,6 @@ def sniff(
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
     of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
-    of_summaries += against_summary(summaries, reading)
     two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
     of_summaries += [
         moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)

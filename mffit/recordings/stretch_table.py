@@ -10,7 +10,7 @@ from mffit.points.stretch import StretchNote
 
 DIGITS = {
     "begin_s": 3, "end_s": 3, "alpha_from_deg": 2, "alpha_to_deg": 2, "kappa_from": 4, "kappa_to": 4, "gamma_deg": 2,
-    "Fz_N": 0, "p_kPa": 1, "T_degC": 1, "lag_m": 4, "u_lag_m": 4, "hysteresis_N": 1,
+    "Fz_N": 0, "p_kPa": 1, "T_degC": 1, "lag_m": 4, "u_lag_m": 4,
 }  # fmt: skip
 
 

@@ -7,22 +7,20 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, published
+from mffit.report import page, words
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.catalogue import ChannelPicture, Picture, Planned
 from mffit.report.figures import (
     bands,
-    campaigns,
     decomposition,
-    files,
     fit,
-    overview,
     radii,
     residuals,
-    sister,
     slip,
     spin,
     structure,
@@ -49,7 +47,7 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         shows="Every channel at the load and pressure nearest to the nominal ones: readings, and the model as lines. The colour "
         "is the angle that is held, dark to light from its smallest to its largest value.",
         section="top",
-        draw=overview.overview,
+        draw=fit.overview,
         when=lambda view: bool(view.curves),
     ),
     Picture(
@@ -59,13 +57,13 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "and over sideslip at three cambers. Dotted verticals are the ends of the tested range. Dashed curves have turn slip "
         "off: without spin the formula cannot reproduce exactly how camber reduces grip.",
         section="files",
-        draw=files.files_on_a_straight_path,
+        draw=bands.files_on_a_straight_path,
         when=lambda view: view.several_files,
     ),
     Picture(
         name="camber_reduction",
         title="Camber reduction factor beside published tyres, its uncertainty budget and its course over load",
-        shows=f"Left: this tyre among the six that have been published ({published.SOURCE}). Middle: the contribution of each "
+        shows=f"Left: this tyre among the six that have been published ({spin.SOURCE}). Middle: the contribution of each "
         "source to u(eps_gamma); the orange line is the combined uncertainty with correlations. Right: eps_gamma at every load "
         "and the line that the file carries.",
         section="spin",
@@ -132,24 +130,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         when=slip.combined,
     ),
     Picture(
-        name="weights",
-        title="Weights of combined slip over longitudinal slip at every load",
-        shows="Weights of combined slip with 95 % bands: G_xa is the share of the longitudinal force that sideslip leaves, G_yk "
-        "the share of the side force that slip leaves. The points are the measured force over the model's force without the "
-        "other slip, shown where that force is large enough.",
-        section="slip",
-        draw=slip.weights,
-        when=slip.combined,
-    ),
-    Picture(
-        name="trail",
-        title="Pneumatic trail and residual moment over sideslip at several longitudinal slips",
-        shows="Pneumatic trail and residual moment of the model with 95 % bands, rolling freely and at two longitudinal slips.",
-        section="slip",
-        draw=slip.trail,
-        when=slip.combined,
-    ),
-    Picture(
         name="radii",
         title="Loaded radius and rolling radius over load at every pressure",
         shows="Radii of the freely rolling wheel: means over the sweeps, and the file with 95 % bands from the scatter of these "
@@ -157,14 +137,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         section="slip",
         draw=radii.radii,
         when=lambda view: bool(view.radii.rms),
-    ),
-    Picture(
-        name="campaigns",
-        title="Load over sideslip, camber and longitudinal slip of the points of every campaign",
-        shows="The points of every campaign. Each campaign is fitted by itself; the misfits above are those of these fits.",
-        section="campaigns",
-        draw=campaigns.where_run,
-        when=lambda view: bool(view.campaigns),
     ),
     Picture(
         name="bands",
@@ -184,8 +156,8 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "and the largest load of the file. The bands contain the uncertainty of both ratios and the scatter of the shapes among "
         "similar tyres.",
         section="sister",
-        draw=sister.borrowed_force,
-        when=lambda view: view.files is not None and view.lent is not None,
+        draw=bands.borrowed_force,
+        when=lambda view: view.files is not None and view.build.fit.lent is not None,
     ),
     Picture(
         name="residuals",
@@ -211,8 +183,8 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
         "Only what chance does not explain is drawn, the number of comparisons accounted for.",
         section="structure",
-        draw=lambda view: structure.residual_means(view.remains.structure),
-        when=lambda view: bool(view.remains.structure.found),
+        draw=lambda view: structure.residual_means(view.build.remains.structure),
+        when=lambda view: bool(view.build.remains.structure.found),
     ),
 )
 """Every picture of the report, in its order."""
@@ -223,17 +195,6 @@ def planned(view: BuildView) -> Iterator[Planned]:
     opening = "camber_reduction" if view.on_disc else "bands"
     for one in (one for picture in BUILD for one in picture.planned(view)):
         yield replace(one, section="top") if one.name == opening else one
-    own = {f"fit_{channel.name}" for channel in view.channels}
-    for number, other in enumerate(view.campaigns, 1):
-        for one in (one for picture in BUILD for one in picture.planned(other.build)):
-            if one.section in ("fit", "slip") and one.name not in own:
-                yield replace(
-                    one,
-                    name=f"campaign{number}_{one.name}",
-                    title=f"{other.name}: {one.title}",
-                    shows=f"{other.name}: {one.shows} Points, lines and bands are of its own fit, on its surface.",
-                    section=f"campaign{number}",
-                )
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -244,13 +205,20 @@ def write_build(result: BuildResult, folder: Path) -> None:
         folder / "report.html",
         planned(view),
         view=view,
+        build=result,
+        fit=result.fit,
+        paired={
+            kind: int(np.sum(result.parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")
+        },
+        radii_agreement=result.fit.radii.agreement(result.fit.tyre.values),
         verdict=verdict(result),
         headlines=headlines(result),
         purposes=purposes(result),
         sections=_by_section(view),
-        statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
+        statuses=[s for s in STATUS_ORDER if any(row.found.status == s for row in view.rows)],
         channels=CHANNELS,
         places=PLACES,
+        of_number=words.of_number,
         epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
         of_residuals=of_residuals,
@@ -269,5 +237,5 @@ def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:
     """The rows of the coefficient table by section; values of other sections come last."""
     out: dict[str, list[CoefficientRow]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
     for row in view.rows:
-        out[SECTION_TITLES.get(row.section, OTHER_SECTIONS)].append(row)
+        out[SECTION_TITLES.get(row.known.section, OTHER_SECTIONS)].append(row)
     return {title: rows for title, rows in out.items() if rows}

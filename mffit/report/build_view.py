@@ -1,37 +1,25 @@
-"""Everything that the build report shows, taken from the result in one place."""
+"""What several pictures of a build draw, taken from its result once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config
-from mffit.config.laboratory import LabTable
-from mffit.diagnosis.remains import Remains
-from mffit.fit import Agreement, Coefficient, Posterior
-from mffit.fit.borrowed.campaign import Joined
-from mffit.fit.borrowed.sister import Lent
-from mffit.fit.coverage import StageCoverage
-from mffit.fit.influences.between_runs import BetweenRuns
-from mffit.fit.influences.temperature import AtTemperature
-from mffit.fit.relaxation import Relaxation
+from mffit.fit import Coefficient, Posterior
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
-from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
-from mffit.points.left_out import LeftOut
-from mffit.report import words
-from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, CurveKey, conditions, curves
-from mffit.report.lines import CurveLine, model_lines
+from mffit.report.catalogue import NamedChannel
+from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
-from mffit.suspicion import Doubt, Outlier, Trust
 from tir import Tyre
-from tir.parameters import BY_NAME
+from tir.parameters import BY_NAME, Parameter
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
@@ -39,7 +27,6 @@ STATUS_ORDER = (
     "measured",
     "fitted",
     "regularised",
-    "campaign",
     "sister",
     "estimate",
     "range",
@@ -49,6 +36,8 @@ STATUS_ORDER = (
     "converted",
     "default",
 )
+NOT_DECIDED = ("base", "converted", "default", "given", "range")
+"""Statuses of values that neither the data nor a model of them decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,54 +63,35 @@ class ChannelRow(NamedChannel):
         return finite_median(self.u)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CoefficientRow:
-    """One row of the coefficient table."""
+class CoefficientRow(NamedTuple):
+    """A coefficient in the table of parameters, and as the fit leaves it."""
 
-    name: str
-    section: str
-    description: str
-    unit: str
-    value: float
-    stderr: float | None
-    lower: float | None
-    upper: float | None
-    at_bound: bool
-    stage: str
-    status: str
-    correlation: str  #: the strongest one in words; empty if it does no harm
-    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
+    known: Parameter
+    found: Coefficient
+
+    @property
+    def bounds(self) -> tuple[float | None, float | None]:
+        """Those of its fit, or else its usual range."""
+        return self.found.bounds or (self.known.lower, self.known.upper)
 
     @property
     def place(self) -> float | None:
         """Place of the value between its bounds, 0 to 1; None without bounds."""
-        if self.lower is None or self.upper is None or not self.upper > self.lower:
+        lower, upper = self.bounds
+        if lower is None or upper is None or not upper > lower:
             return None
-        return float(np.clip((self.value - self.lower) / (self.upper - self.lower), 0.0, 1.0))
+        return float(np.clip((self.found.value - lower) / (upper - lower), 0.0, 1.0))
 
     @property
     def held(self) -> bool:
-        return self.status in ("base", "converted", "default", "given", "range") and not self.by_hand
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignView:
-    """Another campaign of the tyre, what it gave, and its own build."""
-
-    joined: Joined
-    build: BuildView
-    rows: tuple[CoefficientRow, ...]  #: coefficients of the file that it gave
-
-    @property
-    def name(self) -> str:
-        """Its tyre.toml, as the project names it."""
-        return self.joined.campaign.name
+        return self.found.status in NOT_DECIDED and not self.found.by_hand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuildView:
-    """All content of the build report."""
+    """A build, and what its pictures draw."""
 
+    build: BuildResult
     config: Config
     points: Points  #: angles as read
     felt: (
@@ -129,47 +99,20 @@ class BuildView:
     )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
-    lines: Mapping[CurveKey, CurveLine]
+    lines: Mapping[Curve, CurveLine]
     conditions: tuple[CurveCondition, ...]
     measured: Measured
-    agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points
-    odd_agreement: Mapping[str, Agreement]  #: by channel, of the file for turn slip off on the odd part
     rows: tuple[CoefficientRow, ...]
-    coverage: tuple[StageCoverage, ...]
-    warnings: tuple[str, ...]
-    explanations: tuple[str, ...]
-    unpaired: tuple[str, ...]
-    paired: Mapping[str, int]  #: number of points by kind of mirror: exact, interpolated, unpaired
-    provenance: Mapping[str, str]
-    made: Made
-    lab: LabTable
-    left_out: tuple[LeftOut, ...]  #: readings that are left out, have less weight or are doubted
-    seconds: float
-    fit_seconds: float
-    tir_name: str
     model: Tyre  #: the fitted model
     posterior: Posterior  #: covariance of what was fitted
-    trust: Trust  #: the judgement of the result
-    remains: Remains  #: what the fit leaves of the readings
     files: Files | None  #: None if no file was written
     file_names: Mapping[str, str]  #: by use
-    doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
-    outliers: tuple[Outlier, ...]  #: single readings without weight
-    bands_note: str = (
-        ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
-    )
-    temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
-    relaxation: tuple[Relaxation, ...]  #: what steps of the sideslip angle and of slip determine
-    campaigns: tuple[CampaignView, ...]  #: the others, if several were joined
-    lent: Lent | None  #: what a sister tyre gave, if there is one
-    runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
     radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
-    radii_agreement: Mapping[str, Agreement]  #: of the file's radii, as far as they were fitted [m]
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
-        single = [o.row for o in self.outliers if o.channel == channel]
-        doubtful = [row for doubt in self.doubts for row in doubt.index]
+        single = [o.row for o in self.build.fit.outliers if o.channel == channel]
+        doubtful = [row for doubt in self.build.fit.doubts for row in doubt.index]
         return np.array(single, dtype=int), np.array(doubtful, dtype=int)
 
     @property
@@ -188,7 +131,7 @@ class BuildView:
         found = []
         for c in self.channels:
             u = np.where(np.isfinite(c.u), c.u, c.noise)
-            scale = u if self.residual_unit == "u" else self.agreement[c.name].rmse
+            scale = u if self.residual_unit == "u" else self.build.fit.channels[c.name].rmse
             found.append((c.symbol, (c.measured - c.model) / scale))
         return found
 
@@ -202,7 +145,7 @@ class BuildView:
 
 
 def view_of(result: BuildResult) -> BuildView:
-    """The view of a build's result; the only function that knows the attributes of a result."""
+    """The view of a build."""
     points, parts, fit = result.points, result.parts, result.fit
     found, unknown = tuple(curves(points)), np.full(len(points), np.nan)
     channels = [
@@ -217,8 +160,8 @@ def view_of(result: BuildResult) -> BuildView:
         )
         for name, model in fit.model.items()
     ]
-    rows = coefficient_rows(fit.coefficients)
     return BuildView(
+        build=result,
         config=result.config,
         points=points,
         felt=points if np.all(points.free_rolling) else fit.simulation.felt(points),
@@ -227,75 +170,10 @@ def view_of(result: BuildResult) -> BuildView:
         lines=model_lines(fit.simulation, points, found, fit.model),
         conditions=tuple(conditions(points)),
         measured=result.measured,
-        agreement=fit.channels,
-        odd_agreement=fit.odd,
-        rows=_with_campaigns(rows, fit.joined),
-        coverage=fit.coverage,
-        warnings=tuple(result.warnings),
-        explanations=tuple(fit.explanations),
-        unpaired=parts.unpaired,
-        paired={kind: int(np.sum(parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")},
-        provenance=dict(result.tyre.provenance),
-        made=result.made,
-        lab=result.config.lab,
-        left_out=result.left_out,
-        seconds=result.seconds,
-        fit_seconds=fit.seconds,
-        tir_name=result.tir_path,
+        rows=tuple(CoefficientRow(BY_NAME[name], found) for name, found in fit.coefficients.items()),
         model=fit.tyre,
         posterior=fit.posterior,
-        trust=result.trust,
-        remains=result.remains,
         files=fit.files,
         file_names={use: name for use, name in result.files.items() if use in result.uses},
-        doubts=fit.doubts,
-        outliers=fit.outliers,
-        bands_note=fit.bands_note,
-        temperature=fit.temperature,
-        relaxation=fit.relaxation,
-        campaigns=tuple(
-            CampaignView(
-                joined=joined,
-                build=view_of(other),
-                rows=tuple(row for row in rows if row.name in joined.found),
-            )
-            for joined, other in zip(fit.joined, result.campaigns, strict=False)
-        ),
-        lent=fit.lent,
-        runs=fit.runs,
         radii=fit.radii,
-        radii_agreement=fit.radii.agreement(fit.tyre.values),
     )
-
-
-def _with_campaigns(rows: Iterable[CoefficientRow], joined: Sequence[Joined]) -> tuple[CoefficientRow, ...]:
-    """The rows, with the campaign in place of the stage where one gave the coefficient."""
-    origin = {name: one.campaign.name for one in joined for name in one.values}
-    return tuple(replace(row, stage=origin.get(row.name, row.stage)) for row in rows)
-
-
-def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[CoefficientRow, ...]:
-    """The fit's coefficients with section, unit and bounds from the parameter table."""
-    rows = []
-    for name, c in coefficients.items():
-        known = BY_NAME[name]
-        rows.append(
-            CoefficientRow(
-                name=name,
-                section=known.section,
-                description=known.description,
-                unit="" if known.unit == "-" else known.unit,
-                value=c.value,
-                stderr=c.stderr,
-                lower=c.bounds[0] if c.bounds else known.lower,
-                upper=c.bounds[1] if c.bounds else known.upper,
-                at_bound=c.at_bound,
-                stage=c.stage,
-                status=c.status,
-                correlation=f"{words.of_number(c.correlated_with)} {c.correlation:+.2f}"
-                if c.correlated_with
-                else "",
-                by_hand=c.by_hand,
-            )
-        )
-    return tuple(rows)

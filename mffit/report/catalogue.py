@@ -7,8 +7,34 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Generic, TypeVar
 
-from mffit.report.channel import NamedChannel
+from mffit.quantities import CHANNELS
 from mffit.report.drawing.records import Sheet
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NamedChannel:
+    """A channel by its name in files and sentences."""
+
+    name: str
+
+    @property
+    def title(self) -> str:
+        return CHANNELS[self.name].word
+
+    @property
+    def unit(self) -> str:
+        return CHANNELS[self.name].unit
+
+    @property
+    def symbol(self) -> str:
+        """The symbol with its subscript, for pictures."""
+        return CHANNELS[self.name].mathtext
+
+    @property
+    def label(self) -> str:
+        """Symbol and unit, for the axis of a picture."""
+        return CHANNELS[self.name].short_axis
+
 
 View = TypeVar("View")
 Channel = TypeVar("Channel", bound=NamedChannel)

@@ -20,17 +20,10 @@ MOST_ROWS = Count(
 FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
 SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
-LOAD_ROUNDING = Real(10.0, "N", "Load levels are named by multiples of this, the accuracy of a held load.")
-PRESSURE_ROUNDING = Real(
-    1000.0, "Pa", "Pressure levels are named by multiples of this, the resolution of gauges."
-)
 STEPS_OF_LINE = Count(61, "-", "Points of a model's line; it looks smooth.")
 NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture of the alignment.")
 HELD_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "What curves hold, as shares of the tested camber, sideslip and slip."
-)
-LEAST_PURE_FORCE = Real(
-    0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
 )
 LARGEST_SLIP_TO_DRAW = Real(0.2, "-", "Longitudinal slip to which the force of a sister tyre is drawn.")
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
@@ -43,7 +36,6 @@ NEIGHBOUR_SHIFT = Real(
 MOST_LEFT_OUT_ONE_BY_ONE = Count(
     5, "-", "Readings of one file that one rule leaves out, listed one by one; more share a line of the page."
 )
-SMALLEST_GAIN = Real(1.0, "-", "Left end of the logarithmic scale of log evidence: less is no gain.")
 MOST_REASONS = Count(
     2, "-", "Sentences against a result, or of warnings, for which one screen has room; --explain has all."
 )

@@ -1,24 +1,21 @@
-"""Points of one curve and curves of one panel, for the pictures only."""
+"""Points of one curve, curves of one panel, and the model as a line along a curve, for the pictures only."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.points import Points, levels
-from mffit.quantities import CONDITIONS
+from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.report import constants
+from mffit.rig import Simulation
 
 
 def condition(load: float, pressure: float) -> str:
     """Load [N] and pressure [kPa] of a panel, in words."""
     return f"{CONDITIONS['Fz_N'].of(load)}, {CONDITIONS['p_kPa'].of(pressure)}"
-
-
-CurveKey = tuple[str, str, float, float, float, bool, int, float]
-"""Sweep, what varies, load, pressure, the held angle, forward, mount, camber."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,13 +31,6 @@ class Curve:
     sweep: str
     index: np.ndarray  #: (k,) rows of the points, in order of what varies
     camber: float = 0.0  #: of a curve over longitudinal slip [deg]
-
-    @property
-    def key(self) -> CurveKey:
-        """Identifies this curve among all."""
-        return (
-            self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount, self.camber,
-        )  # fmt: skip
 
     @property
     def condition(self) -> str:
@@ -71,22 +61,16 @@ class CurveCondition:
         return condition(self.load, self.pressure)
 
 
-def load_levels(points: Points) -> np.ndarray:
-    """Load of each point's level [N], rounded."""
-    step = constants.LOAD_ROUNDING
+def _load_and_pressure(points: Points) -> tuple[np.ndarray, np.ndarray]:
+    """Load [N] and pressure [kPa] of each point's level, rounded to what rigs hold and gauges show."""
     held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
-    return np.round(levels.median_of_labels(points.Fz, held) / step) * step
-
-
-def pressure_levels(points: Points) -> np.ndarray:
-    """Pressure of each point's level [kPa], rounded."""
-    step = constants.PRESSURE_ROUNDING
-    return np.round(levels.level_values(points.p, levels.PRESSURE) / step) * step / 1000.0
+    load = levels.median_of_labels(points.Fz, held)
+    return np.round(load, -1), np.round(levels.level_values(points.p, levels.PRESSURE) / 1000.0)
 
 
 def conditions(points: Points) -> list[CurveCondition]:
     """The points by load and pressure, in that order."""
-    keys = np.column_stack([load_levels(points), pressure_levels(points)])
+    keys = np.column_stack(_load_and_pressure(points))
     return [CurveCondition(float(k[0]), float(k[1]), index) for k, index in _groups(keys)]
 
 
@@ -95,103 +79,130 @@ def curves(points: Points) -> list[Curve]:
 
     Series over an angle are of the freely rolling wheel.
     """
-    driven = _slip_curves(points)
-    taken = np.zeros(len(points), dtype=bool)
-    for curve in driven:
-        taken[curve.index] = True
+    alpha, gamma = (shown_values(points, name) for name in ("alpha", "gamma"))
+    slipping = np.isin(points.sweep, points.sweep[~points.free_rolling])
     held = {
         "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
         "gamma": np.degrees(levels.level_values(points.alpha, levels.SIDESLIP)),
+        "kappa": _held_at_slip(points, points.alpha, slipping, levels.SIDESLIP),
     }
-    load, pressure = load_levels(points), pressure_levels(points)
-    found = driven
-    for name, members in _sweeps(points):
-        rows = members[points.free_rolling[members] & ~taken[members]]
-        if not len(rows):
-            continue
-        over = _varied(np.degrees(points.alpha[rows]), np.degrees(points.gamma[rows]))
-        keys = np.column_stack(
-            [load[rows], pressure[rows], held[over][rows], points.direction[rows], points.mount[rows]]
-        )
-        found += _along(points, name, over, rows, keys, constants.SET_POINT_WIDTH)
+    camber = np.round(_held_at_slip(points, points.gamma, slipping, levels.CAMBER), 1)
+    shared = [*_load_and_pressure(points), points.direction, points.mount]
+    found: list[Curve] = []
+    for i, name in enumerate(points.sweep_names):
+        rows = np.flatnonzero(points.sweep == i)
+        driven: list[Curve] = []
+        if slipping[rows].any():
+            driven = _along(points, name, "kappa", rows, [*shared, held["kappa"], camber])
+        rest = np.setdiff1d(rows[points.free_rolling[rows]], [row for curve in driven for row in curve.index])
+        # a grid counts as sideslip sweeps at several cambers
+        over = "alpha" if _set_points(alpha[rest], "alpha") >= _set_points(gamma[rest], "gamma") else "gamma"
+        found += [*driven, *_along(points, name, over, rest, [*shared, held[over], 0.0 * camber])]
     return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.camber, c.held, not c.forward))
 
 
-def _slip_curves(points: Points) -> list[Curve]:
-    """The series over longitudinal slip."""
-    if np.all(points.free_rolling):
-        return []
-    found: list[Curve] = []
-    load, pressure = load_levels(points), pressure_levels(points)
-    driven = [(name, rows) for name, rows in _sweeps(points) if not np.all(points.free_rolling[rows])]
-    alpha = _held_angles(points.alpha, [rows for _, rows in driven], levels.SIDESLIP)
-    gamma = _held_angles(points.gamma, [rows for _, rows in driven], levels.CAMBER)
-    for name, rows in driven:
-        keys = np.column_stack(
-            [
-                load[rows],
-                pressure[rows],
-                alpha[rows],
-                points.direction[rows],
-                points.mount[rows],
-                np.round(gamma[rows], 1),
-            ]
-        )
-        found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
-    return found
-
-
-def _held_angles(angle: np.ndarray, sweeps: Sequence[np.ndarray], kind: levels.LevelKind) -> np.ndarray:
+def _held_at_slip(
+    points: Points, angle: np.ndarray, slipping: np.ndarray, kind: levels.LevelKind
+) -> np.ndarray:
     """The angle (n,) [deg] held at each point of sweeps of slip, the same for sweeps of one level; NaN elsewhere."""
     # Levels within each sweep first: those of a sideslip sweep over all angles say nothing about the angles that are held here.
     held = np.full(len(angle), np.nan)
-    for rows in sweeps:
+    for i in np.unique(points.sweep[slipping]):
+        rows = points.sweep == i
         held[rows] = levels.level_values(angle[rows], kind)
-    degrees: np.ndarray = np.degrees(levels.level_values(held, kind))
+    degrees: np.ndarray = np.degrees(levels.level_values(held, kind)) if slipping.any() else held
     return degrees
 
 
-def _along(
-    points: Points, name: str, over: str, rows: np.ndarray, keys: np.ndarray, width: float
-) -> list[Curve]:
-    """The groups of rows with equal keys (k, 5 or 6) that have enough set-points, in order of what varies."""
+def _along(points: Points, name: str, over: str, rows: np.ndarray, keys: Sequence[np.ndarray]) -> list[Curve]:
+    """The groups of rows with equal keys that have enough set-points, in order of what varies."""
     values, found = shown_values(points, over), []
-    for key, members in _groups(keys):
+    for key, members in _groups(np.column_stack(keys)[rows]):
         index = rows[members]
-        if len(np.unique(np.round(values[index] / width))) < constants.FEWEST_SET_POINTS_OF_CURVE:
+        if _set_points(values[index], over) < constants.FEWEST_SET_POINTS_OF_CURVE:
             continue
+        load, pressure, direction, mount, held, camber = key.tolist()
         found.append(
             Curve(
                 over=over,
-                load=float(key[0]),
-                pressure=float(key[1]),
-                held=float(key[2]),
-                forward=bool(key[3] > 0),
-                mount=int(key[4]),
+                load=load,
+                pressure=pressure,
+                held=held,
+                forward=direction > 0,
+                mount=int(mount),
                 sweep=name,
                 index=index[np.argsort(values[index], kind="stable")],
-                camber=float(key[5]) + 0.0 if over == "kappa" else 0.0,
+                camber=camber + 0.0,
             )
         )
     return found
 
 
-def _sweeps(points: Points) -> Iterable[tuple[str, np.ndarray]]:
-    for i, name in enumerate(points.sweep_names):
-        yield name, np.flatnonzero(points.sweep == i)
-
-
-def _varied(alpha: np.ndarray, gamma: np.ndarray) -> str:
-    """The angle with more set-points; a grid counts as sideslip sweeps at several cambers."""
-    return "alpha" if _set_points(alpha) >= _set_points(gamma) else "gamma"
-
-
-def _set_points(angle: np.ndarray) -> int:
-    """Number of set-points of an angle (k,) [deg]."""
-    return len(np.unique(np.round(angle / constants.SET_POINT_WIDTH)))
+def _set_points(values: np.ndarray, over: str) -> int:
+    """Number of set-points of an angle (k,) [deg], or of longitudinal slip."""
+    width = constants.SLIP_SET_POINT_WIDTH if over == "kappa" else constants.SET_POINT_WIDTH
+    return len(np.unique(np.round(values / width)))
 
 
 def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Rows with equal keys, in order of the keys."""
     keys = np.nan_to_num(keys)
     return [(keys[rows[0]], rows) for rows in levels.rows_of_equal(keys)]
+
+
+VARIED = ("alpha", "gamma", "kappa", "Fz", "p", "V")
+"""Conditions that a line holds at their median, or lets vary."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveLine:
+    """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
+
+    x: np.ndarray  #: what varies: an angle [deg] or longitudinal slip [-]
+    raw: Mapping[str, np.ndarray]  #: by channel
+    even: Mapping[str, np.ndarray]  #: its even part
+
+
+def model_lines(
+    simulation: Simulation, points: Points, curves: Sequence[Curve], channels: Iterable[str] = SIDEWAYS
+) -> dict[Curve, CurveLine]:
+    """A line per curve, at the curve's median load, pressure, speed and held angle.
+
+    Parameters
+    ----------
+    simulation : the model on the rig, with the errors of the rig
+    points : the measured points (n,), angles as read
+    curves : rows of the points that belong together
+    channels : those to compute
+    """
+    if not curves:
+        return {}
+    grid = _along_curves(points, curves)
+    mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
+    here, there = (simulation.readings(p, channels) for p in (grid, mirrored))
+    steps = constants.STEPS_OF_LINE
+    lines = {}
+    for i, curve in enumerate(curves):
+        rows = slice(i * steps, (i + 1) * steps)
+        lines[curve] = CurveLine(
+            x=shown_values(grid, curve.over)[rows],
+            raw={name: values[rows] for name, values in here.items()},
+            even={name: 0.5 * (values + there[name])[rows] for name, values in here.items()},
+        )
+    return lines
+
+
+def _along_curves(points: Points, curves: Sequence[Curve]) -> Points:
+    """Points at equal distances along each curve's range."""
+    steps = constants.STEPS_OF_LINE
+    columns: dict[str, list[np.ndarray]] = {name: [] for name in VARIED}
+    for curve in curves:
+        for name, values in columns.items():
+            here = getattr(points, name)[curve.index]
+            values.append(
+                np.linspace(here.min(), here.max(), steps)
+                if name == curve.over
+                else np.full(steps, np.median(here))
+            )
+    rows = np.repeat([curve.index[0] for curve in curves], steps)
+    return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})

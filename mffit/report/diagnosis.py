@@ -7,10 +7,11 @@ from pathlib import Path
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.quantities import CHANNELS
-from mffit.report import page
+from mffit.report import page, words
 from mffit.report.catalogue import Picture
-from mffit.report.diagnosis_view import DiagnosisView, shown_steps, view_of
+from mffit.report.diagnosis_view import DiagnosisView, view_of
 from mffit.report.figures import gap
+from tir.parameters import BY_NAME
 
 DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
     Picture(
@@ -36,7 +37,7 @@ DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
         "its bar passes the dashed line, which allows for the number of effects tried. The number at a bar is its distance to "
         f"the best in log evidence: within {TIED_EVIDENCE:g} the data do not tell them apart. The scale is logarithmic.",
         draw=gap.evidence,
-        when=lambda view: bool(shown_steps(view)),
+        when=lambda view: bool(view.steps),
     ),
     Picture(
         name="gap_maps",
@@ -62,4 +63,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         d=diagnosis,
         say=wording,
         channels=CHANNELS,
+        coefficients=BY_NAME,
+        of_number=words.of_number,
+        in_unit=words.in_unit,
     )

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnosis import AcceptedEffect, Diagnosis
+from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
-from mffit.effects import CATALOG
 from mffit.points import Points
-from mffit.report import constants, words
-from mffit.report.channel import NamedChannel
-from mffit.report.curves import Curve, CurveCondition, conditions, curves
-from mffit.report.lines import CurveLine, model_lines
-from tir.parameters import BY_NAME
+from mffit.report import constants
+from mffit.report.catalogue import NamedChannel
+from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,38 +23,6 @@ class GapChannel(NamedChannel):
     before: np.ndarray
     after: np.ndarray
     noise: float  #: of a typical point, in ``unit``
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Candidate:
-    """One effect in one step."""
-
-    name: str
-    kind: str
-    gain: float  #: of log evidence over the step before
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RankedStep:
-    """All candidates of one forward step, best first."""
-
-    beside: tuple[str, ...]  #: names of the effects accepted before
-    candidates: tuple[Candidate, ...]
-    threshold: float  #: gain needed to be named
-
-    @property
-    def passed(self) -> bool:
-        return bool(self.candidates) and self.candidates[0].gain > self.threshold
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShownNumber:
-    """A number of an effect in the unit in which people read it."""
-
-    value: float
-    u: float
-    unit: str
-    before: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,10 +44,6 @@ class DiagnosisView:
     conditions: tuple[CurveCondition, ...]
     channels: tuple[GapChannel, ...]
     diagnosis: Diagnosis
-    steps: tuple[RankedStep, ...]
-    names: Mapping[str, str]  #: effect id -> plain name
-    descriptions: Mapping[str, str]  #: coefficient -> its meaning
-    words: Mapping[str, str]  #: of the numbers that are no coefficients of the property file
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
@@ -90,12 +51,10 @@ class DiagnosisView:
         """Whether effects are repaired, so that before and after differ."""
         return bool(self.diagnosis.repaired)
 
-    def shown_number(self, found: AcceptedEffect, name: str) -> ShownNumber:
-        """A number of an effect, now and before."""
-        value, u, unit = words.in_unit(name, *found.parameters[name])
-        return ShownNumber(
-            value=value, u=u, unit=unit, before=words.in_unit(name, found.before[name], 0.0)[0]
-        )
+    @property
+    def steps(self) -> list[ForwardStep]:
+        """The forward steps that had candidates."""
+        return [step for step in self.diagnosis.steps if step.trials]
 
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""
@@ -115,18 +74,12 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         )
         if np.isfinite(before).any():
             channels.append(GapChannel(name=name, before=before, after=after, noise=noise.typical(name)))
-    known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
-    freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(
         title=diagnosis.model_after.removesuffix(".tir"),
         points=points,
         conditions=tuple(conditions(points)),
         channels=tuple(channels),
         diagnosis=diagnosis,
-        steps=tuple(_ranked(step) for step in diagnosis.steps),
-        names={key: effect.name for key, effect in known.items()},
-        descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
-        words={name: words.of_number(name) for name in freed if name not in BY_NAME},
         shown=_shown(diagnosis, channels),
     )
 
@@ -146,27 +99,6 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
         for simulation in (diagnosis.given, diagnosis.state)
     )
     return tuple(
-        Shown(word=word, curve=curve, before=before[curve.key], after=after[curve.key])
+        Shown(word=word, curve=curve, before=before[curve], after=after[curve])
         for word, curve in chosen.items()
     )
-
-
-def _ranked(step: ForwardStep) -> RankedStep:
-    candidates = (
-        Candidate(
-            name=trial.effects[-1].name,
-            kind=trial.effects[-1].kind,
-            gain=float(trial.log_evidence - step.before.log_evidence),
-        )
-        for trial in step.trials
-    )
-    return RankedStep(
-        beside=tuple(effect.name for effect in step.before.effects),
-        candidates=tuple(sorted(candidates, key=lambda c: -c.gain)),
-        threshold=float(step.threshold),
-    )
-
-
-def shown_steps(view: DiagnosisView) -> Sequence[RankedStep]:
-    """The steps that have candidates."""
-    return [step for step in view.steps if step.candidates]

@@ -2,16 +2,74 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import COMPARED, DIRECT
-from mffit.report import page
+from mffit.report import constants, labels, page, style
 from mffit.report.catalogue import Picture
-from mffit.report.figures import fleet
-from mffit.report.text.fleet import misfit_channels
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.text.many import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
+
+if TYPE_CHECKING:
+    from tir import Quantity
+
+LOOKS = {
+    "direct": Look(colour=style.FAINT, marker="s", size=4.0, width=1.2),
+    "alone": Look(colour=style.CALM, marker="D", size=4.0, width=1.2),
+    "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
+}
+COLUMNS = 3
+APART = 0.22
+"""Distance between the estimates of one tyre, as a share of the distance between two tyres."""
+
+
+def epsilon_of_all(found: Fleet) -> Sheet:
+    """Camber reduction factor of every specimen by each estimate; every bar is one standard uncertainty."""
+    series = [
+        _bars(found.numbers(key), APART * (k - 1), LOOKS[key], words)
+        for k, (key, words) in enumerate(EPSILON.items())
+    ]
+    panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
+    return Sheet(
+        rows=[[panel]], wide=True, height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()}
+    )
+
+
+def numbers_of_all(found: Fleet) -> Sheet:
+    """Stiffnesses and peaks of every specimen."""
+    panels = [
+        Panel(
+            title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
+            x=_names(found, COLUMNS),
+            series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
+        )
+        for key, quantity in COMPARED.items()
+    ]
+    return Sheet(rows=in_rows(panels, columns=COLUMNS), height=1.9)
+
+
+def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> Trace:
+    known = [(k + shift, q.value, q.u) for k, q in enumerate(numbers) if q is not None]
+    x, y, u = np.array(known, dtype=float).reshape(-1, 3).T
+    return Trace(name=name, x=x, y=y, half=u, look=look)
+
+
+def _names(found: Fleet, columns: int = 1) -> Axis:
+    """The tyres' names if they fit side by side below one of ``columns`` panels, else their numbers in the table."""
+    n = len(found.rows)
+    names = [row.specimen.name for row in found.rows]
+    if n * (2 + max(map(len, names))) * style.LETTER <= style.WIDTH / columns:
+        return Axis(low=-0.6, high=n - 0.4, words={float(k): name for k, name in enumerate(names)})
+    step = max(1, n // constants.MOST_ROWS)
+    return Axis(low=-0.6, high=n - 0.4, words={float(k): str(k + 1) for k in range(0, n, step)})
+
 
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
 """Coefficients of spin and camber stiffness that the page shows of a population; fleet.json holds all."""
@@ -24,14 +82,14 @@ FLEET: tuple[Picture[Fleet], ...] = (
         shows=f"{NAMED} The direct method uses the forces at zero of each tyre alone, and an error of the rig moves all results "
         "alike. The joint estimate uses all points of a tyre and fits the errors of the rig, too. All tyres together determine "
         "the rig best.",
-        draw=fleet.epsilon_of_all,
+        draw=epsilon_of_all,
         when=lambda found: any(any(found.numbers(key)) for key in EPSILON),
     ),
     Picture(
         name="numbers",
         title="Stiffnesses and peaks of every tyre with bars of one standard uncertainty",
         shows=NAMED,
-        draw=fleet.numbers_of_all,
+        draw=numbers_of_all,
     ),
 )
 """Every picture of the page."""

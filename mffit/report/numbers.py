@@ -9,7 +9,7 @@ from mffit.report.drawing.records import Axis, Sheet
 from mffit.report.labels import plain
 
 WORDS = ("panel", "series", "x axis", "y axis")
-NUMBERS = ("x", "y", "lower", "upper", "x of upper", "value")
+NUMBERS = ("x", "y", "lower", "upper", "x of lower", "x of upper", "value")
 
 
 def table(sheet: Sheet) -> str:

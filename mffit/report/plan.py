@@ -2,19 +2,51 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+
+import numpy as np
 
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
-from mffit.report import constants, page
+from mffit.report import constants, page, style
 from mffit.report.catalogue import Picture
-from mffit.report.figures import planned
+from mffit.report.drawing.records import Axis, Bars, Note, Panel, Sheet, listed
+
+
+def u_against_runs(plan: Plan) -> Sheet:
+    """A bar from zero for the uncertainty now and after every run of the list, with what was added."""
+    values = [plan.now, *(step.after for step in plan.steps)]
+    names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
+    known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
+    epsilon = DIRECT["epsilon_gamma"]
+    unit = "" if plan.goal.unit in ("", "-") else f" [{plan.goal.unit}]"
+    panel = Panel(
+        title="",
+        x=Axis(
+            label=f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext),
+            low=0.0,
+            high=1.3 * max(u for _, u in known),
+        ),
+        y=listed(names),
+        series=[
+            Bars(
+                name=plan.goal.label,
+                lengths=np.array([u for _, u in known]),
+                places=np.array([float(k) for k, _ in known]),
+                colours=[style.FAINT if k == 0 else style.ACCENT for k, _ in known],
+            )
+        ],
+        notes=[Note(x=u, y=k, text=wording.shown(plan, u)) for k, u in known],
+    )
+    return Sheet(rows=[[panel]], height=0.28 * len(values) + 0.1)
+
 
 PLAN: Picture[Plan] = Picture(
     name="plan",
     title="Uncertainty of the goal now and after every run of the list",
     shows="What the plan makes smaller, now and after each added run; an uncertainty is one standard deviation.",
-    draw=planned.u_against_runs,
+    draw=u_against_runs,
     when=lambda plan: bool(plan.steps),
 )
 

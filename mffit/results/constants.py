@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Real
 
 SAME_NUMBER = Real(
     1e-5,
@@ -14,4 +14,3 @@ SAME_IN_U = Real(
     "-",
     "Change in standard uncertainties below which a number comes out again: no stated digit of it changes.",
 )
-CHANGES_IN_TEXT = Count(10, "-", "Numbers with the largest changes that a terminal lists.")

@@ -46,10 +46,6 @@ class BuildResult(Brief):
     prediction: Predictor | None = None  #: of forces at any conditions
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
-    campaigns: tuple[
-        BuildResult, ...
-    ] = ()  #: of the other campaigns of the tyre, in the order of ``fit.joined``
-
     @property
     def headline(self) -> str:
         """Name of the tyre, its eps_gamma if measured, and the misfit of the model."""

@@ -19,14 +19,14 @@ PASSING = ("made", "lab", "warnings", "fit.seconds")
 
 
 @dataclass(frozen=True, slots=True)
-class NumberChange:
-    """A number that did not come out again."""
+class NumberAgain:
+    """A number of a stored result and of the new one."""
 
     file: str  #: "result.json" or a property file
     key: str  #: dotted, or the name of a coefficient
     old: Json
     new: Json
-    size: float  #: in units of the tolerance; infinite for a number that is missing or of another kind
+    size: float  #: of the change in units of the tolerance; infinite if one is missing or of another kind
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -34,12 +34,25 @@ class Verification(Brief):
     """What a new run from the stored inputs says about a stored result."""
 
     folder: str
-    numbers: int  #: that were compared
-    exact: int  #: of them the same to the last digit
-    changes: tuple[NumberChange, ...]  #: largest first
+    compared: tuple[NumberAgain, ...]
     method: tuple[int, int]  #: stored, and of this program
     version: tuple[str, str]  #: stored, and of this program
     libraries: tuple[Mapping[str, str], Mapping[str, str]]  #: versions by name, stored and of this program
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers were compared."""
+        return len(self.compared)
+
+    @property
+    def exact(self) -> int:
+        """Of them the same to the last digit."""
+        return sum(row.old == row.new for row in self.compared)
+
+    @property
+    def changes(self) -> tuple[NumberAgain, ...]:
+        """Those that do not come out again, the largest change first."""
+        return tuple(sorted((row for row in self.compared if row.size > 1.0), key=lambda row: -row.size))
 
     @property
     def same(self) -> bool:
@@ -78,30 +91,12 @@ class Verification(Brief):
             yield f"the result was made with {', '.join(others)}: last digits may differ"
 
 
-@dataclass(frozen=True, slots=True)
-class ComparedNumbers:
-    """Numbers of one file compared with those of the new run."""
-
-    numbers: int
-    exact: int
-    changes: tuple[NumberChange, ...]
-
-
-def compared(file: str, old: Json, new: Json) -> ComparedNumbers:
+def compared(file: str, old: Json, new: Json) -> list[NumberAgain]:
     """The numbers of a JSON document, true, false and null included, against those of a new one.
 
     Keys that only the new one has, and texts, are not compared.
     """
-    pairs = list(_pairs(old, new))
-    changes = [
-        NumberChange(file, key, a, b, size) for key, a, b, u in pairs if (size := _size(a, b, u)) > 1.0
-    ]
-    return ComparedNumbers(len(pairs), sum(a == b for _, a, b, _ in pairs), tuple(changes))
-
-
-def largest_first(changes: Iterator[NumberChange]) -> tuple[NumberChange, ...]:
-    """The changes by size, in their order where equal."""
-    return tuple(sorted(changes, key=lambda change: -change.size))
+    return [NumberAgain(file, key, a, b, _size(a, b, u)) for key, a, b, u in _pairs(old, new)]
 
 
 def _pairs(

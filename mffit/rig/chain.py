@@ -100,9 +100,6 @@ class Chain:
                 owner[name] = error.formula(number, owner[name], self)
                 if name != "alpha":
                     self._known = None  # it holds for other conditions
-            for name in error.inverse_on:
-                self._coefficients[name] = self._coefficients[name] / error.formula(number, 1.0, self)
-                self._known = None
 
     def _acts(self, error: RigError) -> bool:
         """Whether an error may change anything: it has another number than without the error, or is traced."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count
 
-HELD_ANGLE = Real(0.02, "deg", "Change of sideslip from point to point below which the angle was held.")
 POINTS_OF_A_BLOCK = Count(
     8192,
     "-",

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from mffit.constants import SAME_SIDESLIP
 from mffit.points import Points, main_path
 from mffit.rig import constants
 
@@ -84,7 +85,7 @@ def sense(points: Points) -> np.ndarray:
         rows = np.flatnonzero(points.sweep == k)
         if len(rows) > 1:
             moving = np.gradient(points.alpha[rows])
-            out[rows] = np.where(np.abs(moving) > constants.HELD_ANGLE.rad, np.sign(moving), 0.0)
+            out[rows] = np.where(np.abs(moving) > SAME_SIDESLIP.rad, np.sign(moving), 0.0)
     return out
 
 

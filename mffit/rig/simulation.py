@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.points import Points, concatenate
+from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig import constants
 from mffit.rig.chain import Chain
 from mffit.rig.histories import History, blocks, of_part, successive, usual_radius
 from mffit.rig.readings import Readings
-from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults, number_of
+from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.equations.forces import Forces, State
@@ -38,10 +38,7 @@ class Simulation(Brief):
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
     of_parts: Mapping[str, float] = field(default_factory=dict)
-    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit.
-
-    The number of a campaign replaces that of the whole at its points, as each campaign has a rig of its own.
-    """
+    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
 
     @classmethod
     def of(
@@ -54,11 +51,7 @@ class Simulation(Brief):
         """Current value of a coefficient, a rig error or a switch."""
         if name == SWITCH:
             return float(self.turn_slip)
-        error, _, part = name.partition(OF_RUN)
-        if part and part in points.campaigns:
-            own = self.of_campaign(part, points)
-            return own.number(error, points.of_campaign(part))
-        if part:
+        if OF_RUN in name:
             return self.of_parts.get(name, 0.0)
         if name == "path_radius_m" and math.isnan(self.faults[name]):
             return self.declared(points)
@@ -80,15 +73,6 @@ class Simulation(Brief):
             turn_slip=bool(numbers.get(SWITCH, self.turn_slip)),
             of_parts={**self.of_parts, **of_parts} if of_parts else self.of_parts,
         )
-
-    def of_campaign(self, name: str, points: Points) -> Simulation:
-        """The same tyre on the rig of one of the campaigns of some points."""
-        if len(points.campaigns) < 2:
-            return self
-        parts = {key: key.partition(OF_RUN) for key in self.of_parts}
-        own = {parts[key][0]: x for key, x in self.of_parts.items() if parts[key][2] == name}
-        rest = {key: x for key, x in self.of_parts.items() if parts[key][2] not in points.campaigns}
-        return replace(self, faults=self.faults.replace(**own), of_parts=rest)
 
     @property
     def faultless(self) -> Simulation:
@@ -117,11 +101,6 @@ class Simulation(Brief):
         The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
         those of ``points``.
         """
-        if len(points.campaigns) > 1:
-            parts = [(rows, part.felt(own)) for part, rows, own in self._campaigns(points)]
-            order = np.argsort(np.concatenate([rows for rows, _ in parts]), kind="stable")
-            together = concatenate([part for _, part in parts]).select(order)
-            return together.replace(campaign=points.campaign, campaigns=points.campaigns)
         channels = _in_order((*SIDEWAYS, *(name for name in points.measured if name in SIMULATED)))
         felt = points.replace(**self._chain(points, {}).at_the_tyre())
         rig = self.readings(points, channels)
@@ -162,8 +141,6 @@ class Simulation(Brief):
     ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
         """:meth:`sensitivities` as a function of the rows (m,) of a test; if sweeps lag, rows of whole sweeps."""
         channels = _in_order(channels)
-        if len(points.campaigns) > 1:
-            return self._at_rows_of_campaigns(points, names, channels)
         history = History(points)
         numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
         here, lags = replace(self, radius_m=self.declared(points)), self._lags(names)
@@ -217,52 +194,6 @@ class Simulation(Brief):
                 for slope in slopes.values():
                     slope[:, k] *= own
         return Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}), Readings(**slopes)
-
-    def _campaigns(self, points: Points) -> Iterator[tuple[Simulation, np.ndarray, Points]]:
-        """The simulation of every campaign that has points, the rows (m,) of these, and the points by themselves."""
-        for k in np.unique(points.campaign).tolist():
-            name = points.campaigns[k]
-            yield (
-                self.of_campaign(name, points),
-                np.flatnonzero(points.campaign == k),
-                points.of_campaign(name),
-            )
-
-    def _at_rows_of_campaigns(
-        self, points: Points, names: Sequence[str], channels: tuple[str, ...]
-    ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
-        """As :meth:`at_rows`; the number of one campaign acts on no other."""
-        own_of = [name.partition(OF_RUN) for name in names]
-        place = np.empty(len(points), dtype=int)
-        parts = {}
-        for part, rows, own in self._campaigns(points):
-            k = int(points.campaign[rows[0]])
-            campaign = points.campaigns[k]
-            columns = [
-                column
-                for column, (name, _, of) in enumerate(own_of)
-                if of == campaign
-                or (of and of not in points.campaigns)
-                or (not of and number_of(name, campaign) not in {*names, *self.of_parts})
-            ]
-            called = [own_of[c][0] if own_of[c][2] == campaign else names[c] for c in columns]
-            place[rows] = np.arange(len(rows))
-            parts[k] = part.at_rows(own, called, channels), columns
-
-        def found(rows: np.ndarray) -> tuple[Readings, Readings]:
-            out = {name: np.empty(len(rows)) for name in channels}
-            slopes = {name: np.zeros((len(rows), len(names))) for name in channels}
-            for k, (at_rows, columns) in parts.items():
-                here = np.flatnonzero(points.campaign[rows] == k)
-                if not len(here):
-                    continue
-                readings, by = at_rows(place[rows[here]])
-                for name in channels:
-                    out[name][here] = readings[name]
-                    slopes[name][np.ix_(here, np.array(columns, dtype=int))] = by[name]
-            return Readings(**out), Readings(**slopes)
-
-        return found
 
     def _chain(
         self,

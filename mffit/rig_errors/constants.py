@@ -5,7 +5,6 @@ from __future__ import annotations
 from tir.constant import Real
 
 REFERENCE_TEMPERATURE = Real(25.0, "degC", "Temperature of a property file unless given or fitted.")
-WARM_UP_DISTANCE = Real(1.0, "km", "Distance over which the effect of a cold start falls to 37 %.")
 CAMBER_SKEW = Real(
     0.1, "deg", "Standard uncertainty of the right angle of camber and steering axis if [rig] gives none."
 )

@@ -133,21 +133,6 @@ RUN_STIFFNESS = _of_run(
     meaning="cornering stiffness times 1 + run_stiffness, a number of every run",
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
 )
-SURFACE_GRIP = RigError(
-    name="surface_grip",
-    word="grip of the surface beyond that of the first campaign",
-    shown_in=("%", 100.0),
-    unit="-",
-    kind="environment",
-    place=Place.COEFFICIENTS,
-    meaning="longitudinal and lateral friction, and the slips at which the contact slides, times 1 + surface_grip",
-    acts_on=("LMUX", "LMUY"),
-    inverse_on=("LXAL", "LYKA"),
-    formula=lambda share, value, at: value * (1.0 + share),
-    spread=0.05,
-    lower=-0.5,
-    upper=1.0,
-)
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
     word="temperature at which the model holds",
@@ -221,9 +206,7 @@ WARM_UP = _of_forces(
     shown_in=("%", 100.0),
     unit="-",
     meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
-    formula=lambda share, force, at: (
-        force * (1.0 - share * np.exp(-at.distance_km / constants.WARM_UP_DISTANCE))
-    ),
+    formula=lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
     spread=0.03,
     lower=-0.5,
     upper=0.5,
@@ -248,6 +231,5 @@ COEFFICIENT_ERRORS = (
     TEMPERATURE_SLIP_STIFFNESS,
     RUN_GRIP,
     RUN_STIFFNESS,
-    SURFACE_GRIP,
 )
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

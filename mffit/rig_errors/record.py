@@ -102,9 +102,6 @@ class RigError:
     place: Place | None  #: None: it only takes part in the formulae of others
     acts_on: tuple[str, ...] = ()  #: alpha, gamma, kappa, Fz, phi_t, channels or coefficients
     formula: Formula | None = None
-    inverse_on: tuple[
-        str, ...
-    ] = ()  #: coefficients that are divided by the factor that ``acts_on`` is multiplied by
     reads: tuple[str, ...] = ()  #: channels of the tyre that the formula takes from ``at.true``
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma

@@ -1,6 +1,6 @@
 """From rig files to sweeps in ISO-W and SI."""
 
-from mffit.sweeps.loading import load, load_file
+from mffit.sweeps.loading import load
 from mffit.sweeps.sweep import Sweep
 
-__all__ = ["Sweep", "load", "load_file"]
+__all__ = ["Sweep", "load"]

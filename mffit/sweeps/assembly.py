@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
@@ -26,8 +25,8 @@ class Circumstances(NamedTuple):
     direction: int = 1  #: +1 or -1, if the file has no such column
     mount: int = 1  #: +1 normal, -1 tyre turned on its rim
     setup: str = ""  #: name of the set-up of the rig
-    pressure: float = math.nan  #: [Pa], if not measured
-    speed: float = math.nan  #: [m/s], if not measured
+    pressure: float = np.nan  #: [Pa], if not measured
+    speed: float = np.nan  #: [m/s], if not measured
 
 
 def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:

@@ -169,23 +169,6 @@ def _not_in_file(raw: RawTable, name: str, heading: str) -> InputError:
 
 def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
     """The error about required columns that a file lacks, with what to write for each of them."""
-    channel, *others = channels
-    if others:
-        return InputError(
-            _several_missing(raw, channels), file=raw.path, line=raw.heading_line, column=channel.name
-        )
-    near = nearest_heading(channel, raw.headings)
-    remedy = (
-        f'if it is "{near}", write {channel.name} = {{ column = "{near}", unit = "{channel.unit}" }}, with its true '
-        "unit, under [sweep.columns]"
-        if near
-        else f"add it, or give its heading under [sweep.columns] (the headings are {', '.join(raw.headings)})"
-    )
-    sentence = f"is missing ({channel.description}); {remedy}"
-    return InputError(sentence, file=raw.path, line=raw.heading_line, column=channel.name)
-
-
-def _several_missing(raw: RawTable, channels: Sequence[Channel]) -> str:
     near = {channel: nearest_heading(channel, raw.headings) for channel in channels}
     entries = [
         f'{channel.name} = {{ column = "{heading}", unit = "{raw.unit(heading) or channel.unit}" }}'
@@ -193,15 +176,18 @@ def _several_missing(raw: RawTable, channels: Sequence[Channel]) -> str:
         if heading
     ]
     lost = [f"{channel.name} ({channel.description})" for channel, heading in near.items() if not heading]
-    said = f"is missing, and so {'is' if len(channels) == 2 else 'are'} {', '.join(c.name for c in channels[1:])}"
+    first, *others = (channel.name for channel in channels)
+    said = "is missing"
+    if others:
+        said += f", and so {'is' if len(others) == 1 else 'are'} {', '.join(others)}"
     if entries:
         said += (
-            "; if they have other headings here, write under [sweep.columns], or under [columns] for all files: "
-            f"{', '.join(entries)}, each with its true unit; or let `mffit init --from` or `mffit open` recognise them"
+            "; if the file has other headings, write under [sweep.columns], or under [columns] for all files: "
+            f"{', '.join(entries)}, with the true unit; or let `mffit init --from` or `mffit open` recognise them"
         )
     if lost:
         said += f"; add {', '.join(lost)}, or give the heading (the headings are {', '.join(raw.headings)})"
-    return said
+    return InputError(said, file=raw.path, line=raw.heading_line, column=first)
 
 
 def _source(

@@ -30,8 +30,3 @@ STEADIER_LOAD_RATIO = Real(
     "-",
     "A load column is vertical if it varies less than this times the load turned from the wheel plane.",
 )
-MOST_WARNINGS_OF_A_KIND = Count(
-    2,
-    "-",
-    "Most warnings that differ in file and numbers only; of more the first is given, and their number.",
-)

@@ -23,6 +23,7 @@ from mffit.sweeps import constants
 from mffit.sweeps.extras import first_bytes, is_packed, opened
 from mffit.sweeps.grid import Head, head_of, is_summary, table_of
 from mffit.sweeps.raw_table import (
+    SPREADSHEET_ERRORS,
     THOUSANDS_WITH_POINT,
     Cells,
     RawTable,
@@ -37,6 +38,11 @@ SEPARATORS = ("\t", ";", "|", ",")
 BLANKS = " "
 HEAD = 65_536
 """Bytes at the start of a file that show separator, decimal comma and encoding."""
+COMMENT = re.compile(
+    rb"^[ \t]*#(?!(?:%s)[\t;|, ])[^\n]*"
+    % "|".join(re.escape(error[1:]) for error in sorted(SPREADSHEET_ERRORS)).encode(),
+    re.MULTILINE | re.IGNORECASE,
+)
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
 
 
@@ -159,27 +165,31 @@ def _fast(path: Path, dialect: Dialect) -> RawTable | None:
     head, line = _head(path, dialect)
     separator = r"\s+" if dialect.separator == BLANKS else dialect.separator
     try:
+        source, count = _source(path)
         table = pd.read_csv(
-            path,
+            source,
             sep=separator,
             decimal="," if dialect.has_comma else ".",
             header=None,
             names=list(head.headings),
             index_col=False,
             skiprows=line,
-            comment="#",
+            skip_blank_lines=False,
             skipinitialspace=True,
             encoding=dialect.encoding,
             encoding_errors="replace",
             engine="c",
             on_bad_lines="error",
-            compression="gzip" if is_packed(path) else None,
+            compression="gzip" if source is path and is_packed(path) else None,
         )
-        lines = _lines(path, line, len(table))
+        filled = table.iloc[:, 0].notna().to_numpy()
+        if not filled.all():
+            filled = np.asarray(table.notna().to_numpy().any(axis=1))
+        if not filled.any() or line + len(filled) != count:
+            return None
     except (ValueError, OSError, EOFError, zlib.error, MemoryError):
         return None
-    if lines is None or not len(table):
-        return None
+    table = table if filled.all() else table.loc[filled]
     columns = tuple(_column(table.pop(name), dialect) for name in head.headings)
     if any(not isinstance(cells, np.ndarray) and any(map(is_summary, set(cells))) for cells in columns):
         return None
@@ -187,7 +197,7 @@ def _fast(path: Path, dialect: Dialect) -> RawTable | None:
         headings=head.headings,
         units=head.units,
         cells=columns,
-        lines=lines,
+        lines=np.flatnonzero(filled) + line + 1,
         path=path,
         heading_line=line - (head.rows - head.at) + 1,
         about={"title": head.title} if head.title else {},
@@ -208,43 +218,17 @@ def _column(column: pd.Series, dialect: Dialect) -> Cells:
     return [_point(cell, dialect) for cell in column.fillna("").astype(str).str.strip()]
 
 
-def _lines(path: Path, head: int, rows: int) -> range | np.ndarray | None:
-    """Line of every row after the head; None if lines and rows do not match, or if pandas cut a row at a ``#`` inside it."""
+def _source(path: Path) -> tuple[Path | io.BytesIO, int]:
+    """What pandas reads, with a blank line in place of every comment, and the number of its lines."""
     count, last, has_marks = 0, b"\n", False
     with opened(path) as file:
         while chunk := file.read(1 << 20):
-            count += chunk.count(b"\n")
-            last = chunk[-1:]
+            count, last = count + chunk.count(b"\n"), chunk[-1:]
             has_marks |= b"#" in chunk
-    count += last != b"\n"
-    if has_marks and _has_mark_inside(path, head):
-        return None
-    if count - head == rows:
-        return range(head + 1, head + 1 + rows)
-    skipped = []
-    with opened(path) as file:
-        for number, line in enumerate(file, start=1):
-            if number > head and (not line.strip() or line.lstrip().startswith(b"#")):
-                skipped.append(number)
-    if count - head - len(skipped) != rows:
-        return None
-    every = np.arange(head + 1, count + 1)
-    return every[~np.isin(every, skipped)]
-
-
-def _has_mark_inside(path: Path, head: int) -> bool:
-    """Whether a row below the head has a ``#`` that does not begin a comment, as in ``#NV``."""
-    with opened(path) as file:
-        return any(
-            b"#" in line and (not line.lstrip().startswith(b"#") or is_spreadsheet_error(_first(line)))
-            for number, line in enumerate(file, start=1)
-            if number > head
-        )
-
-
-def _first(line: bytes) -> str:
-    """The first cell of a row, whatever the separator."""
-    return re.split(r"[\t;|, ]", line.decode("latin-1").strip(), maxsplit=1)[0]
+    if not has_marks:
+        return path, count + (last != b"\n")
+    text = COMMENT.sub(b"", first_bytes(path))
+    return io.BytesIO(text), text.count(b"\n") + (text[-1:] != b"\n")
 
 
 def _text(path: Path, dialect: Dialect) -> str:

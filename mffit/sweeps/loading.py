@@ -12,9 +12,8 @@ import numpy as np
 from mffit.config import Config, setup_names
 from mffit.config.exclusion import ExcludeTable
 from mffit.config.models import SweepTable
-from mffit.constants import LIKENESS_OF_MISSPELT
+from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
 from mffit.errors import InputError
-from mffit.sweeps import constants
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
@@ -115,31 +114,18 @@ def load(config: Config) -> Sweeps:
 
 
 def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
-    """Warnings with their files, each kind once: of more than two files that differ in nothing but numbers, that of the first."""
+    """Warnings with their files, each kind once: of more than three that differ in nothing but numbers, that of the first."""
     alike: dict[str, list[tuple[Path, str]]] = {}
     for path, sentence in warnings:
         alike.setdefault(NUMBER.sub("0", sentence.removeprefix(str(path))), []).append((path, sentence))
     said = []
     for kind in alike.values():
-        if len(kind) > constants.MOST_WARNINGS_OF_A_KIND:
+        if len(kind) > NAMED_IN_SENTENCE:
             files = dict.fromkeys(path.name for path, _ in kind[1:])
             said.append(f"{kind[0][1]}; {len(kind) - 1} more of this kind, in {some(list(files))}")
         else:
             said += [sentence for _, sentence in kind]
     return said
-
-
-def load_file(path: str | Path, *, axes: str) -> Sweeps:
-    """Read one file without a configuration; pressure and speed are NaN if it does not have them.
-
-    Parameters
-    ----------
-    path : file with the contract's headings, forces in the contact frame
-    axes : "iso", "sae" or "adapted-sae"
-    """
-    columns = read_columns(read(Path(path)), {})
-    given = Circumstances(axes=axes, file=str(path))
-    return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
 
 
 def _refusal(config: Config, index: int, sentence: str, key: str) -> InputError:

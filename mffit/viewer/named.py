@@ -9,8 +9,7 @@ from pathlib import Path
 import tir
 from mffit.errors import InputError
 from mffit.tested import end_tested
-from mffit.viewer.controls import CONTROLS, Control, written_range
-from mffit.viewer.panels import OUTPUTS
+from mffit.viewer.controls import CONTROLS, OUTPUTS, Control, written_range
 from tir import Tyre
 from tir.codegen.program import Switches, refuse_zero_divisors
 from tir.mode import doubt

@@ -15,9 +15,8 @@ from mffit.errors import InputError
 from mffit.quantities import MODEL, QuantityName
 from mffit.results.values import Json
 from mffit.templates import environment
-from mffit.viewer.controls import in_si, settings
+from mffit.viewer.controls import OUTPUTS, PANELS, in_si, settings
 from mffit.viewer.named import Given, described, named
-from mffit.viewer.panels import OUTPUTS, PANELS
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
 from tir.writing import replace_file

@@ -97,8 +97,6 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
 }
 """Factors on scaling factors of the tyre."""
-SURFACES = ("surface_grip",)
-"""Friction of the surface; see :func:`_scaled`."""
 SURROUNDINGS: dict[str, Formula] = {
     "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
     "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),
@@ -116,7 +114,7 @@ CELL = (
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
 """Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
-FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *SURFACES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
+FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
 
@@ -239,9 +237,6 @@ def _scaled(machine: Machine, settings: Settings) -> Any:
     for error, (name, formula) in SCALES.items():
         if machine.faults[error]:
             values[name] = values[name] * formula(machine.faults[error], settings, machine)
-    grip = 1.0 + machine.faults["surface_grip"]
-    for friction, width in (("LMUX", "LXAL"), ("LMUY", "LYKA")):  # more grip: all sliding begins at more slip
-        values[friction], values[width] = grip * values[friction], values[width] / grip
     return SimpleNamespace(**values)
 
 

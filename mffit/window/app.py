@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
 from mffit.window.session import Session
 
+Endpoint = Callable[[Request], Awaitable[Response]]
 SERVED = (".html", ".png", ".svg", ".json", ".csv", ".tir", ".toml")
 """Endings of the results that are served."""
 SANDBOX = (
@@ -43,7 +44,7 @@ class Opened:
     def __init__(
         self, session: Session | None = None, folder: RecordingsFolder | None = None, html: str = ""
     ) -> None:
-        self._session, self.folder, self.html = session, folder, html
+        self._session, self._folder, self.html = session, folder, html
 
     @property
     def has_project(self) -> bool:
@@ -63,13 +64,25 @@ class Opened:
             raise InputError("no project is open in this window")
         return self._session
 
+    @property
+    def folder(self) -> RecordingsFolder:
+        """The folder of which no project is made yet; raises as :attr:`session`."""
+        if self._folder is None or self.has_project:
+            raise InputError("no folder of recordings is open in this window")
+        return self._folder
+
     def make(self, choice: dict[str, Any]) -> None:
         """Make a project of the folder, and open it; as :meth:`RecordingsFolder.make`."""
-        if self.folder is None or self.has_project:
-            raise InputError("no folder of recordings is open in this window")
         session = Session(self.folder.make(choice))
         session.run("fit")
         self._session = session
+
+    def edit(self, change: Mapping[str, Any]) -> None:
+        """Carry out a change of ``tyre.toml``; as :meth:`Session.edit`."""
+        name, seen, arguments = (change.get(key) for key in ("do", "seen", "with"))
+        if not isinstance(name, str) or not isinstance(seen, str) or not isinstance(arguments, dict):
+            raise InputError("a change needs do, seen and with")
+        self.session.edit(name, seen, arguments)
 
     def end(self) -> None:
         """Stop what is under way."""
@@ -79,61 +92,46 @@ class Opened:
 
 def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], bool] = lambda: False) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
+    shown: dict[str, Callable[[], Any]] = {
+        "recordings": lambda: plain(opened.folder.table()),
+        "project": lambda: opened.session.data,
+        "state": lambda: opened.session.state(),
+    }
+    actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {
+        "check": lambda content, at: opened.folder.check(content),
+        "make": lambda content, at: opened.make(content),
+        "edit": lambda content, at: opened.edit(content),
+        "undo": lambda content, at: opened.session.undo(),
+        "stop": lambda content, at: opened.session.stop(),
+        "run/{kind}": lambda content, at: opened.session.run(at["kind"]),
+    }
+
+    def showing(found: Callable[[], Any]) -> Endpoint:
+        async def show(request: Request) -> Response:
+            return JSONResponse(await run_in_threadpool(found))
+
+        return show
+
+    def acting(action: Callable[[dict[str, Any], Mapping[str, str]], Any]) -> Endpoint:
+        async def act(request: Request) -> Response:
+            content = await _content(request)
+            return await _answer(lambda: action(content, request.path_params), opened)
+
+        return act
 
     async def page(request: Request) -> Response:
         return HTMLResponse(await run_in_threadpool(_page, opened))
 
-    async def recordings(request: Request) -> Response:
-        if opened.folder is None:
-            return Response(status_code=404)
-        return JSONResponse(plain(await run_in_threadpool(opened.folder.table)))
-
-    async def check(request: Request) -> Response:
-        content, folder = await _content(request), opened.folder
-        if folder is None:
-            return Response(status_code=404)
-        return await _answer(lambda: folder.check(content))
-
-    async def make(request: Request) -> Response:
-        content = await _content(request)
-        return await _answer(lambda: opened.make(content))
-
     async def store(request: Request) -> Response:
-        if opened.folder is None or opened.has_project:
-            return Response(status_code=404)
         folder, name = opened.folder, request.path_params["name"]
         content = await _body(request, int(constants.LARGEST_RECORDING))
         if content is None:
-            sentence = (
-                f"{name} is larger than {constants.LARGEST_RECORDING / 1e6:.0f} MB; copy it into the folder"
-            )
-            return JSONResponse({"error": sentence}, REFUSED)
-        return await _answer(lambda: {"name": folder.store(name, content).name})
-
-    async def project(request: Request) -> Response:
-        return JSONResponse(opened.session.data)
-
-    async def state(request: Request) -> Response:
-        return JSONResponse(await run_in_threadpool(opened.session.state))
+            most = f"{constants.LARGEST_RECORDING / 1e6:.0f} MB"
+            raise InputError(f"{name} is larger than {most}; copy it into the folder")
+        return await _answer(lambda: {"name": folder.store(name, content).name}, opened)
 
     async def events(request: Request) -> Response:
         return StreamingResponse(_events(opened.session, request, closing), media_type="text/event-stream")
-
-    async def edit(request: Request) -> Response:
-        content = await _content(request)
-        name, seen, arguments = (content.get(key) for key in ("do", "seen", "with"))
-        if not isinstance(name, str) or not isinstance(seen, str) or not isinstance(arguments, dict):
-            return JSONResponse({"error": "a change needs do, seen and with"}, REFUSED)
-        return await _answer(lambda: opened.session.edit(name, seen, arguments), opened)
-
-    async def undo(request: Request) -> Response:
-        return await _answer(lambda: opened.session.undo(), opened)
-
-    async def run(request: Request) -> Response:
-        return await _answer(lambda: opened.session.run(request.path_params["kind"]), opened)
-
-    async def stop(request: Request) -> Response:
-        return await _answer(lambda: opened.session.stop(), opened)
 
     async def result(request: Request) -> Response:
         found = within(out_of(opened.session.file.path), request.path_params["path"])
@@ -149,17 +147,10 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
 
     routes = [
         Route("/{token}/", page),
-        Route("/{token}/recordings", recordings),
+        *(Route(f"/{{token}}/{name}", showing(found)) for name, found in shown.items()),
+        *(Route(f"/{{token}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
         Route("/{token}/store/{name}", store, methods=["POST"]),
-        Route("/{token}/check", check, methods=["POST"]),
-        Route("/{token}/make", make, methods=["POST"]),
-        Route("/{token}/project", project),
-        Route("/{token}/state", state),
         Route("/{token}/events", events),
-        Route("/{token}/edit", edit, methods=["POST"]),
-        Route("/{token}/undo", undo, methods=["POST"]),
-        Route("/{token}/stop", stop, methods=["POST"]),
-        Route("/{token}/run/{kind}", run, methods=["POST"]),
         Route("/{token}/out/{path:path}", result),
     ]
     application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
@@ -180,7 +171,6 @@ def _page(opened: Opened) -> str:
     if opened.html:
         return opened.html
     if not opened.has_project:
-        assert opened.folder is not None
         css = files("mffit.viewer").joinpath("templates", "show.css").read_text(encoding="utf-8")
         own = files("mffit.viewer").joinpath("templates", "project.css").read_text(encoding="utf-8")
         template = environment("mffit.window").get_template("recordings.html.j2")
@@ -227,8 +217,8 @@ async def _body(request: Request, most: int) -> bytes | None:
     return bytes(found)
 
 
-async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Response:
-    """What an action returns, with the new state of the project if it was about one; or the sentence why it was refused."""
+async def _answer(action: Callable[[], Any], opened: Opened) -> Response:
+    """What an action returns, or the sentence why it was refused; with the new state of the project if one is open."""
     found: dict[str, Any] = {}
     status = 200
     try:
@@ -236,6 +226,6 @@ async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Re
     except InputError as error:
         found = {"error": str(error), "sentence": error.sentence, "key": error.key}
         status = REFUSED
-    if opened is not None and opened.has_project:
+    if opened.has_project:
         found["state"] = await run_in_threadpool(opened.session.state)
     return JSONResponse(plain(found), status)

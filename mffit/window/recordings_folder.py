@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config.loading import checked
+from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
 from mffit.output import new_files
 from mffit.pipeline.intake import project_of
@@ -20,8 +20,8 @@ from mffit.recordings.directions import rolls_backward
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, Guess, guesses
 from mffit.recordings.project_file import Stated, slug, tyre_found
-from mffit.recordings.sniffed import STAND_IN, ChosenFile, Sniffed, axes_of, sniff
-from mffit.recordings.summary import RunSummary, apart, bad_runs, contradictions, two_specimens
+from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, sniff
+from mffit.recordings.summary import RunSummary, apart, bad_runs, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
@@ -115,18 +115,17 @@ class RecordingsFolder:
                 {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
             ],
             "groups": groups,
-            "problems": [*problems, *([problem] if problem else []), *self._of_summaries(found)],
+            "problems": [*problems, *([problem] if problem else []), *self._of_summaries()],
             "tyre": tyre_found(found, self.folder)._asdict() if found else {"name": slug(self.folder)},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
         }
 
-    def _of_summaries(self, found: Sniffed | None) -> list[str]:
-        """What a summary of the test says against the recordings."""
+    def _of_summaries(self) -> list[str]:
+        """What a summary of the test says of the recordings."""
         left_out = [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(self.summaries)]
-        against = contradictions(self.summaries, found.reading) if found else []
         two = two_specimens(self.summaries)
-        return [*left_out, *against, *([two] if two else [])]
+        return [*left_out, *([two] if two else [])]
 
     def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
         """What the recordings hold if they are read as chosen.

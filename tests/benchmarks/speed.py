@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 import tir
-from tir import calls, kernels
+from tir import kernels
 from tir.codegen.cpython import kernel
 from tir.codegen.program import INPUTS, Switches
 from tir.evaluate import evaluate
@@ -102,7 +102,6 @@ def of_exported_c(tyre: tir.Tyre, turn_slip: bool) -> list[float]:
 def main() -> None:
     tyre = tir.read(ROOT / "tests" / "tir" / "vectors" / "MagicFormula62.tir")
     compiled = kernel.available()
-    calls.COMPILE_FROM = 10 * max(SIZES)
     found = dict(kernels.WORTH_LOADING)
     kernels.WORTH_LOADING.update(dict.fromkeys(found, 10**12))  # only when asked
     for turn_slip in (False, True):
@@ -110,8 +109,7 @@ def main() -> None:
               + "".join(f"{n:>12}" for n in SIZES))  # fmt: skip
         switches = Switches(turn_slip)._asdict()
         inputs = [conditions(tyre, n) for n in SIZES]
-        kernels.LOADED.clear()
-        kernels.METERS.clear()
+        kernels.meter.cache_clear()
         plain = [
             seconds(partial(evaluate, tyre.p, *(x if len(x[0]) > 1 else [v[0] for v in x]), **switches))
             / len(x[0])
@@ -161,9 +159,7 @@ def found_by_itself(tyre: tir.Tyre) -> None:
     )
     base = math.nan
     for name, given in kinds.items():
-        kernels.wait()
-        kernels.LOADED.clear()
-        kernels.METERS.clear()
+        kernels.meter.cache_clear()
         fresh, halves = tyre.replace(), []
         for _ in range(2):
             start = time.process_time()
@@ -174,15 +170,13 @@ def found_by_itself(tyre: tir.Tyre) -> None:
         print(f"{name:<44}" + "".join(f"{t * 1e6:12.2f}" for t in halves) + f"{halves[1] / base:12.2f}")
     print("arrays after 300 calls, us per call, and ratio to numpy")
     for n in (100, 1000):
-        kernels.LOADED.clear()
-        kernels.METERS.clear()
+        kernels.meter.cache_clear()
         fresh, arrays = tyre.replace(), conditions(tyre, n)
         kernels.meter("batch", Switches()).left = math.inf
         numpy_path = seconds(lambda fresh=fresh, arrays=arrays: fresh(*arrays, turn_slip=False))
-        kernels.METERS.clear()
+        kernels.meter.cache_clear()
         for _ in range(300):
             fresh(*arrays, turn_slip=False)
-        kernels.wait()
         taken = seconds(lambda fresh=fresh, arrays=arrays: fresh(*arrays, turn_slip=False))
         print(f"{n:<44}{taken * 1e6:12.1f}{taken / numpy_path:12.3f}")
 

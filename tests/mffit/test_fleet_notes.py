@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from mffit.pipeline.fleet_notes import fleet_notes
-from mffit.pipeline.fleet_output import nominal_conditions, priors_of_fleet
+from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions
+from mffit.pipeline.fleets import priors_of_fleet
 from mffit.rig_errors import WORDS
 
 

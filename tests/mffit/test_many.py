@@ -114,9 +114,9 @@ def _rewritten(out: Path, name: str, content: bytes) -> None:
 
 
 def another_method(project: Path, out: Path) -> None:
-    text = (out / "small.tir").read_bytes()
-    assert b"! provenance: method: " in text
-    _rewritten(out, "small.tir", text.replace(b"! provenance: method: ", b"! provenance: method: 9"))
+    text = (out / "result.json").read_bytes()
+    assert b'"method": ' in text
+    _rewritten(out, "result.json", text.replace(b'"method": ', b'"method": 9', 1))
 
 
 @pytest.mark.parametrize(
@@ -431,12 +431,18 @@ def test_a_cluster_continues_when_a_worker_is_killed(project, tmp_path):
                 os.kill(killed[0], signal.SIGKILL)
 
         outcomes = pipeline.build_many(
-            sources, tmp_path / "out", dask=cluster.scheduler_address, done=kill_one
+            sources,
+            tmp_path / "out",
+            dask=cluster.scheduler_address,
+            with_report=False,
+            done=kill_one,
         )
     assert killed
     assert [outcome.state for outcome in outcomes] == ["built"] * 4
     for k in range(4):
-        assert is_current(config.load(sources[k]), tmp_path / "out" / f"tyre-{k}")
+        out = tmp_path / "out" / f"tyre-{k}"
+        assert is_current(config.load(sources[k]), out, with_report=False)
+        assert not (out / "report.html").exists()
     left = [path.name for path in (tmp_path / "out").iterdir() if path.name.startswith(".")]
     assert len(left) <= 1  # temporary folder of the killed worker, which the next run removes
 

@@ -83,7 +83,7 @@ def one_rig(seed: int, tyres: int, sample: str, later: int) -> Rig:
                 out.epsilon[k].append((value - eps, u))
         out.pulls = {n: (v - faults[n]) / u for n, (v, u) in together.rig.items() if n in faults}
         priors = Path(made) / "priors.json"
-        priors.write_text(json.dumps(pipeline.fleet_output.priors_of_rig(together, result.fit.tyre, tyres)))
+        priors.write_text(json.dumps(pipeline.fleets.priors_of_rig(together, result.fit.tyre, tyres)))
         for k in range(later):
             folder, true = Path(made) / f"later {k}", drawn_tyre(sample, rng)
             campaign(folder, true, sample, faults, 1000 * seed + 500 + k, pecp1="model", thin=True)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import tir
 from tir.document import parse_document
 from tir.parameters import BY_NAME, TABLE
-from tir.reading import interpret
+from tir.tyre import interpret
 
 VECTORS = Path(__file__).parent / "vectors"
 TEXT = (VECTORS / "moto_front.tir").read_text(encoding="ascii")

@@ -75,11 +75,11 @@ def test_text_of_a_file_is_escaped_in_a_notebook():
     assert "<img src=x>" not in tyre._repr_html_()
 
 
-def test_without_matplotlib_there_is_a_sentence_and_a_table(without_matplotlib):
+def test_without_matplotlib_there_is_a_sentence(without_matplotlib):
     tyre = tir.read(FILE)
     with pytest.raises(tir.TirError, match="pip install matplotlib"):
         tyre.plot()
-    assert f"{tyre(1500.0, alpha=np.radians(-2.0)).Fy:.0f} N" in tyre._repr_html_()
+    assert "pip install matplotlib" in tyre._repr_html_()
 
 
 def test_help_begins_with_the_call():

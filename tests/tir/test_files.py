@@ -276,7 +276,7 @@ def test_a_missing_file_is_a_sentence(tmp_path):
 def test_written_values_come_back_bit_for_bit(values):
     tyre = tir.Tyre.from_values({"UNLOADED_RADIUS": 0.3, "FNOMIN": 1500.0, **values})
     from tir.document import parse_document
-    from tir.reading import interpret
+    from tir.tyre import interpret
 
     again = interpret(parse_document(tyre.text()))
     assert dict(again.values) == dict(tyre.values)

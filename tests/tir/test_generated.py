@@ -6,6 +6,7 @@ import itertools
 import math
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -120,9 +121,12 @@ def test_the_compiled_single_call_equals_the_equations(tyre, conditions, compile
 
 def as_at_start(monkeypatch) -> None:
     """No kernel is loaded, and nothing is counted yet."""
-    kernels.wait()
-    monkeypatch.setattr(kernels, "LOADED", {})
-    monkeypatch.setattr(kernels, "METERS", {})
+    monkeypatch.setattr(kernels, "meter", cache(kernels.Meter))
+
+
+def assert_none_is_loaded() -> None:
+    kinds = [kernels.meter(kind, Switches(on)) for kind in kernel.KINDS for on in (False, True)]
+    assert [one.loaded for one in kinds] == [None] * 4
 
 
 @pytest.fixture
@@ -132,7 +136,7 @@ def compiled(monkeypatch):
 
     def load(switches: Switches, kind: str) -> None:
         tir.compile_kernels(**switches._asdict(), kinds=(kind,))
-        assert (kind, switches) in kernels.LOADED
+        assert kernels.meter(kind, switches).loaded is not None
 
     return load
 
@@ -353,7 +357,7 @@ def test_damaged_machine_code_in_the_cache_is_made_again(tmp_path, monkeypatch):
 @pytest.mark.parametrize("cached", [True, False])
 @pytest.mark.parametrize("kind", ["one", "batch"])
 def test_machine_code_is_found_without_being_asked_for(monkeypatch, tmp_path, kind, cached):
-    """From the cache at once, else when the thread has compiled it; a tyre that was called before changes over."""
+    """From the cache, else compiled; a tyre that was called before changes over."""
     as_at_start(monkeypatch)
     monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 5, "batch": 5 * calls.PER_CALL})
     monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
@@ -363,14 +367,11 @@ def test_machine_code_is_found_without_being_asked_for(monkeypatch, tmp_path, ki
     called = tir.read(VECTORS / "moto_front.tir")
     alpha = 0.05 if kind == "one" else np.full(9, 0.05)
     before = called(2e3, alpha, turn_slip=False)
-    assert not kernels.LOADED
+    assert kernels.meter(kind, Switches()).loaded is None
     for _ in range(5):
         called(2e3, alpha, turn_slip=False)
-    if cached:
-        assert list(kernels.LOADED) == [(kind, Switches())]
-    kernels.wait()
+    assert kernels.meter(kind, Switches()).loaded is not None
     after = called(2e3, alpha, turn_slip=False)
-    assert list(kernels.LOADED) == [(kind, Switches())]
     fast = called.prepared[False, False, False] if kind == "one" else called.prepared["batch", Switches()]
     assert type(fast) is type(len), "a built-in function"
     np.testing.assert_allclose(after, before, rtol=1e-12)
@@ -382,7 +383,7 @@ def test_where_nothing_can_be_compiled_the_calls_go_on(tyre, monkeypatch):
     monkeypatch.setattr(kernel, "available", lambda: False)
     found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
     assert found == pytest.approx([found[0]] * 8)
-    assert not kernels.LOADED
+    assert_none_is_loaded()
 
 
 @pytest.mark.parametrize("broken", [ImportError("llvmlite"), OSError("no room"), RuntimeError("LLVM")])
@@ -393,15 +394,10 @@ def test_a_broken_llvmlite_stops_no_call(tyre, monkeypatch, broken):
     as_at_start(monkeypatch)
     monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
     monkeypatch.setattr(kernel, "available", lambda: True)
-    for name in ("is_cached", "load"):
-        monkeypatch.setattr(kernel, name, fail)
+    monkeypatch.setattr(kernel, "load", fail)
     found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
     assert found == pytest.approx([found[0]] * 8)
-    monkeypatch.setattr(kernel, "is_cached", lambda *given: False)
-    monkeypatch.setattr(kernels, "METERS", {})
-    assert [tyre.replace()(2e3, 0.05).Fy for _ in range(4)] == pytest.approx(found[:4])
-    kernels.wait()
-    assert not kernels.LOADED
+    assert_none_is_loaded()
 
 
 def test_without_a_global_lock_machine_code_is_refused_and_calls_go_on(tyre, monkeypatch):
@@ -416,8 +412,7 @@ def test_without_a_global_lock_machine_code_is_refused_and_calls_go_on(tyre, mon
         tir.compile_kernels()
     found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
     assert found == pytest.approx([found[0]] * 8)
-    kernels.wait()
-    assert not kernels.LOADED
+    assert_none_is_loaded()
 
 
 NUMBERS = [
@@ -459,8 +454,8 @@ def test_without_llvm_the_message_names_the_package(monkeypatch):
 
 def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
     monkeypatch.setattr(kernel, "available", lambda: False)
-    monkeypatch.setattr(calls, "COMPILE_FROM", 1)
     as_at_start(monkeypatch)
+    monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 1, "batch": 1})
     alpha = np.linspace(-0.1, 0.1, 7)
     assert tyre.replace()(2000.0, alpha).Fy == pytest.approx(evaluate(tyre.p, 2000.0, alpha)[0].Fy, rel=1e-12)
 

@@ -11,8 +11,8 @@ import tir
 from tir.checking import check
 from tir.document import parse_document
 from tir.parameters import SECTIONS, TABLE
-from tir.reading import interpret
 from tir.targets import ADAMS, ONLY_62, TARGETS, use_mode_words, vendor
+from tir.tyre import interpret
 
 VECTORS = Path(__file__).parent / "vectors"
 TEXT = (VECTORS / "moto_front.tir").read_text(encoding="ascii")

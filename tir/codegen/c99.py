@@ -13,7 +13,7 @@ from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.mode import words
 from tir.record import TyreRecord
-from tir.tuning import Tunable, exported, trace_tuned, tunables
+from tir.tuning import exported, trace_tuned, tunables
 
 STATES = ("K_ya", "K_xk", "sigma_x", "sigma_y", "Re", "omega", "trail")
 """Outputs that a simulation needs in addition to the forces."""
@@ -115,43 +115,95 @@ def export_c(
             f"{broken[0]} is {values[broken[0]]}, which C code cannot hold; give a finite number",
             name=broken[0],
         )
+    text = _Text(name, *_openings(name, switches, tyre))
     kinds = {"forces": Forces._fields, "state": STATES}
-    programs = {kind: trace(switches, fields, values) for kind, fields in kinds.items()}
-    if not (tunable or lag):
-        return Code(_header(name, switches, tyre, ()), _source(name, programs, {}, ()))
-    turned = tunables(tyre)
-    tuned = {kind: trace_tuned(tyre, switches, fields) for kind, fields in kinds.items()}
-    code = Code(_header(name, switches, tyre, turned), _source(name, programs, tuned, turned))
-    return _with_lag(code, name, lag_programs(tyre, switches, STATES)) if lag else code
+    heads = {"forces": f"{name}_evaluate", "state": f"{name}_evaluate_state"}
+    for kind, fields in kinds.items():
+        text.record(kind, {field: OUTPUT_TEXTS[field] for field in fields})
+    for kind, fields in kinds.items():
+        text.function(heads[kind], kind, trace(switches, fields, values), INPUTS)
+    text.header.append("")
+    if tunable or lag:
+        turned = tunables(tyre)
+        text.record("tuning", {one.name: one.description for one in turned})
+        text.header.append(f"{name}_tuning {name}_as_in_file(void);")
+        text.source.extend(
+            [
+                f"{name}_tuning {name}_as_in_file(void)",
+                "{",
+                f"    {name}_tuning out = {{{', '.join(C.literal(one.start) for one in turned)}}};",
+                "    return out;",
+                "}",
+                "",
+            ]
+        )
+        for kind, fields in kinds.items():
+            program = trace_tuned(tyre, switches, fields)
+            text.function(f"{heads[kind]}_tuned", kind, program, INPUTS, tuned=True)
+        text.header.append("")
+    if lag:
+        _add_lag(text, lag_programs(tyre, switches, STATES))
+    end = ["#ifdef __cplusplus", "}", "#endif", "#endif", ""]
+    return Code("\n".join([*text.header, *end]), "\n".join(text.source))
 
 
-def _with_lag(code: Code, name: str, programs: tuple[Program, Program]) -> Code:
-    """The code with two more functions and their records."""
-    declared = []
-    for kind, program in zip(("deflection", "deflected"), programs, strict=True):
-        texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
-        declared += ["typedef struct {", *(f"    double {f}; /* {texts[f]} */" for f in program.outputs)]
-        declared += [f"}} {name}_{kind};", ""]
-    given = ", ".join(f"double {called(x)}" for x in (*LAGGING, *LAG_INPUTS))
-    heads = (
-        f"{name}_deflection {name}_step(const {name}_tuning *tuning, double dt, {given})",
-        f"{name}_deflected {name}_contact(const {name}_tuning *tuning, {given})",
+class _Text(NamedTuple):
+    """Lines of header and source; every name begins with that of the tyre."""
+
+    name: str
+    header: list[str]
+    source: list[str]
+
+    def record(self, kind: str, texts: Mapping[str, str]) -> None:
+        """Declare a structure of doubles, with what each is."""
+        self.header.append("typedef struct {")
+        self.header.extend(f"    double {field}; /* {text} */" for field, text in texts.items())
+        self.header.extend([f"}} {self.name}_{kind};", ""])
+
+    def function(
+        self, function: str, kind: str, program: Program, inputs: Sequence[str], *, tuned: bool = False
+    ) -> None:
+        """Declare and define a function that returns a record."""
+        given = [f"const {self.name}_tuning *tuning"] * tuned + [f"double {called(x)}" for x in inputs]
+        head = f"{self.name}_{kind} {function}({', '.join(given)})"
+        lines, results = assignments((*program.per_tyre, *program.per_point), program.outputs.values(), C)
+        used = {node.name for node in program.per_point if node.operation == "symbol"}
+        self.header.append(f"{head};")
+        self.source.extend(
+            [
+                head,
+                "{",
+                *(f"    (void){called(x)};" for x in inputs if x not in used),
+                *(["    (void)tuning;"] if tuned and not program.parameters else []),
+                *(f"    const double {x} = tuning->{x};" for x in program.parameters),
+                *(f"    {line}" for line in lines),
+                f"    {self.name}_{kind} out;",
+                *(f"    out.{field} = {text};" for field, text in zip(program.outputs, results, strict=True)),
+                "    return out;",
+                "}",
+                "",
+            ]
+        )
+
+
+def _add_lag(text: _Text, programs: tuple[Program, Program]) -> None:
+    """The deflection after a step, and forces and states of a deflection."""
+    texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
+    functions = (("step", "deflection", ("dt",)), ("contact", "deflected", ()))
+    for (_, kind, _), program in zip(functions, programs, strict=True):
+        text.record(kind, {field: texts[field] for field in program.outputs})
+    text.header.extend(
+        [
+            f"/* {text.name}_step: the deflection after a step of dt [s] >= 0, from u and v before it; zero at rest.",
+            f"   {text.name}_contact: forces and states with these u and v.",
+            *(f"   {called(key):<9}{LAG_TEXTS[key]}" for key in LAG_INPUTS if key in LAG_TEXTS),
+            "*/",
+        ]
     )
-    bodies = []
-    for head, record, program in zip(heads, ("deflection", "deflected"), programs, strict=True):
-        names = (*LAGGING, *LAG_INPUTS, "dt")[: None if record == "deflection" else -1]
-        bodies += [*_function(head, f"{name}_{record}", program, names), ""]
-    end = "#ifdef __cplusplus\n}\n#endif\n#endif\n"
-    told = [
-        f"/* {name}_step: the deflection after a step of dt [s] >= 0, from u and v before it; zero at rest.",
-        f"   {name}_contact: forces and states with these u and v.",
-        *(f"   {called(key):<9}{LAG_TEXTS[key]}" for key in LAG_INPUTS if key in LAG_TEXTS),
-        "*/",
-    ]
-    header = code.header.removesuffix(end) + "\n".join(
-        [*declared, *told, *(f"{head};" for head in heads), "", end]
-    )
-    return Code(header, code.source + "\n".join(bodies))
+    for (function, kind, first), program in zip(functions, programs, strict=True):
+        inputs = (*first, *LAGGING, *LAG_INPUTS)
+        text.function(f"{text.name}_{function}", kind, program, inputs, tuned=True)
+    text.header.append("")
 
 
 def _refuse_name(name: str) -> None:
@@ -168,13 +220,10 @@ def taken(name: str) -> bool:
     return name in WORDS or name.lower() in HEADERS
 
 
-def _parameters() -> str:
-    return ", ".join(f"double {called(name)}" for name in INPUTS)
-
-
-def _header(name: str, switches: Switches, tyre: TyreRecord, turned: Sequence[Tunable]) -> str:
+def _openings(name: str, switches: Switches, tyre: TyreRecord) -> tuple[list[str], list[str]]:
+    """What header and source begin with."""
     guard = f"{name.upper()}_H"
-    lines = [
+    header = [
         f"/* MF 6.2 in steady state, {words(switches.turn_slip)}, axes ISO-W, SI units, radians. Generated by tir; do not edit.",
         f"   The file has USE_MODE {tyre['USE_MODE']:g}. {_also(switches)}Loads <= 0 give zero forces, NaN gives NaN.",
         "",
@@ -187,31 +236,13 @@ def _header(name: str, switches: Switches, tyre: TyreRecord, turned: Sequence[Tu
         "#endif",
         "",
     ]
-    for kind, fields in (("forces", Forces._fields), ("state", STATES)):
-        lines += ["typedef struct {", *(f"    double {f}; /* {OUTPUT_TEXTS[f]} */" for f in fields)]
-        lines += [f"}} {name}_{kind};", ""]
-    lines += [
-        f"{name}_forces {name}_evaluate({_parameters()});",
-        f"{name}_state {name}_evaluate_state({_parameters()});",
+    source = [
+        "/* Generated by tir; do not edit. C99, needs the mathematics library (-lm). */",
+        f'#include "{name}.h"',
+        "#include <math.h>",
         "",
     ]
-    if turned:
-        lines += ["typedef struct {", *(f"    double {x.name}; /* {x.description} */" for x in turned)]
-        lines += [
-            f"}} {name}_tuning;",
-            "",
-            f"{name}_tuning {name}_as_in_file(void);",
-            f"{_tuned_head(name, 'forces')};",
-            f"{_tuned_head(name, 'state')};",
-            "",
-        ]
-    lines += [
-        "#ifdef __cplusplus",
-        "}",
-        "#endif",
-        "#endif",
-    ]
-    return "\n".join(lines) + "\n"
+    return header, source
 
 
 def _also(switches: Switches) -> str:
@@ -220,51 +251,3 @@ def _also(switches: Switches) -> str:
         "limits": "Inputs are held to the file's ranges",
     }
     return "".join(f"{text}. " for name, text in sentences.items() if getattr(switches, name))
-
-
-def _source(
-    name: str, programs: Mapping[str, Program], tuned: Mapping[str, Program], turned: Sequence[Tunable]
-) -> str:
-    lines = [
-        "/* Generated by tir; do not edit. C99, needs the mathematics library (-lm). */",
-        f'#include "{name}.h"',
-        "#include <math.h>",
-        "",
-    ]
-    for kind, program in programs.items():
-        head = f"{name}_{kind} {name}_evaluate{'_state' * (kind == 'state')}({_parameters()})"
-        lines += [*_function(head, f"{name}_{kind}", program), ""]
-    if turned:
-        lines += [
-            f"{name}_tuning {name}_as_in_file(void)",
-            "{",
-            f"    {name}_tuning out = {{{', '.join(C.literal(x.start) for x in turned)}}};",
-            "    return out;",
-            "}",
-            "",
-        ]
-    for kind, program in tuned.items():
-        lines += [*_function(_tuned_head(name, kind), f"{name}_{kind}", program), ""]
-    return "\n".join(lines)
-
-
-def _tuned_head(name: str, kind: str) -> str:
-    words = "_state" * (kind == "state")
-    return f"{name}_{kind} {name}_evaluate{words}_tuned(const {name}_tuning *tuning, {_parameters()})"
-
-
-def _function(head: str, record: str, program: Program, given: Sequence[str] = INPUTS) -> list[str]:
-    lines, results = assignments((*program.per_tyre, *program.per_point), program.outputs.values(), C)
-    used = {node.name for node in program.per_point if node.operation == "symbol"}
-    return [
-        head,
-        "{",
-        *(f"    (void){called(name)};" for name in given if name not in used),
-        *(["    (void)tuning;"] if "*tuning" in head and not program.parameters else []),
-        *(f"    const double {name} = tuning->{name};" for name in program.parameters),
-        *(f"    {line}" for line in lines),
-        f"    {record} out;",
-        *(f"    out.{field} = {text};" for field, text in zip(program.outputs, results, strict=True)),
-        "    return out;",
-        "}",
-    ]

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from tir.codegen.cpython import SCALARS
 from tir.codegen.graph import INPUT, PARAMETER, Graph
 from tir.codegen.program import NUMBERS, Program, Switches, program_of
+from tir.codegen.replay import Replay, replayed
 from tir.codegen.single import MATH, Run, constants, with_defaults
 from tir.codegen.source import conditions, preparation
 from tir.equations import contact
@@ -40,29 +44,50 @@ def lag_programs(tyre: TyreRecord, switches: Switches, states: Sequence[str]) ->
     return _programs(graph, p, switches, states)
 
 
-def lag_functions(values: Mapping[str, float], switches: Switches) -> tuple[Run, Run]:
-    """The same two as functions of floats (u, v, *LAG_INPUTS), and of dt behind them for the step.
+class ContactLag(NamedTuple):
+    """The same two of a tyre, as functions of (u, v, *LAG_INPUTS): single numbers, or arrays that broadcast."""
 
-    They raise ArithmeticError or ValueError where numpy gives NaN or infinity.
-    """
-    after, deflected = (
-        with_defaults(run, constants(prepare, values)) for prepare, run in _in_python(switches)
-    )
-    return after, deflected
+    after: Callable[..., tuple[Any, ...]]  #: takes dt behind them
+    deflected: Callable[..., tuple[Any, ...]]  #: gives forces and the lagging slips
+
+
+def lag_functions(values: Mapping[str, float], switches: Switches) -> ContactLag:
+    """The lag of a tyre with these parameters."""
+    functions = []
+    for names, prepare, run, in_numpy in _compiled(switches):
+        quick = with_defaults(run, constants(prepare, values))
+        functions.append(partial(_run, quick, partial(_in_numpy, in_numpy, values, names)))
+    return ContactLag(*functions)
 
 
 @cache
-def _in_python(switches: Switches) -> list[tuple[Any, Any]]:
+def _compiled(switches: Switches) -> list[tuple[tuple[str, ...], Any, Any, Replay]]:
+    """Names of the inputs, straight-line code to prepare and to run, and the same for numpy, of both functions."""
     graph = Graph()
     programs = _programs(graph, {name: graph.symbol(name, PARAMETER) for name in NUMBERS}, switches, ())
     out = []
-    for program, names in zip(
-        programs, ((*LAGGING, *LAG_INPUTS, "dt"), (*LAGGING, *LAG_INPUTS)), strict=True
-    ):
-        namespace: dict[str, Any] = dict(MATH)
+    for program, more in zip(programs, (("dt",), ()), strict=True):
+        names, namespace = (*LAGGING, *LAG_INPUTS, *more), dict[str, Any](MATH)
         exec(preparation(program) + conditions(program, names), namespace)
-        out.append((namespace["prepare"], namespace["run"]))
+        out.append((names, namespace["prepare"], namespace["run"], replayed([*program.outputs.values()])))
     return out
+
+
+def _run(quick: Run, otherwise: Run, *given: Any) -> tuple[Any, ...]:
+    """In Python's floats if every input is a single number and nothing is infinite."""
+    if SCALARS.issuperset(map(type, given)):
+        try:
+            return quick(*map(float, given))
+        except (ArithmeticError, ValueError):
+            pass
+    return otherwise(*given)
+
+
+def _in_numpy(run: Replay, values: Mapping[str, float], names: Sequence[str], *given: Any) -> tuple[Any, ...]:
+    inputs = [np.asarray(x, dtype=float)[()] for x in given]
+    found = run({**values, **dict(zip(names, inputs, strict=True))})
+    shape = np.broadcast_shapes(*map(np.shape, inputs))
+    return tuple(np.broadcast_to(x, shape).copy() if shape else float(x) for x in found)
 
 
 def _programs(

@@ -126,7 +126,7 @@ def replay(
             for name in set(outputs) - known.keys():
                 known[name] = _derivatives(found[name], still)
         slopes = [known[name] if wrt else {} for name in outputs]
-        return _replay(
+        return replayed(
             [*(found[name] for name in outputs), *(slope.get(x, 0.0) for slope in slopes for x in wrt)]
         )
 
@@ -152,7 +152,8 @@ def _derivatives(output: Any, still: tuple[str, ...]) -> Mapping[str, Any]:
     return {name: slope for (_, name), slope in every.items()}
 
 
-def _replay(results: Sequence[Any]) -> Replay:
+def replayed(results: Sequence[Any]) -> Replay:
+    """The operations of nodes of one graph, or numbers."""
     nodes = needed(results)
     symbols = [node for node in nodes if node.operation == "symbol"]
     others = [node for node in nodes if node.operation != "symbol"]

@@ -1,1 +1,1 @@
-"""Coefficients from elsewhere: of a sister tyre, or of another campaign of this tyre."""
+"""Coefficients from elsewhere: of the base file at the nominal conditions, and of a sister tyre."""

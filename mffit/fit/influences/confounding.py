@@ -9,25 +9,27 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.nuisances import NUISANCES, TEMPERATURE
-from mffit.least_squares import inverse
+from mffit.fit.influences.nuisance_choice import NearSolution
+from mffit.fit.influences.nuisances import NUISANCES, TEMPERATURE, Nuisance
+from mffit.linearised.inputs import LEVELS
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME
 
-SETTINGS: Mapping[str, tuple[str, frozenset[str]]] = {
-    "load": ("Fz", frozenset({"loads"})),
-    "camber": ("gamma", frozenset({"camber", "coupled"})),
-    "pressure": ("p", frozenset({"pressures", "pressure_loads"})),
+NEEDS: Mapping[str, frozenset[str]] = {
+    "load": frozenset({"loads"}),
+    "camber": frozenset({"camber", "coupled"}),
+    "pressure": frozenset({"pressures", "pressure_loads"}),
+    "longitudinal slip": frozenset({"kappa", "combined", "side_force"}),
+    "sideslip": frozenset(),
 }
-"""By setting in words, its channel of the points, and the needs of coefficients that it determines."""
-LEVELS = {"Fz": levels.LOAD, "gamma": levels.CAMBER, "p": levels.PRESSURE}
+"""By setting, the needs of coefficients that it determines; sideslip alone determines those that need nothing else."""
 
 
 @dataclass(frozen=True, slots=True)
 class Confounding:
     """Temperature and a setting that run along with each other."""
 
-    setting: str  #: load, camber or pressure
+    setting: str  #: in words, as in :data:`mffit.points.levels.KINDS`
     correlation: float  #: correlation ratio of temperature and setting, 0 to 1
     coefficient: str  #: the one that suffers most
     growth: float  #: its standard uncertainty over that if the temperature terms were known
@@ -42,19 +44,21 @@ def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
     nuisance = next(n for n in NUISANCES if n.id == TEMPERATURE)
     if nuisance.lacking(points):
         return ()
-    along = {setting: correlation_ratio(points, channel) for setting, (channel, _) in SETTINGS.items()}
-    along = {setting: r for setting, r in along.items() if r > constants.RUNS_ALONG}
-    if not along:
-        return ()
-    growth = _growth(fitted, nuisance.numbers)
+    along = {kind.name: correlation_ratio(points, name) for name, kind in LEVELS.items()}
+    growth = _growth(fitted, nuisance)
     out = []
     for setting, r in along.items():
-        needs = SETTINGS[setting][1]
-        own = [name for name in growth if needs & {need.word for need in BY_NAME[name].needs}]
-        worst = max(own, key=lambda name: growth[name], default=None)
+        worst = max(_determined_by(setting, growth), key=lambda name: growth[name], default=None)
         if worst is not None and growth[worst] > constants.WIDER_BANDS:
             out.append(Confounding(setting, r, worst, growth[worst]))
     return tuple(out)
+
+
+def _determined_by(setting: str, names: Sequence[str] | Mapping[str, float]) -> list[str]:
+    """Those of the coefficients that a setting determines."""
+    words = {name: {need.word for need in BY_NAME[name].needs} for name in names}
+    needs = NEEDS[setting]
+    return [name for name, own in words.items() if (needs & own if needs else not own)]
 
 
 def correlation_ratio(points: Points, channel: str) -> float:
@@ -70,20 +74,19 @@ def correlation_ratio(points: Points, channel: str) -> float:
     return float(np.sqrt(np.var(between) / total)) if total > 0.0 else 0.0
 
 
-def _growth(fitted: Fitted, terms: Sequence[str]) -> dict[str, float]:
+def _growth(fitted: Fitted, temperature: Nuisance) -> dict[str, float]:
     """By coefficient, its standard uncertainty with the temperature terms free over that with known ones."""
-    problem = fitted.problem
-    free = [n for n in fitted.numbers if n.name not in terms]
-    names = [*(n.name for n in free), *terms]
-    slope = problem.free(names).linear(np.array([problem.value(name) for name in names])).slope
-    information = slope.T @ slope + np.diag([*(n.spread**-2.0 for n in free), *(0.0 for _ in terms)])
-    count = len(free)
-    known, unknown = inverse(information[:count, :count]), inverse(information)
-    ratio = np.sqrt(np.diag(unknown)[:count] / np.diag(known))
+    numbers = [number for number in fitted.numbers if number.name not in temperature.numbers]
+    near = NearSolution(fitted.problem, numbers, ())
+    joint = near.joint(fitted.problem.points.sweep, [temperature])
+    free, known = (
+        np.sum(joint.model.posterior(found.given).root ** 2, axis=1)
+        for found in (joint.alike(), joint.alike(temperature.numbers))
+    )
     return {
-        n.name: float(r)
-        for n, r in zip(free, ratio, strict=True)
-        if n.name in fitted.values and n.name not in fitted.regularised
+        name: float(np.sqrt(more / less))
+        for name, more, less in zip(joint.names, free, known, strict=True)
+        if name in fitted.values and name not in fitted.regularised
     }
 
 
@@ -96,6 +99,6 @@ def confounding_sentence(found: Confounding, *, modelled: bool) -> str:
         else f"the coefficients may contain the warming, and temperature terms would make {growth}"
     )
     return (
-        f"the tyre's temperature runs along with the {found.setting} in the order of the runs (correlation "
-        f"{found.correlation:.2f}): {effect}; repeat one {found.setting} warm and cold, or mix the order of the runs"
+        f"the tyre's temperature runs along with the {found.setting} (correlation {found.correlation:.2f}): {effect}; "
+        f"repeat one {found.setting} warm and cold, or mix the order of the runs"
     )

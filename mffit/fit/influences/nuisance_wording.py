@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.fit import constants
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.fit.agreement import Agreement
 from mffit.fit.influences.between_runs import BetweenRuns
 from mffit.fit.influences.nuisance_choice import Gaps, Verdict
@@ -85,7 +85,7 @@ def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreeme
 def _moved_sentence(name: str, found: AtTemperature) -> str:
     if not found.moved:
         return f"The coefficients of {name}.tir do not depend on the warming beyond their uncertainty."
-    named = list(found.moved.items())[: constants.NAMED_COEFFICIENTS]
+    named = list(found.moved.items())[:NAMED_IN_SENTENCE]
     changes = ", ".join(
         f"{name} {rounded(there, u)[0]} instead of {rounded(here, u)[0]} +- {rounded(here, u)[1]}"
         for name, (there, here, u) in named

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from mffit.constants import UPRIGHT, VISIBLE_TEMPERATURE
+from mffit.config import Config
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -31,8 +31,6 @@ class Nuisance:
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
-    about: tuple[str, ...] = ()
-    """Channels that it is about, where the others see it only at second hand: Mz uses the slip stiffness to weigh slips."""
     per_run: bool = (
         False  #: whether every run (sweep) has numbers of its own, which scatter about those of a perfect rig
     )
@@ -49,7 +47,7 @@ class Nuisance:
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
         return tuple(_number(name, scatter[name], run) for name in self.numbers for run in runs)
 
-    def setting(self, config: Any) -> bool | None:
+    def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
         given = getattr(config.fit, self.key)
         if given is False:
@@ -62,6 +60,10 @@ class Nuisance:
 def _number(name: str, spread: float, run: str = "") -> FreeNumber:
     error, value = BY_NAME[name], BY_NAME[name].undisturbed
     return FreeNumber(number_of(name, run), value, error.lower, error.upper, expected=value, spread=spread)
+
+
+MIDDLE = (25.0, 75.0)
+"""Percentiles of the angles that a sense covers, without its ends."""
 
 
 def _temperatures(points: Points) -> str:
@@ -86,17 +88,16 @@ def _slips(points: Points) -> str:
 
 
 def _senses(points: Points) -> str:
-    moving, part, both = sense(points), parts_of_sweeps(points), 0
+    moving, part = sense(points), parts_of_sweeps(points)
     for k in np.unique(part):
         rows = part == k
-        alpha = points.alpha[rows]
-        ways = [alpha[moving[rows] == way] for way in (1.0, -1.0)]
+        ways = [points.alpha[rows & (moving == way)] for way in (1.0, -1.0)]
         # A sweep that is repeated at another load or camber jumps back once: that is no sweep down.
-        if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * len(alpha):
-            common = min(way.max() for way in ways) - max(way.min() for way in ways)
-            both += bool(common > constants.OVERLAP_OF_SENSES * np.ptp(alpha))
-    enough = both >= constants.OVERLAPPING_SWEEPS
-    return "" if enough else "no sweeps go through the same angles up and down at one condition"
+        if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * np.sum(rows):
+            low, high = np.percentile(ways[0], MIDDLE), np.percentile(ways[1], MIDDLE)
+            if low[0] < high[1] and high[0] < low[1]:
+                return ""
+    return "no sweep goes through the same angles up and down at one condition"
 
 
 def _times(points: Points) -> str:
@@ -112,11 +113,7 @@ def _distances(points: Points) -> str:
 
 def _runs(points: Points) -> str:
     count = len(np.unique(points.sweep))
-    return (
-        ""
-        if count >= constants.FEWEST_RUNS
-        else f"{count} runs cannot differ from one another in a known way"
-    )
+    return "" if count >= FEWEST_SWEEPS_TO_PREDICT else f"{count} runs do not show how runs differ"
 
 
 NUISANCES = (
@@ -180,7 +177,6 @@ NUISANCES = (
         numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
         lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
-        about=("Fx", "Fy"),
     ),
     Nuisance(
         id="run-scale",

@@ -10,13 +10,12 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.nuisance_choice import NearSolution, NuisanceChoice, predicted_left_out, solved
+from mffit.fit.influences.nuisance_choice import NearSolution, NuisanceChoice, solved
 from mffit.fit.plan import FitPlan
 from mffit.least_squares import touches
-from mffit.left_out import Predicted
 from mffit.suspicion import parts_of_sweeps
 from tir.parameters import BY_NAME
 
@@ -68,19 +67,16 @@ def _needless(
     stride = max(1, len(group) // constants.POINTS_OF_A_STAGE)
     group = group[::stride]
 
-    def predicted(there: NearSolution) -> Predicted:
+    def predicted(there: NearSolution) -> float:
         inner = [number for number in there.numbers if number.name not in held]
-        return predicted_left_out(there._replace(numbers=inner), (), group).by_sweep
+        return float(np.sum(there._replace(numbers=inner).left_out(group).density))
 
-    def settled(there: NearSolution) -> NearSolution:
-        return solved(there, most=constants.REFIT_STEPS)
-
-    model = settled(model._replace(problem=model.problem.thinned(stride)))
+    model = solved(model._replace(problem=model.problem.thinned(stride)))
     first = predicted(model)
     found: list[str] = []
     for name in names:
-        back = settled(model._replace(problem=model.problem.with_values({name: plan.expected[name]})))
-        if first.keeps(predicted(back), LEAST_PREDICTED_SHARE):
+        back = solved(model._replace(problem=model.problem.with_values({name: plan.expected[name]})))
+        if predicted(back) >= first:
             found, model = [*found, name], back
     return found
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import best_fit, polish, restart_worthwhile
+from mffit.fit.polish import first_fit, polish
 from mffit.fit.problem import FitProblem
-from mffit.progress import Progress, silent
+from mffit.progress import Progress
 from mffit.rig import Simulation
 
 
@@ -37,57 +37,30 @@ class NuisanceFit:
 
 
 def fit_with_nuisances(
-    config: Any,
-    problem: FitProblem,
-    start: Mapping[str, float],
-    plan: FitPlan,
-    progress: Progress,
+    config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> NuisanceFit:
-    """The staged fit, then the influences that it should model, then the joint polish with these.
+    """The staged fit, then the influences that it should model, then the joint polish with these."""
+    progress("fitting tyre and rig")
+    fitted = first_fit(problem, start, plan)
+    choice = choose(config, fitted)
+    known, near = without_runaways(fitted, plan, choice), choice.near.problem
+    held = {name: plan.expected[name] for name in plan.free if name not in known.free}
+    if held:
+        fitted, near = polish(fitted.problem.with_values(held), known), near.with_values(held)
 
-    Alternative starting values are tried only if these influences do not explain why the first fit ends far above the noise.
-    """
+    def refit(rows: np.ndarray) -> Fitted:
+        part = problem.select(rows)
+        return _polished(config, part, known, choice, choice.modelled, first_fit(part, start, known))
 
-    staged: dict[
-        tuple[object, ...], Fitted
-    ] = {}  # fits to some of the points, which restarts of the fit to all do not change
-
-    def extended(fitted: Fitted) -> NuisanceFit:
-        choice = choose(config, fitted)
-        known, near = without_runaways(fitted, plan, choice), choice.near.problem
-        held = {name: plan.expected[name] for name in plan.free if name not in known.free}
-        if held:
-            again = polish(fitted.problem.with_values(held), known)
-            fitted = replace(again, attempts=fitted.attempts)
-            near = near.with_values(held)
-
-        def refit(rows: np.ndarray) -> Fitted:
-            part, key = problem.select(rows), (rows.tobytes(), *known.free)
-            if key not in staged:
-                staged[key] = best_fit(part, start, known, silent, restarts=False)
-            return _polished(config, part, known, choice, choice.modelled, staged[key])
-
-        if choice.modelled:
-            progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-        full = _polished(config, problem, known, choice, choice.modelled, fitted, near.simulation)
-        if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-            return NuisanceFit(full, full, choice, refit, known)
-        # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
-        others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
-        plain = _polished(config, problem, known, choice, others, fitted)
-        return NuisanceFit(plain, full, choice, refit, known)
-
-    first: list[NuisanceFit] = []
-
-    def explained(fitted: Fitted) -> bool:
-        found = extended(fitted)
-        if found.choice.modelled and not restart_worthwhile(found.full, plan):
-            first.append(found)
-            return True
-        return False
-
-    fitted = best_fit(problem, start, plan, progress, explained=explained)
-    return first[0] if first else extended(fitted)
+    if choice.modelled:
+        progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
+    full = _polished(config, problem, known, choice, choice.modelled, fitted, near.simulation)
+    if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
+        return NuisanceFit(full, full, choice, refit, known)
+    # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
+    others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
+    plain = _polished(config, problem, known, choice, others, fitted)
+    return NuisanceFit(plain, full, choice, refit, known)
 
 
 def with_doubt(found: NuisanceFit) -> NuisanceFit:
@@ -97,7 +70,7 @@ def with_doubt(found: NuisanceFit) -> NuisanceFit:
 
 
 def _polished(
-    config: Any,
+    config: Config,
     problem: FitProblem,
     plan: FitPlan,
     choice: NuisanceChoice,
@@ -114,8 +87,7 @@ def _polished(
     numbers = tuple(n for nuisance in added for n in nuisance.free(problem.points, choice.scatter))
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
-    found = polish(here.with_noise_of_misfit(), plan)
-    return replace(found, attempts=fitted.attempts)
+    return polish(here.with_noise_of_misfit(), plan)
 
 
 def _doubted(plain: Fitted, full: Fitted) -> Fitted:

@@ -8,7 +8,7 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 import numpy as np
-from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.backend_bases import GraphicsContextBase
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_hex
 from matplotlib.image import imsave
@@ -24,42 +24,31 @@ SUBSCRIPT = re.compile(r"\$_\{?(\w+?)\}?\$([^$]*)")
 """A subscript, and what follows it on the line."""
 
 
-class Ink(RendererBase):
-    """A renderer of matplotlib; ``parts`` are the SVG of every axes and legend by its gid."""
+class Ink(RendererAgg):
+    """A renderer of pixels that keeps in ``parts`` what it draws as SVG, of every axes and legend by its gid."""
 
     def __init__(self, width: float, height: float, dpi: float, name: str) -> None:
-        super().__init__()
-        self.pixels: Any = RendererAgg(width, height, dpi)  # type: ignore[no-untyped-call]
+        super().__init__(width, height, dpi)  # type: ignore[no-untyped-call]
+        vars(self).pop("draw_markers", None)  # matplotlib has put its own function there
         self.parts: dict[str, DrawnPart] = {}
-        self._name = name
+        self._name, self._point = name, FINE * dpi / 72.0
         self._part: DrawnPart | None = None
         self._down = Affine2D().scale(FINE, -FINE).translate(0.0, FINE * height)
 
     def png(self) -> bytes:
         stream = io.BytesIO()
         settings: dict[str, Any] = {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 3}}
-        imsave(stream, self.pixels.buffer_rgba(), format="png", dpi=self.pixels.dpi, **settings)
+        imsave(stream, np.asarray(self._renderer), format="png", dpi=self.dpi, **settings)
         return stream.getvalue()
 
     def open_group(self, s: str, gid: str | None = None) -> None:
         if gid:
             self._part = self.parts[gid] = DrawnPart(f"{self._name}-{gid}")
 
-    def get_canvas_width_height(self) -> tuple[float, float]:
-        size: tuple[float, float] = self.pixels.get_canvas_width_height()
-        return size
-
-    def get_text_width_height_descent(self, *text: Any, **settings: Any) -> tuple[float, float, float]:
-        size: tuple[float, float, float] = self.pixels.get_text_width_height_descent(*text, **settings)
-        return size
-
-    def points_to_pixels(self, points: Any) -> Any:
-        return self.pixels.points_to_pixels(points)
-
     def draw_path(
         self, gc: GraphicsContextBase, path: Path, transform: Transform, rgbFace: Any = None
     ) -> None:
-        self.pixels.draw_path(gc, path, transform, rgbFace)
+        super().draw_path(gc, path, transform, rgbFace)  # type: ignore[no-untyped-call]
         if self._part is not None:
             line = path.codes is None
             clean = path.cleaned(transform=transform + self._down, remove_nans=True, simplify=line)
@@ -76,36 +65,29 @@ class Ink(RendererBase):
         trans: Transform,
         rgbFace: Any = None,
     ) -> None:
-        self.pixels.draw_markers(gc, marker_path, marker_trans, path, trans, rgbFace)
-        if self._part is not None:
-            self._mark(self._part, gc, marker_path, marker_trans, trans.transform(path.vertices), rgbFace)
-
-    def draw_path_collection(
-        self,
-        gc: GraphicsContextBase,
-        master_transform: Transform,
-        paths: Any,
-        all_transforms: Any,
-        offsets: Any,
-        offset_trans: Transform,
-        facecolors: Any,
-        *others: Any,
-        **more: Any,
-    ) -> None:
-        """Marks of one shape in several colours."""
-        arguments = master_transform, paths, all_transforms, offsets, offset_trans, facecolors, *others
-        self.pixels.draw_path_collection(gc, *arguments, **more)
-        if self._part is None or not len(paths):
+        """Marks of one shape and colour: round ones without an edge as dots of a line, all others by their outline."""
+        self._renderer.draw_markers(gc, marker_path, marker_trans, path, trans, rgbFace)
+        places = self._down.transform(trans.transform(path.vertices))
+        places = places[np.isfinite(places).all(axis=1)]
+        if self._part is None or not len(places):
             return
-        edges, widths = others[:2]
-        pen = self.new_gc()
-        pen.copy_properties(gc)
-        pen.set_foreground(edges[0])
-        pen.set_linewidth(widths[0])
-        shape, places = Affine2D(all_transforms[0]), offset_trans.transform(np.asarray(offsets))
-        faces, which = np.unique(facecolors, axis=0, return_inverse=True)
-        for k, face in enumerate(faces):
-            self._mark(self._part, pen, paths[0], shape, places[which.ravel() % len(places) == k], face)
+        to_svg = marker_trans + Affine2D().scale(FINE, -FINE)
+        clip, style, at = self._clip(gc, places), self._style(gc, rgbFace), np.rint(places).astype(int)
+        if marker_path.codes is None or Path.CURVE4 not in np.asarray(marker_path.codes):
+            outline = marker_path.cleaned(transform=to_svg)
+            corners = np.asarray(outline.vertices)
+            first = np.rint(corners[0]).astype(int)
+            at, shape = at + first, _path(corners, outline.codes, first)
+        else:
+            wide = round(float(marker_path.get_extents(to_svg).width))
+            if rgbFace is not None and gc.get_linewidth() == 0.0:
+                dots = f'stroke="{to_hex(rgbFace[:3])}" stroke-width="{wide}" stroke-linecap="round"'
+                style, shape = f'fill="none" {dots}', "h0"
+            else:
+                half = f"a{wide / 2:g} {wide / 2:g} 0 1 0 "
+                at[:, 0] -= wide // 2
+                shape = f"{half}{wide} 0{half}-{wide} 0"
+        self._part.add("".join(f"M{x} {y}{shape}" for x, y in at.tolist()), style, clip)
 
     def draw_text(
         self,
@@ -118,7 +100,7 @@ class Ink(RendererBase):
         ismath: Any = False,
         mtext: Text | None = None,
     ) -> None:
-        self.pixels.draw_text(gc, x, y, s, prop, angle, ismath, mtext)
+        super().draw_text(gc, x, y, s, prop, angle, ismath, mtext)  # type: ignore[no-untyped-call]
         if self._part is None:
             return
         anchor = "start"
@@ -126,44 +108,8 @@ class Ink(RendererBase):
             at = self._down.transform(mtext.get_transform().transform(mtext.get_unitless_position())) / FINE
             anchor = ANCHORS[mtext.get_horizontalalignment()]
             x, y = (x, float(at[1])) if angle else (float(at[0]), y)
-        size = round(FINE * self.points_to_pixels(prop.get_size_in_points()))
+        size = round(self._point * prop.get_size_in_points())
         self._part.write(round(FINE * x), round(FINE * y), s, to_hex(gc.get_rgb()), size, anchor, angle)
-
-    def _mark(
-        self,
-        part: DrawnPart,
-        gc: GraphicsContextBase,
-        marker: Path,
-        trans: Transform,
-        places: np.ndarray,
-        face: Any,
-    ) -> None:
-        """Marks of one shape and colour: round ones without an edge as dots of a line, all others by their outline."""
-        places = self._down.transform(places[np.isfinite(places).all(axis=1)])
-        to_svg = trans + Affine2D().scale(FINE, -FINE)
-        if not len(places):
-            return
-        clip = self._clip(gc, places)
-        at = np.rint(places).astype(int)
-        style = self._style(gc, face)
-        if marker.codes is not None and Path.CURVE4 in np.asarray(marker.codes):
-            wide = round(float(marker.get_extents(to_svg).width))
-            if face is not None and gc.get_linewidth() == 0.0:
-                style = (
-                    f'fill="none" stroke="{to_hex(face[:3])}" stroke-width="{wide}" stroke-linecap="round"'
-                )
-                shape = "h0"
-            else:
-                half = f"a{wide / 2:g} {wide / 2:g} 0 1 0 "
-                at[:, 0] -= wide // 2
-                shape = f"{half}{wide} 0{half}-{wide} 0"
-            part.add(_moved(at, shape), style, clip)
-            return
-        outline = marker.cleaned(transform=to_svg)
-        corners = np.asarray(outline.vertices)
-        first = np.rint(corners[0]).astype(int)
-        shape = _path(corners, outline.codes, first)
-        part.add(_moved(at + first, shape), style, clip)
 
     def _style(self, gc: GraphicsContextBase, face: Any) -> str:
         """Attributes of a path."""
@@ -171,14 +117,12 @@ class Ink(RendererBase):
         found = [f'fill="{"none" if face is None else to_hex(face[:3])}"']
         if opacity is not None and opacity < 1.0:
             found.append(f'opacity="{opacity:g}"')
-        width = round(FINE * self.points_to_pixels(gc.get_linewidth()))
+        width = round(self._point * gc.get_linewidth())
         if width:
             found.append(f'stroke="{to_hex(gc.get_rgb()[:3])}" stroke-width="{width}"')
             _, dashes = gc.get_dashes()
             if dashes is not None:
-                lengths = (
-                    str(round(FINE * self.points_to_pixels(length))) for length in np.asarray(dashes).tolist()
-                )
+                lengths = (str(round(self._point * length)) for length in np.asarray(dashes).tolist())
                 found.append(f'stroke-dasharray="{" ".join(lengths)}"')
         return " ".join(found)
 
@@ -250,11 +194,6 @@ def _path(corners: np.ndarray, codes: ArrayLike | None, first: np.ndarray | None
             out.append("z")
             here = start
     return "".join(out)
-
-
-def _moved(places: np.ndarray, shape: str) -> str:
-    """A shape in relative steps at all places (n, 2)."""
-    return "".join(f"M{x} {y}{shape}" for x, y in places.tolist())
 
 
 def _lowered(match: re.Match[str]) -> str:

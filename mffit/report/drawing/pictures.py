@@ -17,22 +17,18 @@ import matplotlib.style
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch
 
 from mffit.report import constants, style
 from mffit.report.drawing.ink import FINE, Ink
 from mffit.report.drawing.records import (
     Axis,
-    Band,
     Bars,
     ColourScale,
-    DataSeries,
-    ErrorBars,
-    Frame,
     Look,
-    Map,
     Panel,
     Sheet,
     Trace,
@@ -87,7 +83,7 @@ def figure_of(sheet: Sheet) -> Figure:
     """The sheet as a figure: a key, and below it panels of one size in rows, each with its axes."""
     entries = _columns_of_key(sheet)
     above = KEY_LINE * -(-len(sheet.key) // entries) + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
-    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    width, height = _size_of_panel(sheet)
     whole = above + height * len(sheet.rows)
     figure = Figure(figsize=(style.WIDTH / INCH, whole / INCH))
     if sheet.key:
@@ -124,8 +120,13 @@ def figure_of(sheet: Sheet) -> Figure:
                 4.0, min(style.LEFT, width - style.LETTER * len(title))
             )  # a long one begins further left
             axes.set_title(_text(title), x=(start - left) / size[0])
-            _draw_panel(axes, panel, width)
+            _draw_panel(axes, panel, width, sheet.scale)
     return figure
+
+
+def _size_of_panel(sheet: Sheet) -> tuple[float, float]:
+    """Width and height of a panel with its margins [pt]."""
+    return style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
 
 
 def _columns_of_key(sheet: Sheet) -> int:
@@ -142,9 +143,7 @@ def _sample(look: Look) -> Line2D | Patch:
 
 
 def _draw_scale(axes: Axes, scale: ColourScale) -> None:
-    n = int(constants.COLOURS_OF_MAP)
-    edges = np.linspace(-scale.limit, scale.limit, n + 1)
-    colours = colormaps[style.DIVERGING].resampled(n)(np.arange(n))
+    edges, colours = _shades(scale)
     axes.bar(edges[:-1], 1.0, np.diff(edges), align="edge", color=colours)
     axes.set(xlim=(-scale.limit, scale.limit), ylim=(0.0, 1.0), yticks=[])
     axes.spines[:].set_visible(False)
@@ -152,12 +151,19 @@ def _draw_scale(axes: Axes, scale: ColourScale) -> None:
     axes.text(1.04, 0.5, _text(scale.label), transform=axes.transAxes, va="center", size=8)
 
 
+def _shades(scale: ColourScale) -> tuple[np.ndarray, list[str]]:
+    """Edges (n + 1,) of the steps of a scale, and their n colours."""
+    n = int(constants.COLOURS_OF_MAP)
+    colours = [to_hex(shade) for shade in colormaps[style.DIVERGING].resampled(n)(np.arange(n))]
+    return np.linspace(-scale.limit, scale.limit, n + 1), colours
+
+
 def _text(text: str) -> str:
     """Text in which only subscripts are set: names may hold any sign."""
     return NO_FORMULA.sub(r"\\$", text)
 
 
-def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
+def _draw_panel(axes: Axes, panel: Panel, width: float, scale: ColourScale | None) -> None:
     for name in "xy":
         _set_axis(axes, name, getattr(panel, name), width)
     for span in panel.spans:
@@ -167,14 +173,17 @@ def _draw_panel(axes: Axes, panel: Panel, width: float) -> None:
     for guide in panel.guides:
         across = axes.axvline if guide.axis == "x" else axes.axhline
         across(guide.at, zorder=1.5, **_line(guide.look))
-    dense = sum(len(s) for s in panel.series if isinstance(s, Map) or _marked(s)) > constants.MOST_MARKS
+    marked = (len(s) for s in panel.series if isinstance(s, Trace) and s.look.marker)
+    size = 0.6 if sum(marked) > constants.MOST_MARKS else 1.0
     for series in panel.series:
-        _draw_series(axes, series, 0.6 if dense else 1.0)
+        if isinstance(series, Bars):
+            begin = axes.get_xlim()[0] if axes.get_xscale() == "log" else 0.0
+            axes.barh(series.places, series.lengths - begin, series.height, begin, color=series.colours)
+        else:
+            _draw_trace(axes, series, size, scale)
     for name in "xy":
         axis: Axis = getattr(panel, name)
         axes.set(**{f"{name}lim": (axis.low, axis.high)})
-    for frame in panel.frames:
-        _draw_frame(axes, frame)
     for note in panel.notes:
         axes.annotate(
             note.text,
@@ -223,66 +232,58 @@ def _line(look: Look) -> dict[str, Any]:
     }
 
 
-def _marked(series: DataSeries) -> bool:
-    return isinstance(series, Trace) and bool(series.look.marker)
-
-
-def _draw_series(axes: Axes, series: DataSeries, size: float) -> None:
+def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | None) -> None:
     """Draw a series; ``size`` is that of its marks over the usual one."""
-    match series:
-        case Trace(x=x, y=y, look=look):
-            look = replace(look, size=size * look.size)
-            axes.plot(x, y, **_line(look), zorder=1.8 if look.marker else 2.0)
-        case Band(x=x, low=low, high=high, x_high=x_high, look=look):
-            back = (x if x_high is None else x_high)[::-1], high[::-1]
-            around = np.concatenate([x, back[0]]), np.concatenate([low, back[1]])
-            axes.fill(*around, color=look.colour, alpha=look.opacity, linewidth=0.0)
-        case ErrorBars(x=x, y=y, u=u, look=look, along=along):
-            ends = (x - u, x + u, y, y) if along == "x" else (x, x, y - u, y + u)
-            none = np.full(len(x), np.nan)
-            bars = [np.column_stack([*pair, none]).ravel() for pair in (ends[:2], ends[2:])]
-            cap: dict[str, Any] = {
-                "marker": "|" if along == "x" else "_",
-                "markersize": 5.0,
-                "markeredgewidth": look.width,
-            }
-            axes.plot(*bars, color=look.colour, linewidth=look.width, **cap)
-            axes.plot(x, y, **{**_line(look), "linestyle": "none"})
-        case Bars():
-            begin = axes.get_xlim()[0] if axes.get_xscale() == "log" else 0.0
-            axes.barh(series.places, series.lengths - begin, series.height, begin, color=series.colours)
-        case Map(x=x, y=y, values=values, limit=limit):
-            shades = colormaps[style.DIVERGING].resampled(int(constants.COLOURS_OF_MAP))
-            colours: dict[str, Any] = {"c": values, "cmap": shades, "vmin": -limit, "vmax": limit}
-            axes.scatter(
-                x,
-                y,
-                16.0 * size**2,
-                marker="s",
-                linewidths=0.4,
-                edgecolors=style.FAINT,
-                zorder=1.8,
-                **colours,
-            )
+    _draw_uncertainty(axes, series)
+    look = replace(series.look, size=size * series.look.size)
+    place: dict[str, Any] = {"zorder": 1.8 if look.marker else 2.0}
+    if series.shade is None or scale is None:
+        axes.plot(series.x, series.y, **_line(look), **place)
+        return
+    edges, colours = _shades(scale)
+    step = np.searchsorted(edges[1:-1], series.shade)
+    for k in np.unique(step):
+        drawn = {
+            **_line(replace(look, colour=colours[k])),
+            "markeredgewidth": 0.4,
+            "markeredgecolor": style.FAINT,
+        }
+        axes.plot(series.x[step == k], series.y[step == k], **drawn, **place)
 
 
-def _draw_frame(axes: Axes, frame: Frame) -> None:
-    """A frame within the axes, widened so that a single value has a width."""
-    sides = []
-    for name in "xy":
-        low, high = sorted(getattr(axes, f"get_{name}lim")())
-        pad, bounds = 0.03 * (high - low), getattr(frame, name)
-        first, last = (low, high) if bounds is None else (min(bounds) - pad, max(bounds) + pad)
-        sides.append((max(first, low), min(last, high)))
-    (left, right), (bottom, top) = sides
-    edge = {"linestyle": "--", "linewidth": 1.0, "edgecolor": style.INK, "zorder": 3.0}
-    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, fill=False, **edge))  # type: ignore[arg-type]
+def _draw_uncertainty(axes: Axes, series: Trace) -> None:
+    """A band in the colour of a line, or bars at the points."""
+    if series.half is None and series.half_x is None:
+        return
+    none, look = np.zeros(len(series)), series.look
+    along_x, along_y = (
+        none if series.half_x is None else series.half_x,
+        none if series.half is None else series.half,
+    )
+    (left, right), (low, high) = (
+        (series.x - along_x, series.x + along_x),
+        (series.y - along_y, series.y + along_y),
+    )
+    if look.line:
+        around = np.concatenate([left, right[::-1]]), np.concatenate([low, high[::-1]])
+        axes.fill(*around, color=look.colour, alpha=style.SHADE, linewidth=0.0)
+    else:
+        bars = [np.column_stack([*ends, none + np.nan]).ravel() for ends in ((left, right), (low, high))]
+        cap = "_" if series.half_x is None else "|"
+        axes.plot(
+            *bars,
+            color=look.colour,
+            linewidth=look.width,
+            marker=cap,
+            markersize=5.0,
+            markeredgewidth=look.width,
+        )
 
 
 def _markup(ink: Ink, figure: Figure, sheet: Sheet) -> str:
     """The key and rows of panels, each a drawing of its own with the part of the figure that it shows."""
     scale, high = figure.dpi / INCH, figure.bbox.height
-    width, height = style.WIDTH / sheet.columns, INCH * sheet.height + style.BOTTOM + style.TOP
+    width, height = _size_of_panel(sheet)
     above = high / scale - height * len(sheet.rows)
 
     def drawing(name: str, left: float, top: float, width: float, height: float, title: str = "") -> str:

@@ -24,77 +24,35 @@ class Look:
     opacity: float = 0.0  #: of an area, 0 to 1; 0 for none
 
 
-class Plotted:
-    """Points in the units of a panel's axes."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trace:
+    """Points (n,) with a line through them, markers on them, or both; how uncertain they are is a band or bars around them."""
 
-    __slots__ = ()
+    name: str
+    x: np.ndarray
+    y: np.ndarray
+    look: Look
+    half: np.ndarray | None = None  #: half the height of the band of a line, or of the bar at a marker
+    half_x: np.ndarray | None = (
+        None  #: the same along x; a band reaches from (x, y) less both to (x, y) plus both
+    )
+    shade: np.ndarray | None = None  #: what the colour of each marker shows, on the scale of the sheet
 
     def columns(self) -> dict[str, np.ndarray]:
         """Columns (n,) of the table behind the picture."""
-        raise NotImplementedError
+        out = {"x": self.x, "y": self.y}
+        for name, middle, half in (("", self.y, self.half), ("x of ", self.x, self.half_x)):
+            if half is not None:
+                name = name if self.half is not None else ""
+                out |= {f"{name}lower": middle - half, f"{name}upper": middle + half}
+        return out if self.shade is None else {**out, "value": self.shade}
 
     def __len__(self) -> int:
-        return len(self.columns()["x"])
+        return len(self.x)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trace(Plotted):
-    """Points (n,) with a line through them, markers on them, or both."""
-
-    name: str
-    x: np.ndarray
-    y: np.ndarray
-    look: Look
-
-    def columns(self) -> dict[str, np.ndarray]:
-        return {"x": self.x, "y": self.y}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Band(Plotted):
-    """The area between two curves; arrays (n,)."""
-
-    name: str
-    x: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    look: Look
-    x_high: np.ndarray | None = None  #: of the second curve; None: that of the first
-
-    def columns(self) -> dict[str, np.ndarray]:
-        one = {"x": self.x, "lower": self.low, "upper": self.high}
-        return one if self.x_high is None else {**one, "x of upper": self.x_high}
-
-
-def banded(
-    name: str, x: np.ndarray, line: np.ndarray, half: np.ndarray, look: Look, line_name: str = ""
-) -> list[Band | Trace]:
-    """A line with a band of its colour, ``half`` wide to both sides; arrays (n,)."""
-    shade = Look(colour=look.colour, opacity=style.SHADE)
-    return [
-        Band(name=name, x=x, low=line - half, high=line + half, look=shade),
-        Trace(name=line_name or name, x=x, y=line, look=look),
-    ]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorBars(Plotted):
-    """Points (n,) with bars of one standard uncertainty, which may be NaN."""
-
-    name: str
-    x: np.ndarray
-    y: np.ndarray
-    u: np.ndarray
-    look: Look
-    along: str = "y"  #: the axis of the uncertainty
-
-    def columns(self) -> dict[str, np.ndarray]:
-        middle = self.x if self.along == "x" else self.y
-        return {"x": self.x, "y": self.y, "lower": middle - self.u, "upper": middle + self.u}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bars(Plotted):
+class Bars:
     """Horizontal bars (n,) from zero, or from the left end of a logarithmic axis."""
 
     name: str
@@ -104,24 +62,14 @@ class Bars(Plotted):
     height: float = 0.62  #: in units of the vertical axis
 
     def columns(self) -> dict[str, np.ndarray]:
+        """Columns (n,) of the table behind the picture."""
         return {"x": self.lengths, "y": self.places}
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Map(Plotted):
-    """Points (n,) whose colour shows a value; the scale ends at ± ``limit``."""
-
-    name: str
-    x: np.ndarray
-    y: np.ndarray
-    values: np.ndarray
-    limit: float
-
-    def columns(self) -> dict[str, np.ndarray]:
-        return {"x": self.x, "y": self.y, "value": self.values}
+    def __len__(self) -> int:
+        return len(self.lengths)
 
 
-DataSeries = Trace | Band | ErrorBars | Bars | Map
+DataSeries = Trace | Bars
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +81,9 @@ class Guide:
     look: Look = Look(colour=style.FAINT, line="-", width=0.8)
 
 
+ZERO = Guide(axis="y", at=0.0)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Span:
     """A shaded stretch of the x axis."""
@@ -140,14 +91,6 @@ class Span:
     first: float
     last: float
     look: Look
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
-    """A dashed frame around a region; None reaches to the ends of the axis."""
-
-    x: tuple[float, float] | None
-    y: tuple[float, float] | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,23 +114,27 @@ class Axis:
     logarithmic: bool = False
 
 
+def listed(words: Sequence[str]) -> Axis:
+    """A vertical axis with a line for every word, the first at the top."""
+    return Axis(low=len(words) - 0.4, high=-0.6, words={float(k): word for k, word in enumerate(words)})
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
     """One diagram, readable by itself."""
 
     title: str = ""
-    x: Axis
-    y: Axis
+    x: Axis = Axis()
+    y: Axis = Axis()
     series: Sequence[DataSeries]
     guides: Sequence[Guide] = ()
     spans: Sequence[Span] = ()
-    frames: Sequence[Frame] = ()
     notes: Sequence[Note] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourScale:
-    """The scale of a sheet's maps, from ``-limit`` to ``limit``."""
+    """What the colours of a sheet's markers show, from ``-limit`` to ``limit``."""
 
     limit: float
     label: str

@@ -1,4 +1,4 @@
-"""How certain the fitted curves are, over the ranges of the file."""
+"""The file's curves: how certain they are, the files of both uses side by side, and the force of a sister tyre."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 
 from mffit.fit.written.files import Files
 from mffit.points import make_points
-from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.quantities import CHANNELS, CONDITIONS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace, banded
+from mffit.report.drawing.records import Guide, Look, Panel, Sheet, Trace
 from mffit.rig import Simulation
+from mffit.rounding import number
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
 """The file's key for the end of an angle's range."""
@@ -55,16 +56,11 @@ def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
-    files = view.files
-    assert files is not None
-    x, guides = _ends(files, over)
+    assert view.files is not None
+    x, guides = _ends(view.files, over)
     at = x if over == "kappa" else np.degrees(x)
-    series: list[Band | Trace] = []
-    for load, colour in colours.items():
-        series += model_curve(view, name, at, load, colour, **{over: x})
-    return Panel(
-        title=CHANNELS[name].short_axis, x=labels.angle_axis(over), y=Axis(), series=series, guides=guides
-    )
+    series = [model_curve(view, name, at, load, colour, **{over: x}) for load, colour in colours.items()]
+    return Panel(title=CHANNELS[name].short_axis, x=labels.angle_axis(over), series=series, guides=guides)
 
 
 def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
@@ -87,7 +83,7 @@ def model_curve(
     alpha: np.ndarray | float = 0.0,
     gamma: np.ndarray | float = 0.0,
     kappa: np.ndarray | float = 0.0,
-) -> list[Band | Trace]:
+) -> Trace:
     """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
     tyre = Simulation.of(view.model, turn_slip=view.on_disc)
     alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
@@ -95,4 +91,66 @@ def model_curve(
     line = tyre.readings(where, (channel,))[channel]
     half = view.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
-    return banded(labels.LOAD.of(load), at, line, half, look)
+    return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)
+
+
+LOOKS = {
+    "turn-slip": Look(colour=style.ACCENT, line="-", width=1.2),
+    "normal": Look(colour=style.CONTRAST, line="--", width=1.2),
+    "both": Look(colour=style.MUTED, line=":", width=1.2),
+}
+MODEL = Look(colour=style.INK, marker=".", size=2.0)
+
+
+def files_on_a_straight_path(view: BuildView) -> Sheet:
+    """Fy and Mz of the files over camber and over sideslip at nominal load, the model as dots, with the ends of the tests."""
+    assert view.files is not None
+    panels = [_panel_of_files(view, channel, over) for channel in SIDEWAYS for over in LIMITS]
+    key = {"fitted model": MODEL, **{view.file_names[use]: LOOKS[use] for use in view.files.by_use}}
+    return Sheet(rows=[panels], height=2.1, key=key)
+
+
+def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
+    files = view.files
+    assert files is not None
+    load = float(files.by_use["normal"].tyre["FNOMIN"])
+    end, other = LIMITS[over], labels.OTHER[over]
+    x = np.linspace(-files.written[end], files.written[end], constants.STEPS_OF_LINE)
+    series = []
+    for share in constants.HELD_SHARES[:2] if over == "gamma" else constants.HELD_SHARES:
+        held = np.full_like(x, share * files.tested[LIMITS[other]])
+        alpha, gamma = (held, x) if over == "gamma" else (x, held)
+        at = f"{labels.ANGLES[other].symbol} = {number(np.degrees(held[0]), 1)}°"
+        for use, file in files.by_use.items():
+            force = getattr(file.tyre(load, alpha, gamma, turn_slip=use == "turn-slip"), channel)
+            name = f"{view.file_names[use]}, {at}"
+            series.append(Trace(name=name, x=np.degrees(x), y=force, look=LOOKS[use]))
+        model = getattr(view.model(load, alpha, gamma, turn_slip=True), channel)
+        series.append(Trace(name=f"fitted model, {at}", x=np.degrees(x)[::5], y=model[::5], look=MODEL))
+    return Panel(
+        title=f"{CHANNELS[channel].short_axis}, {labels.LOAD.of(load)}",
+        x=labels.angle_axis(over),
+        series=series,
+        guides=tested_edges(files.tested[end]),
+    )
+
+
+def borrowed_force(view: BuildView) -> Sheet:
+    """Fx over longitudinal slip with 95 % bands at three loads, with and without sideslip, on a straight path."""
+    assert view.files is not None
+    colours = three_loads(view)
+    kappa = np.linspace(-1.0, 1.0, constants.STEPS_OF_LINE) * constants.LARGEST_SLIP_TO_DRAW
+    panels = [
+        Panel(
+            title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {sideslip:.0f}°",
+            x=labels.angle_axis("kappa"),
+            series=[
+                model_curve(view, "Fx", kappa, load, colour, alpha=np.radians(sideslip), kappa=kappa)
+                for load, colour in colours.items()
+            ],
+        )
+        for sideslip in (
+            share * np.degrees(view.files.tested["ALPMAX"]) for share in constants.HELD_SHARES[:2]
+        )
+    ]
+    return Sheet(rows=[panels], height=2.1, key=key_of_loads(colours))

@@ -8,18 +8,7 @@ from mffit.constants import UPRIGHT
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import (
-    Axis,
-    DataSeries,
-    ErrorBars,
-    Guide,
-    Look,
-    Panel,
-    Sheet,
-    Trace,
-    in_rows,
-    of_one_range,
-)
+from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows, of_one_range
 
 RAW = Look(colour=style.MUTED, line=":", marker="o", size=3.0)
 ODD = Look(colour=style.ACCENT, line="-")
@@ -41,7 +30,7 @@ def parts(view: BuildView) -> Sheet:
     panels = []
     for channel in view.channels:
 
-        def series(curve: Curve, channel: ChannelRow = channel) -> list[DataSeries]:
+        def series(curve: Curve, channel: ChannelRow = channel) -> list[Trace]:
             x, values = curve.varied(view.points), (channel.measured, channel.odd, channel.even)
             return [
                 Trace(name=name, x=x, y=part[curve.index], look=look)
@@ -58,11 +47,11 @@ def even_parts(view: BuildView) -> Sheet:
     rows: list[list[Panel]] = []
     for channel in view.channels:
 
-        def series(curve: Curve, channel: ChannelRow = channel) -> list[DataSeries]:
-            line, index, x = view.lines[curve.key], curve.index, curve.varied(view.points)
-            measured = {"x": x, "y": channel.even[index], "u": channel.u_odd[index]}
+        def series(curve: Curve, channel: ChannelRow = channel) -> list[Trace]:
+            line, index, x = view.lines[curve], curve.index, curve.varied(view.points)
+            even, u = channel.even[index], channel.u_odd[index]
             return [
-                ErrorBars(name="measured, ± 1 u", **measured, look=MEASURED),
+                Trace(name="measured, ± 1 u", x=x, y=even, half=u, look=MEASURED),
                 Trace(name="model", x=line.x, y=line.even[channel.name], look=MODEL),
             ]
 
@@ -71,7 +60,7 @@ def even_parts(view: BuildView) -> Sheet:
 
 
 def _by_load(
-    pure: Sequence[Curve], channel: ChannelRow, series: Callable[[Curve], list[DataSeries]], label: str
+    pure: Sequence[Curve], channel: ChannelRow, series: Callable[[Curve], list[Trace]], label: str
 ) -> list[list[Panel]]:
     """A row of panels per varied angle, a column per load."""
     rows = [
@@ -81,7 +70,7 @@ def _by_load(
                 x=labels.angle_axis(over),
                 y=Axis(label=label),
                 series=[s for c in pure if c.over == over and c.load == load for s in series(c)],
-                guides=[Guide(axis="y", at=0.0)],
+                guides=[ZERO],
             )
             for load in sorted({c.load for c in pure if c.over == over})
         ]

@@ -1,4 +1,4 @@
-"""The model against the points, at every load, pressure and camber."""
+"""The model against the points: at a glance, and at every load, pressure and camber."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.report import labels, style
-from mffit.report.build_view import ChannelRow
-from mffit.report.curves import Curve, CurveKey
-from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
-from mffit.report.lines import CurveLine
+from mffit.report.build_view import BuildView, ChannelRow
+from mffit.report.curves import Curve, CurveLine
+from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
 
 
@@ -25,7 +24,7 @@ class Overlaid(Protocol):
     @property
     def curves(self) -> Sequence[Curve]: ...
     @property
-    def lines(self) -> Mapping[CurveKey, CurveLine]: ...
+    def lines(self) -> Mapping[Curve, CurveLine]: ...
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of readings without weight, and of the points of doubtful sweeps."""
 
@@ -89,14 +88,14 @@ def _panel(
         x=labels.angle_axis(members[0].over),
         y=Axis(label=channel.label),
         series=[s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])],
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 
 def curve_traces(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
     """Readings, marks on those that do not fit, and the model's line."""
     x, read = curve.varied(view.points), channel.measured[curve.index]
-    line, held = view.lines[curve.key], labels.held(curve)
+    line, held = view.lines[curve], labels.held(curve)
     look = replace(READINGS if curve.forward else BACKWARD, colour=colour)
     found = [Trace(name=f"{curve.sweep}, {held}", x=x, y=read, look=look)]
     for rows, (name, mark) in zip(view.marked(channel.name), MARKS.items(), strict=True):
@@ -105,3 +104,31 @@ def curve_traces(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str)
             found.append(Trace(name=name, x=x[here], y=read[here], look=mark))
     drawn = replace(MODEL, colour=colour, line="-" if curve.forward else "--")
     return [*found, Trace(name=f"model, {held}", x=line.x, y=line.raw[channel.name], look=drawn)]
+
+
+def overview(view: BuildView) -> Sheet:
+    """Readings and model of each channel over what was varied most, coloured by the angle that is held."""
+    chosen = {over: _nearest(view, over) for over in (*labels.ANGLES, "kappa")}
+    panels = []
+    for channel in view.channels:
+        first = ("kappa", "alpha", "gamma") if channel.name == "Fx" else ("alpha", "gamma", "kappa")
+        panels += [_glance(view, channel, chosen[over]) for over in first if chosen[over]][:1]
+    if len(panels) < len(chosen) and chosen["gamma"] and chosen["alpha"]:
+        panels += [_glance(view, channel, chosen["gamma"]) for channel in view.channels[:1]]
+    return Sheet(rows=in_rows(panels, columns=4), height=2.2, key={"measured": READINGS, "model": MODEL})
+
+
+def _nearest(view: BuildView, over: str) -> list[Curve]:
+    """Forward curves over an angle or slip at the load and pressure nearest to the nominal ones."""
+    tyre, upright = (
+        view.config.tyre,
+        [c for c in view.curves if c.over == over and c.forward and not c.camber],
+    )
+    for name, nominal in (("load", tyre.nominal_load), ("pressure", tyre.nominal_pressure)):
+        nearest: Mapping[Curve, float] = {c: abs(getattr(c, name) - nominal) for c in upright}
+        upright = [c for c in upright if nearest[c] == min(nearest.values())]
+    return upright
+
+
+def _glance(view: BuildView, channel: ChannelRow, members: list[Curve]) -> Panel:
+    return _panel(view, channel, members, style.ramp({curve.held for curve in members}), False)

@@ -11,14 +11,15 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.diagnosis import Gap
 from mffit.diagnosis.constants import TIED_EVIDENCE
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.report import constants, labels, style
-from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
+from mffit.report.diagnosis_view import DiagnosisView, GapChannel, Shown
 from mffit.report.drawing.records import (
+    ZERO,
     Axis,
     Bars,
     ColourScale,
-    Frame,
     Guide,
     Look,
     Note,
@@ -26,14 +27,9 @@ from mffit.report.drawing.records import (
     Sheet,
     Trace,
     in_rows,
+    listed,
 )
-from mffit.report.figures.residuals import (
-    ANGLES,
-    SLIPS,
-    driven,
-    residual_map,
-    rolling,
-)
+from mffit.report.figures.residuals import ANGLES, SLIPS, Framed, driven, residual_map, rolling
 from mffit.rounding import number
 from mffit.scatter import rms
 
@@ -41,6 +37,8 @@ KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": styl
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
 GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
 FOUND = Look(colour=style.ACCENT, line="-", width=1.2)
+LEAST_GAIN = 1.0
+"""Where the logarithmic axis of gains begins."""
 FLOOR = Look(colour=style.CONTRAST, line="--", width=1.2)
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
 
@@ -78,7 +76,7 @@ def _bars(view: DiagnosisView, size: Callable[[Gap], float], floor: float, title
     return Panel(
         title=title,
         x=Axis(label=label, low=0.0, high=1.25 * max([*before, *after, float(np.nan_to_num(floor))])),
-        y=Axis(low=len(pairs) - 0.45, high=-0.55, words={float(k): name for k, name in enumerate(pairs)}),
+        y=listed([*pairs]),
         series=[
             Bars(name=name, lengths=values, places=at, colours=[colour] * len(values), height=0.34)
             for name, values, at, colour in sides
@@ -120,7 +118,7 @@ def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
             ),
             *(Trace(name=said, x=line.x, y=line.raw[name], look=look) for said, line, look in lines),
         ],
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 
@@ -137,7 +135,7 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
                     title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
                     framed = frames if when == "before" else ()
                     values = getattr(channel, when)
-                    maps.append(residual_map(view.points, values, condition, limit, title, framed, over=over))
+                    maps.append(residual_map(view.points, values, condition, title, framed, over=over))
             rows.append(maps)
     label = "measured − simulated [noise of a point]"
     scale = ColourScale(limit=limit, label=label)
@@ -153,60 +151,55 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
 
 def evidence(view: DiagnosisView) -> Sheet:
     """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
-    steps = shown_steps(view)
-    panels = [_candidates(step, number_of) for number_of, step in enumerate(steps, 1)]
+    panels = [_candidates(step, number_of) for number_of, step in enumerate(view.steps, 1)]
     most = max(len(panel.y.words or {}) for panel in panels)
-    present = {c.kind for step in steps for c in step.candidates}
+    present = {trial.effects[-1].kind for step in view.steps for trial in step.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
     return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 
 
-def _candidates(step: RankedStep, number_of: int) -> Panel:
-    rows = step.candidates[: constants.MOST_ROWS]
-    gains = np.array([max(c.gain, constants.SMALLEST_GAIN) for c in rows])
-    names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
-    after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
-    title = f"Step {number_of}{'' if step.passed else ', nothing passes'}: {after}"
+def _candidates(step: ForwardStep, number_of: int) -> Panel:
+    gained = [(trial.log_evidence - step.before.log_evidence, trial.effects[-1]) for trial in step.trials]
+    rows = sorted(gained, key=lambda row: -row[0])[: constants.MOST_ROWS]
+    gains = np.array([max(gain, LEAST_GAIN) for gain, _ in rows])
+    beside = " and ".join(effect.name for effect in step.before.effects)
+    passed = rows[0][0] > step.threshold
+    after = f"beside {beside}" if beside else "one effect alone"
+    title = f"Step {number_of}{'' if passed else ', nothing passes'}: {after}"
+    bars = Bars(
+        name="gain",
+        lengths=gains,
+        places=np.arange(len(rows)),
+        colours=[KIND_COLOURS.get(effect.kind, style.MUTED) for _, effect in rows],
+    )
     return Panel(
         title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
-        x=Axis(
-            label="gain in log evidence",
-            low=constants.SMALLEST_GAIN,
-            high=12.0 * max(10.0, *gains),
-            logarithmic=True,
-        ),
-        y=Axis(low=len(rows) - 0.4, high=-0.6, words={float(k): name for k, name in enumerate(names)}),
-        series=[
-            Bars(
-                name="gain",
-                lengths=gains,
-                places=np.arange(len(rows)),
-                colours=[KIND_COLOURS.get(c.kind, style.MUTED) for c in rows],
-            )
-        ],
+        x=Axis(label="gain in log evidence", low=LEAST_GAIN, high=12.0 * max(10.0, *gains), logarithmic=True),
+        y=listed([labels.typeset(textwrap.shorten(effect.name, 31, placeholder="…")) for _, effect in rows]),
+        series=[bars],
         guides=[Guide(axis="x", at=step.threshold, look=THRESHOLD)],
-        notes=_distances(rows, gains) if step.passed else [],
+        notes=_distances([gain for gain, _ in rows], gains) if passed else [],
     )
 
 
-def _distances(rows: Sequence[Candidate], gains: np.ndarray) -> list[Note]:
+def _distances(gained: Sequence[float], ends: np.ndarray) -> list[Note]:
     """At the end of each bar its distance to the best, dark where it may be a tie."""
     notes = []
-    for place, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
-        behind = rows[0].gain - candidate.gain
+    for place, (gain, end) in enumerate(zip(gained, ends, strict=True)):
+        behind = gained[0] - gain
         text = "best" if place == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
         colour = style.INK if behind < TIED_EVIDENCE else style.MUTED
-        notes.append(Note(x=float(gain), y=place, text=text, colour=colour))
+        notes.append(Note(x=float(end), y=place, text=text, colour=colour))
     return notes
 
 
-def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
+def _frames(regions: Sequence[Region], load: float) -> list[Framed]:
     """A frame around every region at this load; none for a range of slip, over which the maps are not drawn."""
     found = []
     for region in (item.region for item in regions):
-        (low, high), step = region.get("Fz_N", (-np.inf, np.inf)), constants.LOAD_ROUNDING
+        low, high = np.round(region.get("Fz_N", (-np.inf, np.inf)), -1)
         if "kappa" in region:
             continue
-        if {"alpha_deg", "gamma_deg"} & region.keys() and low - step <= load <= high + step:
-            found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
+        if {"alpha_deg", "gamma_deg"} & region.keys() and low <= load <= high:
+            found.append((region.get("alpha_deg"), region.get("gamma_deg")))
     return found

@@ -13,7 +13,7 @@ from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace, banded
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
 from mffit.report.with_band import with_band
 from mffit.scatter import finite_median
 
@@ -43,7 +43,7 @@ def _panel(
     view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
 ) -> Panel:
     known = Posterior(tuple(view.radii.numbers), view.radii.covariance)
-    series: list[Band | Trace] = []
+    series = []
     read, steps = rolling.radius(channel), constants.STEPS_OF_LINE
     speed = float(np.median(rolling.V))
     for p, colour in colours.items():
@@ -65,8 +65,9 @@ def _panel(
 
         line, half = with_band(view.model.values, known, of)
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
+        lined, dotted = replace(LINE, colour=colour), replace(READ, colour=colour)
         series += [
-            *banded(name, load, mm * line, mm * half, replace(LINE, colour=colour), f"file, {name}"),
-            Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=replace(READ, colour=colour)),
-        ]  # fmt: skip
+            Trace(name=f"file, {name}", x=load, y=mm * line, half=mm * half, look=lined),
+            Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=dotted),
+        ]
     return Panel(title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series)

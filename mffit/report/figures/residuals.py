@@ -11,10 +11,14 @@ from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import CurveCondition, shown_values
-from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, ColourScale, Look, Panel, Sheet, Trace, in_rows
 
 ANGLES = ("alpha", "gamma")
 SLIPS = ("kappa", "alpha")
+Framed = tuple[tuple[float, float] | None, tuple[float, float] | None]
+"""A region of a map by its ranges along both axes; None reaches to the ends of the axis."""
+FRAME = Look(line="--", width=1.0)
+READING = Look(marker="s", size=4.0)
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
@@ -55,10 +59,9 @@ def residual_maps(
 
     ``over`` names what lies at the axes, ``("alpha", "gamma")`` or ``("kappa", "alpha")``.
     """
-    limit = constants.RESIDUAL_SCALE
     groups = [
         [
-            residual_map(points, values, condition, limit, f"{name}: {condition.title}", over=over)
+            residual_map(points, values, condition, f"{name}: {condition.title}", over=over)
             for condition in conditions
         ]
         for name, values in residuals
@@ -66,7 +69,7 @@ def residual_maps(
     return Sheet(
         rows=in_rows(*groups),
         height=1.45,
-        scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"),
+        scale=ColourScale(limit=constants.RESIDUAL_SCALE, label=f"measured − model [{unit}]"),
     )
 
 
@@ -74,9 +77,8 @@ def residual_map(
     points: Points,
     values: np.ndarray,
     condition: CurveCondition,
-    limit: float,
     title: str,
-    frames: Sequence[Frame] = (),
+    frames: Sequence[Framed] = (),
     over: tuple[str, str] = ANGLES,
 ) -> Panel:
     """One map with the axes of all points; a dot marks a point that was run backwards."""
@@ -84,18 +86,29 @@ def residual_map(
     x, y = (shown_values(points, name)[rows] for name in over)
     (left, right), (low, high) = (_all_points(points, name) for name in over)
     y = y + _apart(points, over, x, y, low, high)
-    series: list[Map | Trace] = [Map(name="measured − model", x=x, y=y, values=values[rows], limit=limit)]
+    series = [Trace(name="measured − model", x=x, y=y, shade=values[rows], look=READING)]
     backward = points.direction[rows] < 0
     if backward.any():
         series.append(Trace(name="run backwards", x=x[backward], y=y[backward], look=BACKWARD))
+    for region in frames:
+        (a, b), (c, d) = map(_within, region, ((left, right), (low, high)))
+        series.append(
+            Trace(name="region", x=np.array([a, b, b, a, a]), y=np.array([c, c, d, d, c]), look=FRAME)
+        )
     x_axis, y_axis = (labels.angle_axis(name).label for name in over)
     return Panel(
         title=title,
         x=Axis(label=x_axis, low=left, high=right),
         y=Axis(label=y_axis, low=low, high=high),
         series=series,
-        frames=frames,
     )
+
+
+def _within(bounds: tuple[float, float] | None, ends: tuple[float, float]) -> tuple[float, float]:
+    """The part of a range that lies within the ends of its axis, widened so that a single value has a width."""
+    low, high = ends
+    pad = 0.03 * (high - low)
+    return ends if bounds is None else (max(bounds[0] - pad, low), min(bounds[1] + pad, high))
 
 
 def _apart(

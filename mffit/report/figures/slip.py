@@ -1,8 +1,9 @@
-"""Driving, braking and combined slip: curves over slip, friction ellipse, weights of combined slip, trail."""
+"""Driving, braking and combined slip: the friction ellipse."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,42 +11,21 @@ import numpy as np
 
 from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.points import Points
-from mffit.quantities import CHANNELS, MODEL
+from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import (
-    Axis,
-    Band,
-    Guide,
-    Look,
-    Panel,
-    Sheet,
-    Trace,
-    banded,
-    in_rows,
-)
+from mffit.report.drawing.records import ZERO, Axis, Guide, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.figures.fit import MODEL as LINE
 from mffit.report.figures.fit import READINGS, SLIP, held_key, varied
-from mffit.report.with_band import Banded, several_with_band
-from mffit.rounding import number
-from tir.equations import lateral, longitudinal, normalise
+from mffit.report.with_band import with_band
 from tir.outputs import outputs_of
 
 EDGE = Look(colour=style.INK, line="-", width=1.1)
 BEYOND = Look(colour=style.INK, line=":", width=1.1)
 EDGE_NAME = "limit of the model"
 EDGE_NAME_RUN = "limit as tested"
-ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
-WEIGHTS = (
-    ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
-    ("Fy", "weight of slip G$_{yk}$ [–]", lateral.combined_weight),
-)
-"""Force, name and equation of each weight of combined slip."""
-
-
-def _colours(curves: Iterable[Curve]) -> dict[float, str]:
-    return style.ramp({curve.held for curve in curves})
+ZEROS = (Guide(axis="x", at=0.0), ZERO)
 
 
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
@@ -90,7 +70,7 @@ def _beyond_combined(view: BuildView, alpha: np.ndarray) -> np.ndarray:
 def friction_ellipse(view: BuildView) -> Sheet:
     """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, and the tyre with its bands."""
     groups = main_slip_curves(view)
-    colours = _colours(c for members in groups.values() for c in members)
+    colours = style.ramp({curve.held for members in groups.values() for curve in members})
     panels = [_ellipse(view, load, members, colours) for load, members in sorted(groups.items())]
     edges = (EDGE_NAME, EDGE_NAME_RUN)
     drawn = {s.name: s.look for p in panels for s in p.series if isinstance(s, Trace) and s.name in edges}
@@ -100,19 +80,19 @@ def friction_ellipse(view: BuildView) -> Sheet:
 
 def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: dict[float, str]) -> Panel:
     Fx, Fy = (view.felt.channel(name) for name in ("Fx", "Fy"))
-    series: list[Band | Trace] = []
+    series = []
     slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
     for curve in members:
         look = Look(colour=colours[curve.held], line="-", width=1.0)
-        name = f"{labels.held(curve)}"
+        name = labels.held(curve)
         alpha = float(np.median(view.felt.alpha[curve.index]))
-        series += _path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look)
+        series.append(_path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look))
         dots = Look(colour=colours[curve.held], marker=".", size=1.6)
         series.append(Trace(name=f"measured, {name}", x=Fy[curve.index], y=Fx[curve.index], look=dots))
     series += _limit(view, members[0])
     end = 1.05 * max(float(np.nanmax(np.abs(part))) for s in series for part in s.columns().values())
     return Panel(
-        title=f"{labels.LOAD.of(load)}",
+        title=labels.LOAD.of(load),
         x=Axis(label=CHANNELS["Fy"].axis, low=-end, high=end),
         y=Axis(label=CHANNELS["Fx"].axis, low=-end, high=end),
         series=series,
@@ -143,18 +123,17 @@ def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
     return outputs_of(("Fx", "Fy"), tyre, where, turn_slip=view.on_disc)
 
 
-def _limit(view: BuildView, curve: Curve) -> list[Band | Trace]:
+def _limit(view: BuildView, curve: Curve) -> list[Trace]:
     """The friction limit with its band, outwards and inwards; dotted where no sweep combined as much sideslip with slip."""
     kappa, alpha, way = friction_limit(view, curve)
-    ribbon, whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
+    whole = _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
     beyond = _beyond_combined(view, alpha)
     if not np.any(beyond):
-        return [ribbon, whole]
+        return [whole]
     ends = np.flatnonzero(np.diff(beyond)) + 1
     run = [part for part in np.split(np.arange(len(alpha)), ends) if not beyond[part[0]]]
-    x, y = whole.x, whole.y
-    inside = [Trace(name=EDGE_NAME_RUN, x=x[part], y=y[part], look=EDGE) for part in run]
-    return [ribbon, Trace(name=EDGE_NAME, x=x, y=y, look=BEYOND), *inside]
+    inside = [Trace(name=EDGE_NAME_RUN, x=whole.x[part], y=whole.y[part], look=EDGE) for part in run]
+    return [replace(whole, look=BEYOND), *inside]
 
 
 def _path(
@@ -165,7 +144,7 @@ def _path(
     name: str,
     look: Look,
     across: np.ndarray | None = None,
-) -> tuple[Band, Trace]:
+) -> Trace:
     """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
@@ -175,17 +154,12 @@ def _path(
         across = np.column_stack([-along[1], along[0]]) / np.maximum(np.hypot(*along), 1e-9)[:, None]
     across_x, across_y = across.T
 
-    def moved_across(p: Any) -> list[Any]:
+    def moved_across(p: Any) -> Any:
         F = outputs_of(("Fx", "Fy"), p, where, turn_slip=view.on_disc)
-        return [across_x * F[0] + across_y * F[1]]
+        return across_x * F[0] + across_y * F[1]
 
-    (band,) = several_with_band(view.model.values, view.posterior, moved_across)
-    dx, dy = across_y * band.half, across_x * band.half
-    shade = Look(colour=look.colour, opacity=style.SHADE)
-    return (
-        Band(name=name, x=Fy + dx, low=Fx + dy, x_high=Fy - dx, high=Fx - dy, look=shade),
-        Trace(name=name, x=Fy, y=Fx, look=look),
-    )
+    _, half = with_band(view.model.values, view.posterior, moved_across)
+    return Trace(name=name, x=Fy, y=Fx, half=across_x * half, half_x=across_y * half, look=look)
 
 
 def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any]:
@@ -198,114 +172,3 @@ def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any
         "Vx": float(np.median(at.V)),
         **slips,
     }
-
-
-def weights(view: BuildView) -> Sheet:
-    """The weights of combined slip over longitudinal slip, coloured by sideslip: a column per load, a row per weight."""
-    groups = sorted(main_slip_curves(view).items())
-    colours = _colours(c for _, members in groups for c in members)
-    rows = []
-    for channel, label, weight in WEIGHTS:
-        panels = []
-        for load, members in groups:
-            series: list[Band | Trace] = []
-            for curve in members:
-                if channel == "Fy" and abs(curve.held) < UPRIGHT:
-                    continue
-                series += _weight(view, curve, channel, weight, colours[curve.held])
-            largest = max(
-                (float(np.nanmax(s.columns()["upper"])) for s in series if isinstance(s, Band)), default=1.0
-            )
-            panels.append(
-                Panel(
-                    title=labels.LOAD.of(load),
-                    x=Axis(label=labels.SLIP.axis),
-                    y=Axis(label=label, low=-0.05, high=max(1.3, 1.05 * largest)),
-                    series=series,
-                    guides=[Guide(axis="y", at=1.0), Guide(axis="y", at=0.0)],
-                )
-            )
-        rows += in_rows(panels, columns=4)
-    key = {"measured force over the model's without the other slip": READINGS, "model": LINE}
-    return Sheet(rows=rows, height=1.75, key={**key, **held_key("alpha", colours)})
-
-
-def _weight(
-    view: BuildView, curve: Curve, channel: str, weight: Callable[[Any, Any], Any], colour: str
-) -> list[Band | Trace]:
-    """The model's weight with its band, and the one that the readings show where the pure force is large enough."""
-    name = labels.held(curve)
-    alpha = float(np.median(view.felt.alpha[curve.index]))
-    slip = np.linspace(*slip_range(view), constants.STEPS_OF_LINE)
-    line, half = _weights_at(view, curve, slip, np.full_like(slip, alpha), weight)
-    read = view.felt.kappa[curve.index]
-    at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
-    tyre = SimpleNamespace(**view.model.values)
-    model, pure = (
-        outputs_of((channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc)[0]
-        for k, a in (
-            (read, view.felt.alpha[curve.index]),
-            ((read, 0.0 * read) if channel == "Fx" else (0.0 * read, view.felt.alpha[curve.index])),
-        )
-    )
-    large = np.abs(pure) > constants.LEAST_PURE_FORCE * np.max(np.abs(pure))
-    shown = at + (view.felt.channel(channel)[curve.index] - model) / np.where(large, pure, np.nan)
-    dots = Look(colour=colour, marker=".", size=1.6)
-    return [
-        *banded(name, slip, line, half, Look(colour=colour, line="-", width=1.0), f"model, {name}"),
-        Trace(name=f"measured, {name}", x=read, y=shown, look=dots),
-    ]
-
-
-def _weights_at(
-    view: BuildView, curve: Curve, kappa: np.ndarray, alpha: np.ndarray, weight: Callable[[Any, Any], Any]
-) -> Banded:
-    at = _inputs(view, curve)
-
-    def of(p: Any) -> list[Any]:
-        q = normalise.inputs(
-            p, at["Fz"], at["Fz"], kappa, alpha, 0.0 * kappa, 0.0, at["pressure"], star=False, limits=False
-        )
-        return [weight(p, q)]
-
-    (found,) = several_with_band(view.model.values, view.posterior, of)
-    return found
-
-
-def trail(view: BuildView) -> Sheet:
-    """Pneumatic trail and residual moment over sideslip with bands, at several longitudinal slips: a column per load."""
-    low, high = slip_range(view)
-    end = high if high > -low else low
-    slips = [share * end for share in constants.HELD_SHARES]
-    colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
-    x = np.linspace(*sideslip_range(view), constants.STEPS_OF_LINE)
-    quantities = (
-        ("trail", MODEL["trail"].axis, 1e3),
-        ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),
-    )
-    rows: list[list[Panel]] = [[] for _ in quantities]
-    for load, members in sorted(main_slip_curves(view).items()):
-        series: list[list[Band | Trace]] = [[] for _ in quantities]
-        for slip, colour in colours.items():
-            where = _inputs(view, members[0], kappa=np.full_like(x, slip), alpha=x)
-
-            def outputs(p: Any, where: dict[str, Any] = where) -> list[Any]:
-                return outputs_of(tuple(q[0] for q in quantities), p, where, turn_slip=view.on_disc)
-
-            found = several_with_band(view.model.values, view.posterior, outputs)
-            name = f"{labels.SLIP.symbol} = {number(slip, 2)}"
-            for drawn, (_, _, unit), (line, half) in zip(series, quantities, found, strict=True):
-                look = Look(colour=colour, line="-", width=1.0)
-                drawn += banded(name, np.degrees(x), unit * line, unit * half, look)
-        for row, (_, label, _), drawn in zip(rows, quantities, series, strict=True):
-            row.append(
-                Panel(
-                    title=labels.LOAD.of(load),
-                    x=labels.angle_axis("alpha"),
-                    y=Axis(label=label),
-                    series=drawn,
-                    guides=ZEROS,
-                )
-            )
-    key = {f"{labels.SLIP.symbol} = {number(s, 2)}": Look(colour=c, line="-") for s, c in colours.items()}
-    return Sheet(rows=[line for row in rows for line in in_rows(row, columns=4)], height=1.6, key=key)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,9 +16,9 @@ from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
+    ZERO,
     Axis,
     Bars,
-    ErrorBars,
     Guide,
     Look,
     Note,
@@ -25,8 +26,29 @@ from mffit.report.drawing.records import (
     Sheet,
     Trace,
     in_rows,
+    listed,
 )
-from mffit.report.published import TYRES
+
+
+class Published(NamedTuple):
+    """One measured tyre."""
+
+    name: str
+    epsilon_gamma: float  #: [-]
+    u: float  #: [-], k = 1
+
+
+SOURCE = "Mottola, M.; Massaro, M. Machines 2022, 10, 921, Table 2 (CC BY 4.0), doi:10.3390/machines10100921"
+
+TYRES = (
+    Published("Front 1 (120/70-17)", -0.0609, 0.0863),
+    Published("Front 2", -0.1245, 0.0951),
+    Published("Front 3", -0.1870, 0.1089),
+    Published("Rear 1 (190/55-17)", 0.0174, 0.0642),
+    Published("Rear 2", -0.0064, 0.0702),
+    Published("Rear 3", 0.0178, 0.0646),
+)
+
 
 PUBLISHED = Look(colour=style.MUTED, marker="o", size=4.0, width=1.2)
 OWN = Look(colour=style.ACCENT, marker="o", size=6.0, width=2.2)
@@ -54,27 +76,18 @@ def camber_reduction(view: BuildView) -> Sheet:
 
 def _among_published(name: str, measured: Measured) -> Panel:
     rows = [(tyre.name, tyre.epsilon_gamma, tyre.u) for tyre in TYRES]
-    if measured.epsilon_gamma is not None:
-        rows.append(
-            (
-                textwrap.shorten(name, 24, placeholder="…"),
-                measured.epsilon_gamma.value,
-                measured.epsilon_gamma.u,
-            )
-        )
+    own = measured.epsilon_gamma
+    if own is not None:
+        rows.append((textwrap.shorten(name, 24, placeholder="…"), own.value, own.u))
     places = np.arange(len(rows))
     values, u = (np.array([row[k] for row in rows]) for k in (1, 2))
     sides = ((places < len(TYRES), "published", PUBLISHED), (places >= len(TYRES), "this tyre", OWN))
     return Panel(
         title="Among published tyres",
         x=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
-        y=Axis(
-            low=len(rows) - 0.4,
-            high=-0.6,
-            words={float(k): row[0] for k, row in enumerate(rows)},
-        ),
+        y=listed([row[0] for row in rows]),
         series=[
-            ErrorBars(name=said, x=values[which], y=places[which], u=u[which], look=look, along="x")
+            Trace(name=said, x=values[which], y=places[which], half_x=u[which], look=look)
             for which, said, look in sides
         ],
         guides=[Guide(axis="x", at=0.0)],
@@ -85,7 +98,6 @@ def _budget(measured: Measured) -> Panel:
     lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_ROWS]
     widths = np.array([abs(line.contribution) for line in lines])
     total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
-    last = len(lines) - 1
     return Panel(
         title="Its uncertainty budget",
         x=Axis(
@@ -93,7 +105,7 @@ def _budget(measured: Measured) -> Panel:
             low=0.0,
             high=1.25 * max([total, *widths]),
         ),
-        y=Axis(low=last + 0.6, high=-0.6, words={float(k): line.source for k, line in enumerate(lines)}),
+        y=listed([line.source for line in lines]),
         series=[
             Bars(
                 name="contribution",
@@ -103,7 +115,7 @@ def _budget(measured: Measured) -> Panel:
             )
         ],
         guides=[Guide(axis="x", at=total, look=COMBINED)],
-        notes=[Note(x=total, y=float(last), text=f"{total:.3f}", colour=style.CONTRAST)],
+        notes=[Note(x=total, y=len(lines) - 1.0, text=f"{total:.3f}", colour=style.CONTRAST)],
     )
 
 
@@ -111,9 +123,7 @@ def _over_load(view: BuildView) -> Panel:
     measured, nominal = view.measured, view.config.tyre.nominal_load
     found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
     load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
-    series: list[ErrorBars | Trace] = [
-        ErrorBars(name="this tyre", x=load, y=value, u=u, look=replace(OWN, size=4.5, width=1.4))
-    ]
+    series = [Trace(name="this tyre", x=load, y=value, half=u, look=replace(OWN, size=4.5, width=1.4))]
     if measured.pecp1 is not None:
         over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
         line = measured.pecp1 * (1.0 + measured.pecp2 * (over - nominal) / nominal)
@@ -123,7 +133,7 @@ def _over_load(view: BuildView) -> Panel:
         x=Axis(label=labels.LOAD.axis),
         y=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
         series=series,
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )
 
 

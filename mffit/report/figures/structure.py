@@ -7,7 +7,7 @@ import numpy as np
 from mffit.diagnosis.structure import DIRECTION, ResidualComparison, Structure
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import style
-from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, in_rows
+from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 
 SIDES = {
     -1: ("other angle or force negative", Look(colour=style.ACCENT, marker="o", size=3.2)),
@@ -29,11 +29,11 @@ def _panel(comparison: ResidualComparison) -> Panel:
     series = []
     for side in sorted({b.side for b in comparison.bins}):
         x, y, u = np.array([(b.middle, b.mean, b.error) for b in comparison.bins if b.side == side]).T
-        series.append(ErrorBars(name=SIDES[side][0], x=x, y=y, u=u, look=SIDES[side][1]))
+        series.append(Trace(name=SIDES[side][0], x=x, y=y, half=u, look=SIDES[side][1]))
     return Panel(
         title=f"{comparison.channel} over {comparison.word}",
         x=Axis(label=over.short_axis if over else "", words=ways),
         y=Axis(label="mean residual [u]"),
         series=series,
-        guides=[Guide(axis="y", at=0.0)],
+        guides=[ZERO],
     )

@@ -5,8 +5,7 @@ from mffit.report.text.compare import comparison_table
 from mffit.report.text.convert import conversion_summary
 from mffit.report.text.diagnosis import diagnosis_summary, models_written
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
-from mffit.report.text.fleet import fleet_summary
-from mffit.report.text.many import lacking, many_line, many_summary
+from mffit.report.text.many import fleet_summary, lacking, many_line, many_summary
 from mffit.report.text.plan import plan_summary
 from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary

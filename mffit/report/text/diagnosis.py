@@ -30,7 +30,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
         *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
         wrapped(diagnosis.headline),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, values in rows]),
-        *(_effect(found, diagnosis.signs_of(found.effect)) for found in diagnosis.effects),
+        *(_effect(found, diagnosis.signs) for found in diagnosis.effects),
         _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
         paragraphs(wording.notes(diagnosis)),
     ]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
-from mffit.results import constants
 from mffit.results.values import Json
 from mffit.results.verification import Verification
 
@@ -11,7 +11,7 @@ from mffit.results.verification import Verification
 def verification_summary(found: Verification) -> str:
     """The text that ``mffit build --verify`` prints: another method first, the result, and the largest changes."""
     parts = [paragraphs(found.notes), wrapped(f"{found.folder}: {found.headline}")]
-    shown = found.changes[: constants.CHANGES_IN_TEXT]
+    shown = found.changes[: constants.MOST_ROWS]
     if shown:
         rows = [(row.file, row.key, _written(row.old), _written(row.new)) for row in shown]
         parts.append(table(("file", "number", "stored", "new"), rows, left=2))

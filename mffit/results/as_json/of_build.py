@@ -12,7 +12,6 @@ from mffit.diagnosis.remains import OddSweep, Remains
 from mffit.diagnosis.structure import ResidualComparison, Structure
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandOfCombined, BandsByPressure
-from mffit.fit.borrowed.campaign import Joined
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.influences.between_runs import BetweenRuns
@@ -69,7 +68,7 @@ def of_rig(numbers: Estimates) -> dict[str, object]:
 
 keys(
     FitResult,
-    "channels radii odd coefficients rig temperature modelled runs relaxation campaigns=joined sister=lent confounded bands "
+    "channels radii odd coefficients rig temperature modelled runs relaxation sister=lent confounded bands "
     "posterior coverage left files explanations seconds",
     radii=lambda found: found.radii.agreement(found.tyre.values),
     rig=lambda found: of_rig(found.rig if found.temperature is None else found.temperature.rig),
@@ -124,11 +123,6 @@ keys(
 )
 
 
-keys(
-    Joined,
-    "toml=campaign.name groups ±ratio_of_grips=grip loads_N=campaign.shared.0 p_kPa=campaign.shared.1 coefficients",
-    coefficients=lambda found: list(found.found),
-)
 keys(
     Lent,
     "file=sister.file ±friction ±stiffness u_friction_of_sisters=sister.u_friction "

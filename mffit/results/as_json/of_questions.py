@@ -18,10 +18,9 @@ from mffit.diagnosis.validation import Gap, Validation
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.hierarchy import Hierarchy, Population
 from mffit.fleet.record import FleetScatter, Row
-from mffit.planning import Plan, PlannedRun
+from mffit.planning import Plan, PlannedRun, PlanStep, Tie, Trial
 from mffit.planning import wording as planned
 from mffit.planning.goals import Goal
-from mffit.planning.record import PlanStep, Tie, Trial
 from mffit.quantities import column
 from mffit.recordings import Sniffed
 from mffit.recordings.guess import Guess
@@ -38,7 +37,7 @@ keys(
     "trusted reasons headline gap_before gap_after validation where effects alternatives limits unexplained unexplained_where "
     "noise_floor=noise outliers coefficients model_after model_with_terms notes lab left_out [made]",
     effects=lambda found: [
-        document(one) | {"to_do": wording.remedy(one, found.signs_of(one.effect))} for one in found.effects
+        document(one) | {"to_do": wording.remedy(one, found.signs)} for one in found.effects
     ],
     alternatives=lambda found: [
         {"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()
@@ -58,9 +57,8 @@ keys(
 )
 keys(
     AcceptedEffect,
-    "id=effect.id name=effect.name kind=effect.kind physics=effect.physics [campaign] confidence repaired parameters to_do "
+    "id=effect.id name=effect.name kind=effect.kind physics=effect.physics confidence repaired parameters to_do "
     "gap_after tied_with separate_by [T_ref_degC]",
-    campaign=lambda found: found.effect.campaign or None,
     parameters=lambda found: {
         name: {"was": found.before[name], "value": value, "stderr": u}
         for name, (value, u) in found.parameters.items()
@@ -72,7 +70,7 @@ keys(
 # Uncertainties of a plan are in the goal's unit, k = 1 except for bands; null if not measured.
 keys(
     Plan,
-    "goal headline promise identified ties=identified.ties u_now=now u_then=then told_below "
+    "goal headline promise identified ties=identified.ties u_now=now u_then=then "
     "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps alone=trials",
     headline=planned.headline,
     promise=planned.promise,

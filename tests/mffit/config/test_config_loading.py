@@ -455,7 +455,7 @@ def test_known_keys_cover_every_table():
     known = known_keys(config.Config)
     assert set(known) == {
         "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "columns.*", "sweep",
-        "sweep.columns.*", "normal", "sister", "campaign", "fit", "fit.exclude", "lab", "lab.instruments",
+        "sweep.columns.*", "normal", "sister", "fit", "fit.exclude", "lab", "lab.instruments",
     }  # fmt: skip
 
 

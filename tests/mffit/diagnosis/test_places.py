@@ -142,7 +142,7 @@ def test_a_declared_side_force_is_an_angle_by_the_cornering_stiffness_at_zero():
         "rig": {"path_radius": 1.323, "u_slip_alignment_N": 25.0},
         "sweep": [{"file": "a.csv"}],
     }
-    value, u = declared_priors({"": config.load(content)}, programme(), Simulation.of(TYRE))["alpha_0_deg"]
+    value, u = declared_priors(config.load(content), programme(), Simulation.of(TYRE))["alpha_0_deg"]
     assert value == 0.0
     assert u == pytest.approx(math.degrees(25.0 / abs(float(TYRE.state(1000.0, Vx=6.0).K_ya))), rel=0.05)
 

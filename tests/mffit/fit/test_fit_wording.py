@@ -103,7 +103,7 @@ def test_tested_and_written_ranges_are_stated():
 @pytest.mark.parametrize(
     ("degrees", "words"),
     [
-        ((-6.0, -2.04, 0.0, 6.0), "0.20 at sideslips of -6, -2, 0 and 6 deg. The"),
+        ((-6.0, -2.04, 6.0), "0.20 at sideslips of -6, -2 and 6 deg. The"),
         ((-0.0, 4.0), "at sideslips of 0 and 4 deg"),
         ((4.0,), "at 4 deg of sideslip."),
         ((-0.01,), "without sideslip."),

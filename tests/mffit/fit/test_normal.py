@@ -72,7 +72,7 @@ def test_diagnosis_takes_the_file_of_its_simulation(built, turn_slip, name):
     table = result.config.model.model_copy(update={"turn_slip": turn_slip})
     config = result.config.model_copy(update={"model": table})
     config._folder = out.parent
-    tyre, notes = chosen_model(config, None, lambda sentence: None)
+    tyre, notes, _ = chosen_model(config, None, lambda sentence: None)
     assert not any(isinstance(note, ModelFittedFirst) for note in notes)
     assert tyre == tir.read(out / name)
 

@@ -194,6 +194,18 @@ def test_a_mixed_order_of_the_runs_is_not_criticised(warmed):
     assert confoundings(replace(search, problem=replace(search.problem, points=mixed))) == ()
 
 
+def test_a_temperature_that_follows_the_sideslip_is_criticised(warmed):
+    """Every sweep is warm at its ends: friction and shape of the curve then depend on what the temperature does."""
+    search = warmed[0].fit.search
+    points = search.problem.points
+    hot = 30.0 + 150.0 * np.abs(points.alpha) + np.random.default_rng(6).normal(0.0, 1.0, len(points))
+    found = confoundings(replace(search, problem=replace(search.problem, points=points.replace(T=hot))))
+    (row,) = [row for row in found if row.setting == "sideslip"]
+    assert row.correlation > 0.9
+    assert row.coefficient[:2] in ("PD", "PE", "PC", "PK")
+    assert row.growth > 1.5
+
+
 def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):
     result, _ = warmed
     search = result.fit.search

@@ -16,8 +16,8 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import (
     DIRECTIONS,
     StepLength,
-    _correlation,
     _fitted,
+    _Noise,
     relaxation,
     relaxation_sentences,
 )
@@ -177,11 +177,14 @@ def test_without_steps_the_result_says_what_to_run(truth):
     assert relaxation_sentences(nothing) == []
 
 
-def test_correlated_residuals_count_as_fewer_and_white_ones_as_they_are():
-    """The mean of a first-order process with correlation r has (1 + r) / (1 - r) times the variance of white noise."""
+def test_what_readings_remember_is_taken_off_their_noise():
+    """Of a first-order process what is new has the variance 1 - r^2 of the whole."""
     white = np.random.default_rng(3).standard_normal(4000)
-    assert _correlation(white) == pytest.approx(1.0, abs=0.1)
-    assert _correlation(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(9.0, rel=0.25)
+    red = lfilter([1.0], [1.0, -0.8], white)
+    noise = _Noise.of(red, 0)
+    assert noise.memory == pytest.approx([0.8], abs=0.05)
+    assert noise.size == pytest.approx(np.std(white), rel=0.02)
+    assert np.std(noise.whitened(red)) == pytest.approx(1.0, rel=0.01)
 
 
 def test_the_sentences_give_every_length_with_its_load(found):

@@ -14,8 +14,9 @@ import mffit
 import tir
 from mffit import config as configuration
 from mffit.errors import InputError
-from mffit.fit.influences.nuisance_choice import choose
-from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
+from mffit.fit.influences.joint import JointFit, beyond_chance, in_most
+from mffit.fit.influences.nuisance_choice import choose, halves_of_runs
+from mffit.linearised.mixed import Mixed
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN
@@ -157,57 +158,15 @@ def test_the_key_decides(scattered, given, modelled):
 def test_two_runs_cannot_show_a_scatter(scattered):
     search = scattered[0].fit.search
     few = search.problem.select(np.flatnonzero(search.problem.points.sweep < 2))
-    with pytest.raises(InputError, match="2 runs cannot differ"):
+    with pytest.raises(InputError, match="2 runs do not show how runs differ"):
         choose(with_keys(scattered[0], run_scale=True), replace(search, problem=few))
 
 
-def of_runs(run, slope, own, residual):
-    """Readings of one channel in two blocks of whole runs, the later ones first."""
-    late = run >= np.median(run)
-    return lambda: (
-        OfRuns(point=rows, slope=slope[rows], own=own[rows], residual=residual[rows])
-        for rows in (np.flatnonzero(late), np.flatnonzero(~late))
-    )
-
-
-def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
-    """Against a solution of the whole system with a column for every number of every run."""
-    rng = np.random.default_rng(4)
-    runs, rows, k = 5, 12, 4
-    run = np.repeat(np.arange(runs), rows)
-    slope, own = rng.standard_normal((60, k)), rng.standard_normal((60, 2))
-    residual, spread = rng.standard_normal(60), np.array([0.7, 0.2])
-    information, pull = np.diag(rng.uniform(0.1, 1.0, k)), rng.standard_normal(k)
-    found = Runs(rows=of_runs(run, slope, own, residual), run=run, information=information, pull=pull)
-    wide = np.column_stack([slope, *(own * (run == j)[:, None] for j in range(runs))])
-    prior = np.zeros((k + 2 * runs, k + 2 * runs))
-    prior[:k, :k] = information
-    prior[k:, k:] = np.diag(np.tile(spread**-2.0, runs))
-    for group in (run, 2 * run + np.tile(np.arange(rows) % 3 == 0, runs)):
-        errors, other = found.left_out(found.parts(), group, (spread, 2.0 * spread))
-        assert not np.allclose(errors, other)
-        for piece in np.unique(group):
-            kept = group != piece
-            A = wide[kept].T @ wide[kept] + prior
-            b = wide[kept].T @ residual[kept] + np.r_[pull, np.zeros(2 * runs)]
-            expected = residual[~kept] - wide[~kept] @ np.linalg.solve(A, b)
-            np.testing.assert_allclose(errors[0, ~kept], expected, atol=1e-10)
-    values, variances = (np.roll(x, 2, axis=0) for x in found.own_numbers(found.parts(), spread))
-    A = wide.T @ wide + prior
-    solution = -np.linalg.solve(A, wide.T @ residual + np.r_[pull, np.zeros(2 * runs)])
-    np.testing.assert_allclose(values.ravel(), solution[k:], atol=1e-10)
-    np.testing.assert_allclose(variances.ravel(), np.diag(np.linalg.inv(A))[k:], atol=1e-10)
-
-
-def test_the_scatter_of_numbers_that_were_drawn_is_found():
-    rng = np.random.default_rng(7)
-    run = np.repeat(np.arange(150), 20)
-    own, slope = rng.uniform(0.5, 1.5, (3000, 2)) * 100.0, rng.standard_normal((3000, 3))
-    drawn = np.array([0.03, 0.006]) * rng.standard_normal((150, 2))
-    residual = np.sum(own * drawn[run], axis=1) + rng.standard_normal(3000)
-    rows = of_runs(run, slope, own, residual)
-    found = Runs(rows=rows, run=run, information=np.zeros((3, 3)), pull=np.zeros(3))
-    assert found.spread(found.parts()) == pytest.approx([0.03, 0.006], rel=0.2)
+def joint(run, slope, own, residual):
+    """Readings of one channel whose shared numbers have priors that do not pull."""
+    model = Mixed(-residual, 1e4 * slope, own, [np.flatnonzero(run == k) for k in np.unique(run)])
+    names = tuple(f"number {k}" for k in range(slope.shape[1]))
+    return JointFit(names, model, np.ones((1, len(run))), ("Fy",), np.arange(len(run)), np.full(2, 0.3))
 
 
 @pytest.fixture
@@ -217,15 +176,14 @@ def runs_that_scatter():
     run = np.repeat(np.arange(9), 8)
     own, slope = rng.uniform(0.5, 1.5, (72, 2)), rng.standard_normal((72, 5))
     slope[:, 4] = 0.8 * run + rng.standard_normal(72)  # nearly the same within a run
-    drawn = np.array([1.5, 0.5]) * rng.standard_normal((9, 2))
+    drawn = np.array([0.5, 0.15]) * rng.standard_normal((9, 2))
     residual = np.sum(own * drawn[run], axis=1) + rng.standard_normal(72)
-    found = Runs(of_runs(run, slope, own, residual), run, np.zeros((5, 5)), np.zeros(5))
 
     def covariance(spread):
         wide = np.hstack([own * (run == k)[:, None] * spread for k in range(9)])
         return np.eye(72) + wide @ wide.T
 
-    return found, slope, residual, covariance
+    return joint(run, slope, own, residual), slope, residual, covariance
 
 
 def restricted(slope, residual, V):
@@ -237,36 +195,58 @@ def restricted(slope, residual, V):
     return np.linalg.slogdet(V)[1] + np.linalg.slogdet(A)[1] + chi2, chi2
 
 
+def best(slope, residual, covariance):
+    """The greatest restricted likelihood, by another search."""
+    start = np.full(2, np.log(0.3))
+    return minimize(
+        lambda x: restricted(slope, residual, covariance(np.exp(x)))[0], start, method="Nelder-Mead"
+    )
+
+
 def test_the_spread_is_that_of_the_greatest_restricted_likelihood(runs_that_scatter):
     found, slope, residual, covariance = runs_that_scatter
-    parts = found.parts()
-    spread = found.spread(parts)
-    best = minimize(
-        lambda x: restricted(slope, residual, covariance(np.exp(x)))[0], np.zeros(2), method="Nelder-Mead"
-    )
-    assert spread == pytest.approx(np.exp(best.x), rel=0.03, abs=0.05)
-    gain = restricted(slope, residual, covariance(np.zeros(2)))[0] - best.fun
-    assert found.support_of_scatter(parts, spread).chi2 == pytest.approx(gain, rel=1e-3)
+    aim = best(slope, residual, covariance)
+    assert found.explained().scatter == pytest.approx(np.exp(aim.x), rel=0.03, abs=0.02)
+    gain = restricted(slope, residual, covariance(np.zeros(2)))[0] - aim.fun
+    assert 2.0 * (found.explained().value - found.alike().value) == pytest.approx(gain, rel=1e-3)
 
 
-def test_what_numbers_explain_is_the_fall_of_the_sum_of_squares_weighted_with_the_scatter(runs_that_scatter):
+def test_what_a_number_explains_is_weighed_with_the_scatter_of_the_runs(runs_that_scatter):
+    """Twice the gain is the fall of -2 log likelihood, each at its own scatter, the volume of the number apart."""
     found, slope, residual, covariance = runs_that_scatter
-    parts, every = found.parts(), np.arange(5)
-    support = found.support(parts, every, np.array([4]), np.zeros(5))
-    for spread, own in ((found.spread(parts), support.chi2), (np.zeros(2), support.removed)):
-        V = covariance(spread)
-        fall = restricted(slope[:, :4], residual, V)[1] - restricted(slope, residual, V)[1]
-        assert own == pytest.approx(fall)
-    assert (
-        support.chi2 < 0.2 * support.removed
-    )  # what is nearly constant within a run competes with its own numbers
-    assert 1.0 < support.freedom < 18.0  # two numbers of nine runs at most
-    # The same from where the number is 0.3 already
-    there = [rows._replace(residual=rows.residual + 0.3 * rows.slope[:, 4]) for rows in found.rows()]
-    elsewhere = replace(found, rows=lambda: iter(there))
-    again = elsewhere.support(elsewhere.parts(), every, np.array([4]), np.array([0, 0, 0, 0, -0.3]))
-    assert again.chi2 == pytest.approx(support.chi2)
-    assert again.freedom == pytest.approx(support.freedom)
+    with_it, without = best(slope, residual, covariance), best(slope[:, :4], residual, covariance)
+    inverse = np.linalg.inv(covariance(np.exp(with_it.x)))
+    variance = np.linalg.inv(slope.T @ inverse @ slope)[4, 4]
+    gain = found.gain({"number 4"})
+    assert 2.0 * gain == pytest.approx(without.fun - with_it.fun - np.log(variance), rel=0.01, abs=0.01)
+    alike = restricted(slope[:, :4], residual, np.eye(72))[1] - restricted(slope, residual, np.eye(72))[1]
+    assert 2.0 * gain < 0.5 * alike  # what is nearly constant within a run competes with its own numbers
+
+
+def test_a_left_out_half_is_predicted_as_by_a_fit_without_it(runs_that_scatter):
+    """Against a solution of the whole system with a column for every number of every run."""
+    found, slope, residual, _ = runs_that_scatter
+    run, own, given = np.repeat(np.arange(9), 8), found.model.own, found.explained().given
+    wide = np.column_stack([slope, *(own * (run == j)[:, None] for j in range(9))])
+    prior = np.diag(np.concatenate([np.full(5, 1e-8), np.tile(np.exp(-given.own), 9)]))
+    half = 2 * run + (np.arange(72) % 8 > 3)
+    squares = []
+    for piece in np.unique(half):
+        kept = half != piece
+        numbers = np.linalg.solve(wide[kept].T @ wide[kept] + prior, wide[kept].T @ residual[kept])
+        squares.append(np.sum((residual[~kept] - wide[~kept] @ numbers) ** 2))
+    left_out = found.left_out(given, half)
+    np.testing.assert_allclose(left_out.squares, squares, rtol=1e-5)
+    assert left_out.gaps["Fy"] == pytest.approx(np.sqrt(np.sum(squares) / 72), rel=1e-5)
+
+
+def test_more_is_asked_of_the_best_of_several():
+    assert beyond_chance(4.7, 2)  # exp(-4.7) is 0.9 %
+    assert not beyond_chance(4.5, 2)
+    assert not beyond_chance(4.7, 2, candidates=2)
+    assert not beyond_chance(-1.0, 2)
+    assert in_most(np.arange(11) > 0)  # 0.6 %
+    assert not in_most(np.arange(10) > 0)  # 1.07 %
 
 
 def test_the_halves_of_a_run_are_the_two_sides_of_its_angle():

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from mffit.config.models import RollingRadiusTable
 from mffit.effects import NAMES
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
@@ -85,20 +84,6 @@ def test_the_headline_counts_runs_and_points():
     )
 
 
-@pytest.mark.parametrize(
-    ("now", "then", "said"),
-    [
-        (1.0, 0.9, "The tie remains: the effects are separated only below 0.3"),
-        (1.0, 0.2, "That separates the effects, because it is below 0.3"),
-        (0.2, 0.1, "The effects are separated already, because that is below 0.3"),
-    ],
-)
-def test_the_headline_says_whether_the_tie_is_resolved(now, then, said):
-    steps = (replace(plan().steps[0], after=then),)
-    assert said in wording.headline(plan("tie:ply-steer", now=now, told_below=0.3, steps=steps))
-    assert said not in wording.headline(plan(now=now, steps=steps))
-
-
 def test_both_estimates_of_eps_gamma_now_and_then():
     assert wording.estimates(plan()) == (
         "u(eps_gamma): direct method 0.0561 -> not measured; joint fit 0.0263 -> 0.00630."
@@ -118,12 +103,11 @@ def test_both_estimates_of_eps_gamma_now_and_then():
         ("eps_gamma", "its own budget"),
         ("eps_gamma:joint", 'spin.pecp1 = "model"'),
         ("bands:Mz", "three loads"),
-        ("tie:ply-steer", "below a third of the usual size, 0.3"),
         ("PKY6", "standard error in the file"),
     ],
 )
 def test_the_prediction_names_its_estimate(goal, said):
-    text = wording.promise(plan(goal, told_below=0.3 if goal.startswith("tie") else None))
+    text = wording.promise(plan(goal))
     assert said in text
     assert ("k = 1" in text) == (not goal.startswith("bands"))
     assert text.endswith("assume the noise of your present points.")
@@ -146,11 +130,6 @@ def test_instructions_are_lines_for_tyre_toml():
     assert wording.instructions(CAMBER_ZERO) == [
         "# change in [rig]: u_camber_alignment_deg = 0.167 (0.33 of the uncertainty declared now)"
     ]
-    table = RollingRadiusTable(load_N=1400.0, revolutions=4.0, angle_start_deg=0.0, angle_end_deg=147.6)
-    assert wording.instructions(PlannedRun(BY_ID["revolution"], 1400.0, revolution=table))[:2] == [
-        "[[rolling_radius]]",
-        "load_N = 1400",
-    ]
     assert wording.instructions(RUN) == []
 
 
@@ -159,7 +138,7 @@ def test_the_json_of_a_plan():
     assert found["goal"] == {
         "kind": "eps_gamma", "name": "", "label": "u(eps_gamma) by the direct method", "unit": "-",
     }  # fmt: skip
-    assert (found["u_now"], found["u_then"], found["told_below"]) == (0.0561, 0.0123, None)
+    assert (found["u_now"], found["u_then"]) == (0.0561, 0.0123)
     assert (found["u_epsilon_gamma_direct"], found["u_epsilon_gamma_joint"]) == (0.0561, 0.0263)
     assert [run["name"] for run in found["runs"]] == ["camber-zero-1400N", "coupled-1400N-10deg"]
     first, second = found["runs"]

@@ -17,11 +17,10 @@ from small_rigs import LOADS, SAMPLE, built, disc, truth
 from mffit.cli import main
 from mffit.effects import CATALOG
 from mffit.errors import InputError
+from mffit.pipeline.measuring import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
-from mffit.pipeline.refining import finite_spin_bias
 from mffit.planning import ADDITIONS, addition_named, read_goal, wording
-from mffit.planning.knowledge import Knowledge
-from mffit.planning.outlook import Outlook
+from mffit.planning.prospect import Prospect
 from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
@@ -49,13 +48,14 @@ def result(content, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def knowledge(result):
-    return Knowledge(
-        result.config,
-        result.points,
-        result.measured,
-        result.fit,
-        [EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]],
-    )
+    return prospect_of(result, EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"])
+
+
+def prospect_of(result, *effects):
+    def direct(*_):
+        raise AssertionError("the direct method was asked")
+
+    return Prospect(result.config, result.points, result.measured, result.fit, direct, effects)
 
 
 def run_of(result, kind, load=1400):
@@ -96,7 +96,6 @@ SETTLED = {
     "small-camber": ("camber-stiffness",),
     "camber-zero": ("camber-misalignment", "camber-reduction"),
     "sideslip-zero": ("sideslip-misalignment", "ply-steer"),
-    "revolution": ("camber-reduction",),
     "backward-camber": ("loadcell-offset-mz", "spin-trail-loss"),
     "flipped": ("conicity", "crosstalk-fz-fy", "residual-torque"),
     "sideslip": ("curvature-asymmetry",),
@@ -138,18 +137,16 @@ def test_an_addition_settles_what_it_names(result, addition):
         e.id: [EFFECTS[name] for name in e.confusable_with if len(EFFECTS[name].free) == 1] for e in effects
     }
     everything = {e.id: e for e in (*effects, *(r for rows in rivals.values() for r in rows))}
-    knowledge = Knowledge(
-        result.config, result.points, result.measured, result.fit, list(everything.values())
-    )
+    knowledge = prospect_of(result, *everything.values())
     runs = [run for run in candidates(result.config, result.points) if run.addition is addition]
-    assert runs or addition.id == "revolution"  # the rig of this campaign has one
-    for effect in effects if runs else ():
+    assert runs
+    for effect in effects:
         name = effect.free[0].name
         if addition.declares and effect.kind == "rig":
             before, after = (knowledge.posterior(more, FREE).stderr[name] for more in ([], runs))
         else:
-            before = knowledge.u_of_effect([], effect, rivals[effect.id])
-            after = min(knowledge.u_of_effect([run], effect, rivals[effect.id]) for run in runs)
+            before = knowledge.u_of_effect([], effect, *rivals[effect.id])
+            after = min(knowledge.u_of_effect([run], effect, *rivals[effect.id]) for run in runs)
         assert after < (11.0 / 12.0) * before, effect.id
 
 
@@ -162,14 +159,14 @@ def test_additions_are_looked_up_by_id():
 
 def test_no_run_on_one_rig_separates_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
     ply, axis = EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]
-    before = knowledge.u_of_effect([], ply, [axis])
+    before = knowledge.u_of_effect([], ply, axis)
     for kind in ("zeros", "sideslip"):
-        assert knowledge.u_of_effect([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
+        assert knowledge.u_of_effect([run_of(result, kind)], ply, axis) == pytest.approx(before, rel=0.05)
     for kind in ("other-side", "second-radius"):  # a new set-up: the mean of two independent zeros
-        two = knowledge.u_of_effect([run_of(result, kind)], ply, [axis])
+        two = knowledge.u_of_effect([run_of(result, kind)], ply, axis)
         assert two == pytest.approx(before / math.sqrt(2.0), rel=0.05)
     zero = run_of(result, "sideslip-zero")
-    assert knowledge.u_of_effect([zero], ply, [axis]) < 0.7 * before
+    assert knowledge.u_of_effect([zero], ply, axis) < 0.7 * before
 
 
 @pytest.fixture(scope="module")
@@ -214,9 +211,7 @@ def test_the_promise_is_met_within_a_fifth_on_the_virtual_rig(result, plan, long
     stated = longer.measured.epsilon_gamma_debiased
     assert stated.u == pytest.approx(plan.then, rel=0.2)
     assert abs(stated.value - truth()["PECP1"]) < 3.0 * plan.then
-    of_joint = Knowledge(result.config, result.points, result.measured, result.fit).posterior(
-        [plan.steps[0].run], held={"PECP1": stated.u}
-    )
+    of_joint = prospect_of(result).posterior([plan.steps[0].run], held={"PECP1": stated.u})
     same = {name: name for name in ("PKY6", "QDZ1", "PDY1", "F0_N@right", "gamma_0_deg@right")}
     of_first_setup = {f"{name}@left": name for name in ("F0_N", "gamma_0_deg")}
     for name, planned in (same | of_first_setup).items():
@@ -259,11 +254,8 @@ def test_a_file_with_eps_gamma_of_the_joint_fit_has_the_uncertainty_of_that_fit(
     spin = result.config.spin.model_copy(update={"pecp1": "model"})
     config = result.config.model_copy(update={"spin": spin})
 
-    def direct(*_):
-        raise AssertionError("the direct method was asked")
-
-    goal = read_goal("PKY6", on_disc=True)
-    found = Outlook(config, result.points, result.measured, result.fit, goal, direct).u([])
+    prospect = prospect_of(dataclasses.replace(result, config=config))
+    found = prospect.u_of(read_goal("PKY6", on_disc=True))([])
     assert found == pytest.approx(knowledge.posterior([], FREE).stderr["PKY6"], rel=1e-6)
     assert found > knowledge.posterior([], held={"PECP1": 0.0}).stderr["PKY6"]
 
@@ -282,8 +274,8 @@ def test_sheets_are_in_the_rigs_axes_and_their_path_is_declared(result, plan):
 
 def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result):
     """A second [rig] table would be a TOML error."""
-    config = result.config.model_copy(update={"rolling_radius": ()})
-    runs = candidates(config, result.points, 0.3)
+    config = result.config
+    runs = candidates(config, result.points)
     assert {run.addition for run in runs} == set(ON_DISCS)
     read = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
     assert {row["file"] for row in read["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
@@ -309,7 +301,7 @@ def test_a_band_is_not_called_a_standard_uncertainty(plan):
     [
         ("PKY66", "did you mean PKY6"),
         ("PCFY3", "recordings of steps, which a plan does not propose"),
-        ("tie:rain", "not an effect that can be tied"),
+        ("tie:ply-steer", "neither a goal of a plan nor a coefficient"),
         ("bands:RL", "neither a goal of a plan nor a coefficient"),
     ],
 )

@@ -168,18 +168,6 @@ def test_samples_without_slip_are_not_taken_for_free_rolling(configured):
     assert np.max(np.abs(found.points.Fx - truth)) < 60.0
 
 
-def test_a_recording_that_begins_cold_is_said(configured):
-    """Sweeps of one sideslip are compared; the warmer ones at another are no evidence."""
-    table = drive_recording(sideslips=(0.0, -3.0), cambers=(0.0, 2.0, 4.0, 6.0))
-    rows = np.arange(len(table)) // 700  # samples of a sweep
-    table["TSTC"] += np.where(rows < 12, 0.0, 4.0)
-    said = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
-    assert not said
-    table["TSTC"] -= np.where(rows < 3, 7.0 - rows, 0.0)
-    (sentence,) = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
-    assert "53 to 55 degC in the first 3 sweeps and 60 degC in later sweeps" in sentence
-
-
 def test_slip_against_free_rolling_is_said_and_left_alone(plain):
     (sentence,) = [note for note in plain.notes if "SL is against free rolling" in note]
     assert float(sentence.split("within ")[1].split()[0]) < 0.0006

@@ -121,23 +121,6 @@ def test_the_zero_is_where_the_force_vanishes():
     assert np.isnan(zero_of_upright(points.select(np.arange(2))))
 
 
-def test_files_of_one_campaign_are_one_pattern(tmp_path):
-    copies = [Path(shutil.copy(path, tmp_path)) for path in BELT]
-    init_from(copies, tmp_path / "p", unloaded_radius=0.2992, nominal_load=1400.0, disc=None)
-    text = (tmp_path / "p" / "tyre.toml").read_text(encoding="utf-8")
-    assert text.count("[[sweep]]") == 1
-    assert f'file = "../sideslip_*.csv"  # {len(BELT)} files' in text
-    assert len(configuration.load(tmp_path / "p" / "tyre.toml").sweep) == len(BELT)
-    assert text.count("no time: each") == 1
-
-
-def test_a_pattern_takes_no_other_file(tmp_path):
-    copies = [Path(shutil.copy(path, tmp_path)) for path in BELT]
-    init_from(copies[1:], tmp_path / "p", unloaded_radius=0.2992, nominal_load=1400.0)
-    found = configuration.load(tmp_path / "p" / "tyre.toml")
-    assert sorted(Path(sweep.file).name for sweep in found.sweep) == sorted(path.name for path in copies[1:])
-
-
 def test_files_of_two_directions_are_named_one_by_one(tmp_path):
     files = [
         *DISC[:1],

@@ -13,7 +13,7 @@ from mffit.errors import InputError
 from mffit.pipeline import init_from
 from mffit.points.loading import read
 from mffit.recordings import sniff
-from mffit.recordings.summary import _numbers, apart
+from mffit.recordings.summary import apart
 
 SAMPLES = Path(__file__).parents[3] / "samples" / "flat-track"
 RUNS = {14: "sideslip_900N_0deg", 15: "sideslip_1400N_0deg", 16: "sideslip_1400N_10deg"}
@@ -46,15 +46,6 @@ def test_a_summary_that_agrees_changes_nothing(recordings):
     alone = sniff(recordings)
     summarised(recordings, GOOD)
     assert sniff(recordings).reading.warnings == alone.reading.warnings
-
-
-def test_a_set_point_that_the_recording_does_not_hold_is_named_with_its_line(recordings):
-    summarised(recordings, [*GOOD[:1], "15;H 17;200/472;0;36.3;good;", "16;H 17;315;20;36.3;good;"])
-    (load, camber) = sniff(recordings).reading.warnings[-2:]
-    assert load.startswith(
-        "summary.csv, line 4: load 200, 472 lb are named for B1320run15.csv, which holds 1400 N"
-    )
-    assert "line 5: camber 20 is named for B1320run16.csv, which holds 10" in camber
 
 
 def test_a_bad_run_is_excluded_in_the_project_with_the_reason(recordings, tmp_path):
@@ -97,7 +88,6 @@ def test_a_summary_among_the_files_is_no_recording(recordings):
         ("B1320run15.csv", 4),
         ("B1320run16.csv", 5),
     ]
-    assert found.rows[0].set_points["p_kPa"] == (36.3,)
 
 
 @pytest.mark.parametrize(
@@ -113,15 +103,6 @@ def test_a_summary_among_the_files_is_no_recording(recordings):
 def test_other_files_beside_the_recordings_are_ignored(recordings, text):
     (recordings[0].parent / "other.csv").write_text(text, encoding="latin-1")
     assert apart(recordings) == (recordings, ())
-
-
-@pytest.mark.parametrize(
-    ("cell", "points"),
-    [("50, 150, 200", (50.0, 150.0, 200.0)), ("2,5; 4", (2.5, 4.0)), ("12/10/14", (12.0, 10.0, 14.0)),
-     ("50,150,200", (50.0, 150.0, 200.0)), ("2,5", (2.5,)), ("-", ()), (14.0, (14.0,))],
-)  # fmt: skip
-def test_set_points_of_a_cell(cell, points):
-    assert tuple(_numbers(cell)) == points
 
 
 def test_a_workbook_with_runs_by_file_name(recordings):

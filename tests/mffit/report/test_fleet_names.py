@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from mffit.report.figures.fleet import epsilon_of_all, numbers_of_all
+from mffit.report.fleet import epsilon_of_all, numbers_of_all
 from tir import Quantity
 
 LONG = [f"motorcycle-190-55-{k}" for k in range(4)]

@@ -15,7 +15,7 @@ from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.effects import CATALOG
 from mffit.report import constants, style, text, write_diagnosis
-from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
+from mffit.report.diagnosis_view import view_of
 from mffit.report.figures import gap
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
 
@@ -105,7 +105,8 @@ def test_maps_before_and_after_share_one_scale(misaligned):
     view = view_of(misaligned)
     sheet = gap.residuals_before_after(view)
     assert len(sheet.panels) == 2 * len(view.channels) * len(view.conditions)
-    assert {panel.series[0].limit for panel in sheet.panels} == {sheet.scale.limit}
+    assert sheet.scale.limit == gap.colour_limit(view.channels)
+    assert all(panel.series[0].shade is not None for panel in sheet.panels)
 
 
 def test_evidence_ranks_the_named_effect_first(misaligned):
@@ -118,10 +119,14 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIED_EVIDENCE)
-    step = RankedStep(
-        beside=(), candidates=tuple(Candidate(name=f"{g}", kind="rig", gain=g) for g in gains), threshold=5.0
+    step = misaligned.steps[0]
+    before, trials = step.before, step.trials
+    trials = tuple(
+        dataclasses.replace(trial, log_evidence=before.log_evidence + gain)
+        for trial, gain in zip(trials, gains, strict=False)
     )
-    panel = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).panels[0]
+    step = dataclasses.replace(step, trials=trials, threshold=5.0)
+    panel = gap.evidence(view_of(dataclasses.replace(misaligned, steps=(step,)))).panels[0]
     best, behind = panel.notes
     assert best.text == "best"
     assert behind.colour == (style.INK if tied else style.MUTED)

@@ -7,8 +7,7 @@ import pytest
 from report_toys import TRUE, made_points, programme
 
 import tir
-from mffit.report.curves import curves
-from mffit.report.lines import model_lines
+from mffit.report.curves import curves, model_lines
 from mffit.rig import Simulation
 
 
@@ -28,7 +27,7 @@ def drawn():
 def test_line_meets_the_model_at_both_ends_of_every_curve(drawn):
     points, found, lines, model = drawn
     for curve in found:
-        line, ends = lines[curve.key], curve.index[[0, -1]]
+        line, ends = lines[curve], curve.index[[0, -1]]
         assert line.x[[0, -1]] == pytest.approx(np.degrees(getattr(points, curve.over)[ends]))
         assert line.raw["Fy"][[0, -1]] == pytest.approx(model.Fy[ends])
         assert line.raw["Mz"][[0, -1]] == pytest.approx(model.Mz[ends])
@@ -37,7 +36,7 @@ def test_line_meets_the_model_at_both_ends_of_every_curve(drawn):
 def test_even_part_of_a_pure_sweep_is_the_mean_of_its_two_branches(drawn):
     _, found, lines, _ = drawn
     for curve in (c for c in found if c.held == 0.0):
-        line = lines[curve.key]
+        line = lines[curve]
         for name in ("Fy", "Mz"):
             assert line.even[name] == pytest.approx(0.5 * (line.raw[name] + line.raw[name][::-1]), abs=1e-9)
 

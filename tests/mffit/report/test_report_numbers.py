@@ -12,7 +12,7 @@ import pytest
 
 from mffit.report import constants, page
 from mffit.report.build_view import view_of
-from mffit.report.drawing.records import Axis, ErrorBars, Look, Map, Panel, Sheet, with_shorter_series
+from mffit.report.drawing.records import Look, Panel, Sheet, Trace, with_shorter_series
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
 
@@ -57,9 +57,9 @@ def test_a_map_gives_the_value_of_every_colour(view):
 
 def test_a_long_series_is_drawn_at_evenly_spaced_points_and_the_picture_says_so():
     x = np.arange(95.0)
-    bars = ErrorBars(name="points", x=x, y=x**2, u=np.full(95, 3.0), look=Look(marker="o"))
-    few = Map(name="few", x=x[:9], y=x[:9], values=x[:9], limit=9.0)
-    sheet = Sheet(rows=[[Panel(x=Axis(), y=Axis(), series=[bars, few])]], height=1.0)
+    bars = Trace(name="points", x=x, y=x**2, half=np.full(95, 3.0), look=Look(marker="o"))
+    few = Trace(name="few", x=x[:9], y=x[:9], shade=x[:9], look=Look(marker="s"))
+    sheet = Sheet(rows=[[Panel(series=[bars, few])]], height=1.0)
     shorter = with_shorter_series(sheet, 10)
     drawn, untouched = shorter.panels[0].series
     assert list(drawn.x) == list(x[::10])

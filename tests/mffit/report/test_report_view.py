@@ -10,9 +10,8 @@ import pytest
 from report_toys import TRUE, R, made_points, made_result, programme
 
 import tir
-from mffit.report.build_view import coefficient_rows, view_of
-from mffit.report.curves import curves
-from mffit.report.lines import model_lines
+from mffit.report.build_view import view_of
+from mffit.report.curves import curves, model_lines
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
@@ -24,16 +23,16 @@ def test_line_includes_the_faults_that_are_known():
     found = curves(points)
     read, lines = rig.readings(points), model_lines(rig, points, found)
     for curve in found:
-        assert lines[curve.key].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
+        assert lines[curve].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
 
 
 def test_place_between_the_bounds(result):
-    rows = {row.name: row for row in coefficient_rows(result.fit.coefficients)}
+    rows = {row.known.name: row for row in view_of(result).rows}
     row = rows["PKY1"]
-    row = dataclasses.replace(row, lower=-30.0, upper=-10.0)
     for value, place in ((-30.0, 0.0), (-25.0, 0.25), (-10.0, 1.0), (-40.0, 0.0), (0.0, 1.0)):
-        assert dataclasses.replace(row, value=value).place == pytest.approx(place)
-    assert dataclasses.replace(row, lower=None).place is None
+        found = dataclasses.replace(row.found, value=value, bounds=(-30.0, -10.0))
+        assert row._replace(found=found).place == pytest.approx(place)
+    assert rows["PKY1"]._replace(known=dataclasses.replace(row.known, lower=None)).place is None
     assert [name for name, row in rows.items() if row.held] == ["QBZ1", "PHY2"]
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import tir
-from mffit.diagnosis.campaigns import SURFACE
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.points import make_points
 from mffit.rig import Simulation
@@ -78,7 +77,7 @@ def by_the_virtual_rig(tyre, s: Settings, **faults):
     return steady(Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0), s)
 
 
-FREED = {name for nuisance in NUISANCES for name in nuisance.numbers} | {SURFACE}
+FREED = {name for nuisance in NUISANCES for name in nuisance.numbers}
 STEADY = [error.name for error in RIG_ERRORS if error.name != "relaxation_m"]
 
 

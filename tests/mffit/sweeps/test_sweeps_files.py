@@ -261,12 +261,6 @@ def test_sae_loads_may_have_either_sign(project):
     assert np.all(found.Fz > 0.0)
 
 
-def test_a_single_file_is_read_without_a_configuration(project):
-    path = project.write()
-    found = sweeps.load_file(project.folder / NAME, axes="adapted-sae").sweeps[0]
-    np.testing.assert_array_equal(found.Fy, -sweep_named(load(path), NAME).Fy)
-
-
 def with_uncertainties(project, *u):
     """The sweep with ``u_Fy_N``: the given values in its first rows, 6 N in all others."""
     table = project.tables[NAME]

@@ -9,8 +9,7 @@ import pytest
 
 import mffit
 import tir
-from mffit.viewer.controls import CONTROLS
-from mffit.viewer.panels import OUTPUTS, PANELS
+from mffit.viewer.controls import CONTROLS, OUTPUTS, PANELS
 from tests.browser import console_errors, opened
 from tir.codegen.program import INPUTS, Switches, trace
 

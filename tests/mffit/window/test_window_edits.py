@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
 from mffit.window.edits import EDITS, free, hold, leave_out, limit, start, take_back
-from mffit.window.project_file import ProjectFile
+from mffit.window.session import ProjectFile
 
 TEXT = """# the front tyre
 [tyre]

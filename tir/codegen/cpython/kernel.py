@@ -131,11 +131,6 @@ def load(kind: str, switches: Switches) -> Kernel:
     return Kernel(definition, engine, preparation_of(switches, Forces._fields))
 
 
-def is_cached(kind: str, switches: Switches) -> bool:
-    """Whether the kernel need not be compiled; llvmlite must be there."""
-    return _place(kind, switches).is_file()
-
-
 def _place(kind: str, switches: Switches) -> Path:
     return cache_folder() / f"{'_'.join([kind, *(word for word, on in switches._asdict().items() if on)])}.o"
 

@@ -1,0 +1,190 @@
+"""`mffit spin`, `align`, `diagnose`, `compare`, `plan` and `predict`: questions to points and builds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from mffit.cli.console import Voice, voiced
+from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
+from mffit.errors import InputError
+
+
+@click.command()
+@tyre_toml
+@out_option("Folder to write to [default: out/ beside TYRE_TOML].")
+@voiced
+def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
+    """Measure eps_gamma directly.
+
+    Checks the alignment and applies the direct method, without a fit; prints eps_gamma with its uncertainty budget. Exit code 3
+    if the result is not to be trusted.
+    """
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    out = out or tyre_toml.parent / "out"
+    with voice.progress() as show:
+        show("measuring")
+        measured = pipeline.spin(tyre_toml, out)
+    voice.say(text.spin_summary(measured))
+    voice.warn(measured.warnings)
+    voice.written(out, "spin.json")
+    voice.give(lambda: as_json.spin(measured))
+    if not measured.trusted:
+        voice.distrust("the measurement is not to be trusted: see above")
+
+
+@click.command()
+@click.argument("source", type=PATH, metavar="TYRE_TOML|FILE.csv")
+@click.option(
+    "--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a CSV file without a tyre.toml."
+)
+@path_centre
+@click.option("--resolution", type=float, metavar="DEG", help="Smallest step of the steering axis.")
+@voiced
+def align(
+    source: Path, axes: str | None, path_centre: str | None, resolution: float | None, voice: Voice
+) -> None:
+    """Compute the next steering correction.
+
+    Uses forward and backward points at zero angles; the correction is in degrees of the rig's axis.
+    """
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    if source.suffix != ".toml" and (axes is None or path_centre is None):
+        raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
+    finest = {} if resolution is None else {"resolution_deg": resolution}
+    alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
+    voice.say(text.alignment_table(alignment))
+    voice.warn(alignment.warnings)
+    voice.give(lambda: as_json.alignment(alignment))
+
+
+@click.command()
+@tyre_toml
+@click.option(
+    "--model",
+    type=PATH,
+    help="The simulation's .tir [default: that of the last build].",
+)
+@out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
+@click.option(
+    "--repair-all", is_flag=True, help="Correct the model for uncertain effects too (confidence below 50 %)."
+)
+@voiced
+def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: bool, voice: Voice) -> None:
+    """Find effects that a simulation lacks.
+
+    Shows where simulation and measurement disagree, names the effects that explain it, and corrects the model.
+    """
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    out = out or tyre_toml.parent / "out" / "diagnosis"
+    with voice.progress() as show:
+        diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
+    voice.say(text.diagnosis_summary(diagnosis))
+    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis), "corrected.toml")
+    voice.give(lambda: as_json.diagnosis(diagnosis))
+    if not diagnosis.trusted:
+        voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")
+
+
+@click.command()
+@click.argument("first", type=PATH, metavar="A.tir|FOLDER")
+@click.argument("second", type=PATH, metavar="B.tir|FOLDER|TYRE_TOML")
+@out_option("Folder for compare.html and compare.json [default: nothing is written].")
+@click.option(
+    "--turn-slip",
+    type=click.Choice(["on", "off"]),
+    help="Evaluate both files with turn slip on or off [default: each as intended].",
+)
+@voiced
+def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, voice: Voice) -> None:
+    """Compare two property files, a file and data, or two builds.
+
+    Ranks the differences of curves, stiffnesses, peaks, trail and eps_gamma.
+    """
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    both = None if turn_slip is None else turn_slip == "on"
+    with voice.progress() as show:
+        found = pipeline.compare(first, second, turn_slip=both, out=out, progress=show)
+    voice.say(text.comparison_table(found))
+    voice.written(out, "compare.html", "compare.json")
+    voice.give(lambda: as_json.comparison(found))
+
+
+@click.command()
+@tyre_toml
+@click.option(
+    "--goal",
+    help="What to make more certain: eps_gamma, eps_gamma:joint, bands, bands:Mz, or file "
+    "[default: the source of PECP1].",
+)
+@click.option("--coefficient", metavar="NAME", help="Make this coefficient more certain instead.")
+@click.option(
+    "--runs", type=click.IntRange(1, 10), default=3, show_default=True, help="Largest number of runs."
+)
+@click.option(
+    "--without", multiple=True, metavar="KIND", help="Kind of run that the rig cannot make; may be repeated."
+)
+@out_option("Folder to write to [default: out/plan/ beside TYRE_TOML].")
+@voiced
+def plan(
+    tyre_toml: Path,
+    goal: str | None,
+    coefficient: str | None,
+    runs: int,
+    without: tuple[str, ...],
+    out: Path | None,
+    voice: Voice,
+) -> None:
+    """Plan the most informative further runs.
+
+    Shows what the present sweeps identify, and the shortest list of runs that would add most.
+    """
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    if goal and coefficient:
+        raise InputError("--goal and --coefficient exclude each other; give only one")
+    out = out or tyre_toml.parent / "out" / "plan"
+    with voice.progress() as show:
+        found = pipeline.plan(
+            tyre_toml, coefficient or goal, runs=runs, without=without, out=out, progress=show
+        )
+    voice.say(text.plan_summary(found))
+    inside = "sheets to fill in" if found.points else "what changes in tyre.toml"
+    voice.written(out, "plan.html", "plan.json", *([f"runs ({inside})"] if found.steps else []))
+    voice.give(lambda: as_json.plan(found))
+
+
+@click.command()
+@click.argument("folder", type=PATH, metavar="DIR")
+@click.argument("conditions", type=PATH, metavar="CONDITIONS.csv")
+@out_option("File to write.", is_file=True, required=True)
+@voiced
+def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
+    """Predict forces at conditions, from the folder of a build.
+
+    Writes the force of the property file and the best estimate, with what the formula misses added; both with how far a new
+    run may lie from them (k = 1). Conditions and forces are in ISO-W.
+    """
+    from mffit import pipeline
+    from mffit.prediction import write_table
+    from mffit.report import text
+
+    found = pipeline.predict(folder, conditions)
+    write_table(found, out, conditions)
+    voice.say(text.prediction_summary(found, out))
+    voice.give(lambda: {"written": [str(out)], "conditions": len(found)})

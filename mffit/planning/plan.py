@@ -1,0 +1,236 @@
+"""What the sweeps identify, and the shortest list of runs towards a goal: each step takes the run that lowers u most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from mffit.brief import Brief
+from mffit.config import Config
+from mffit.diagnosis.constants import SEPARATING_CHI2
+from mffit.diagnosis.needs import missing
+from mffit.effects import CATALOG, Effect
+from mffit.fit import FitResult
+from mffit.fit.coverage import StageCoverage
+from mffit.measured import Contribution, Measured, adding_to_camber
+from mffit.planning import constants
+from mffit.planning.additions import Addition
+from mffit.planning.goals import Goal
+from mffit.planning.prospect import Direct, Prospect
+from mffit.planning.runs import PlannedRun, candidates
+from mffit.points import Points
+from mffit.progress import Progress, silent
+
+U = Callable[[Sequence[PlannedRun]], float]
+"""The uncertainty of the goal after some runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """Two effects and how well the sweeps separate them."""
+
+    effect: str  #: id
+    other: str  #: id
+    chi2: float  #: expected chi-squared between them for an effect of the usual size
+
+    @property
+    def told(self) -> bool:
+        """Whether the sweeps separate them."""
+        return self.chi2 >= SEPARATING_CHI2
+
+
+@dataclass(frozen=True, slots=True)
+class Identified:
+    """What the present sweeps identify."""
+
+    cover: tuple[StageCoverage, ...]  #: per stage: what is freed, what is held and why
+    from_prior: tuple[str, ...]  #: freed coefficients that the prior determines more than the data
+    correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients and their correlation
+    ties: tuple[Tie, ...]
+    budget: tuple[Contribution, ...]  #: of eps_gamma by the direct method; empty on a flat track
+    unseen_skew: float | None = None
+    """Change of eps_gamma by a camber skew of 1 deg, where no backward camber sweep shows the skew; else None."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A run made alone, and the uncertainty that it would leave."""
+
+    run: PlannedRun
+    u: float  #: of the goal, in its unit
+
+
+@dataclass(frozen=True, slots=True)
+class PlanStep:
+    """One run of the list."""
+
+    run: PlannedRun
+    before: float  #: uncertainty of the goal without it
+    after: float  #: with it
+    direct: float | None  #: u(eps_gamma) of the direct method after it; None without a disc
+    joint: float | None  #: u(PECP1) of the joint fit of tyre and rig after it
+
+
+@dataclass(frozen=True, slots=True)
+class Plan(Brief):
+    """The answer of ``mffit plan``."""
+
+    config: Config
+    goal: Goal
+    identified: Identified
+    now: float  #: present uncertainty of the goal; infinite if it is not measured
+    direct_now: float | None
+    joint_now: float | None
+    steps: tuple[PlanStep, ...]  #: the list, in the order in which the runs are made
+    trials: tuple[Trial, ...]  #: every candidate made alone, best first
+
+    @property
+    def then(self) -> float:
+        """Uncertainty of the goal once all runs of the list are made."""
+        return self.steps[-1].after if self.steps else self.now
+
+    @property
+    def points(self) -> int:
+        """Points of the whole list."""
+        return sum(step.run.cost for step in self.steps)
+
+
+def plan(
+    config: Config,
+    points: Points,
+    measured: Measured,
+    found: FitResult,
+    goal: Goal,
+    direct: Direct,
+    *,
+    most: int = 3,
+    without: Collection[Addition] = (),
+    progress: Progress = silent,
+) -> Plan:
+    """What these points identify, and the runs that lower the goal's uncertainty most.
+
+    Parameters
+    ----------
+    config : what is declared of tyre and rig
+    points : the programme so far, with readings
+    measured, found : the build of these points
+    goal : the number whose uncertainty is to fall
+    direct : the direct method's own u(eps_gamma), as a build would state it
+    most : largest number of runs in the list
+    without : additions that this rig cannot make
+    progress : called with a sentence before each step
+    """
+    pairs = list(tied_pairs(points))
+    effects = {effect.id: effect for pair in pairs for effect in pair}
+    prospect = Prospect(config, points, measured, found, direct, list(effects.values()))
+    u = prospect.u_of(goal)
+    possible = [run for run in candidates(config, points) if most and run.addition not in without]
+    progress(f"trying {len(possible)} runs one by one")
+    trials = sorted((Trial(run, u([run])) for run in possible), key=lambda trial: trial.u)
+    chosen = _without_superfluous(u, _chosen(u, possible, most, progress))
+    after = [chosen[:k] for k in range(len(chosen) + 1)]
+    return Plan(
+        config=config,
+        goal=goal,
+        identified=_identified(prospect, pairs),
+        now=u([]),
+        direct_now=prospect.direct([]),
+        joint_now=prospect.joint([]),
+        steps=tuple(
+            PlanStep(run, u(before), u(then), prospect.direct(then), prospect.joint(then))
+            for run, before, then in zip(chosen, after, after[1:], strict=False)
+        ),
+        trials=tuple(trials),
+    )
+
+
+def tied_pairs(points: Points) -> Iterator[tuple[Effect, Effect]]:
+    """Pairs of effects that may be confused with each other and are visible in the data, each with a single number."""
+    by_id = {
+        e.id: e for e in CATALOG if len(e.free) == 1 and e.kind != "environment" and not missing(e, points)
+    }
+    seen = set()
+    for effect in by_id.values():
+        for other in effect.confusable_with:
+            pair = frozenset((effect.id, other))
+            if other in by_id and pair not in seen:
+                seen.add(pair)
+                yield effect, by_id[other]
+
+
+def _identified(prospect: Prospect, pairs: Sequence[tuple[Effect, Effect]]) -> Identified:
+    """Coverage, correlations, ties and budget of a build."""
+    found, measured = prospect.found, prospect.measured
+    staged = {name for row in found.coverage for name in row.free}
+    correlated: dict[frozenset[str], tuple[str, str, float]] = {}
+    for name, row in found.coefficients.items():
+        if row.correlated_with and {name, row.correlated_with} <= staged:
+            pair = (name, row.correlated_with, row.correlation)
+            correlated.setdefault(frozenset(pair[:2]), pair)
+    return Identified(
+        cover=found.coverage,
+        from_prior=tuple(
+            n for n, row in found.coefficients.items() if row.status == "regularised" and n in staged
+        ),
+        correlated=tuple(correlated.values()),
+        ties=tuple(
+            Tie(a.id, b.id, (prospect.usual_size(a) / prospect.u_of_effect([], a, b)) ** 2) for a, b in pairs
+        ),
+        budget=measured.budget,
+        unseen_skew=_unseen_skew(measured),
+    )
+
+
+def _unseen_skew(measured: Measured) -> float | None:
+    """Change of eps_gamma by 1 deg of camber skew; None if sweeps in both directions measure it."""
+    sources = {declared.source for _, declared in adding_to_camber()}
+    line = next((line for line in measured.budget if line.source in sources and line.u), None)
+    if line is None or measured.camber_skew is not None:
+        return None
+    return abs(line.contribution / line.u)
+
+
+def _chosen(u: U, possible: Sequence[PlannedRun], most: int, progress: Progress) -> list[PlannedRun]:
+    """Up to ``most`` runs, in the order in which they were found."""
+    chosen: list[PlannedRun] = []
+    while len(chosen) < most:
+        progress(f"looking for run {len(chosen) + 1}")
+        left = [run for run in possible if run not in chosen]
+        more = _best(u, chosen, [[run] for run in left])
+        if not more and len(chosen) + 1 < most:  # some runs help only in pairs, like pressures at two loads
+            pairs = [
+                pair
+                for pair in combinations(left, 2)
+                if pair[0].addition is pair[1].addition and pair[0].load != pair[1].load
+            ]
+            more = _best(u, chosen, pairs)
+        if not more:
+            break
+        chosen += more
+    return chosen
+
+
+def _best(
+    u: U, chosen: Sequence[PlannedRun], possible: Sequence[Sequence[PlannedRun]]
+) -> Sequence[PlannedRun]:
+    """The best choice of one or several runs to add; empty if none lowers the uncertainty enough."""
+    after = [u([*chosen, *more]) for more in possible]
+    if not min(after, default=float("inf")) < (1.0 - constants.WORTHWHILE_FALL) * u(chosen):
+        return ()
+    equally_good = [
+        (sum(run.cost for run in more), then, k)
+        for k, (more, then) in enumerate(zip(possible, after, strict=True))
+        if then <= (1.0 + constants.EQUALLY_GOOD) * min(after)
+    ]
+    return possible[min(equally_good)[2]]
+
+
+def _without_superfluous(u: U, chosen: Sequence[PlannedRun]) -> list[PlannedRun]:
+    """The list without runs whose information later runs supply as well."""
+    kept = list(chosen)
+    for run in chosen:
+        fewer = [other for other in kept if other is not run]
+        if fewer and u(fewer) <= (1.0 + constants.EQUALLY_GOOD) * u(kept):
+            kept = fewer
+    return kept

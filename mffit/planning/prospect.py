@@ -1,0 +1,347 @@
+"""The posterior of a build with the rows of further runs added: one linear model of every number of tyre and rig."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
+from mffit.effects import Effect
+from mffit.fit import FitResult, Posterior
+from mffit.fit.coverage import coverage
+from mffit.fit.posterior import beside_held, spread_through
+from mffit.fit.priors import scatter
+from mffit.fit.ranges import tested_ranges
+from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
+from mffit.least_squares import inverse
+from mffit.measured import Measured, alignment_verdict, measured_path_radius
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, Goal
+from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
+from mffit.points import Points, levels, main_pressure, make_points
+from mffit.points.points import concatenate
+from mffit.rig import Simulation
+from mffit.rig_errors import OF_RUN, ZEROS, error_of
+from mffit.scatter import rms
+from tir import Quantity
+
+PECP1 = "PECP1"
+
+
+class DirectU(NamedTuple):
+    """u(eps_gamma) of the direct method."""
+
+    stated: float  #: as a build states it
+    held: float  #: with which the fit holds PECP1
+
+
+Direct = Callable[[Config, Points], DirectU | None]
+"""The direct method on some points; None where it fails."""
+
+
+class Prospect:
+    """What a build of a longer programme would state, linearised at the present solution.
+
+    The build is assumed to free what its coverage allows, with the priors and weights of this build. ``effects`` are those of one
+    number that may be told apart.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        points: Points,
+        measured: Measured,
+        found: FitResult,
+        direct: Direct,
+        effects: Sequence[Effect] = (),
+    ) -> None:
+        assert found.search is not None
+        search = found.search
+        self.config, self.points, self.measured, self.found = config, points, measured, found
+        self.problem, self.hand = search.problem, search.hand
+        self.simulation = search.problem.simulation
+        self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
+        self._held_rig = search.held_rig.keys()
+        self._fitted = [n.name for n in search.numbers]
+        self._shown_now = self._shown([])
+        known = {n.name: n.spread for n in search.numbers} | {**search.held, **search.held_rig}
+        unseen = self._spread_of_unseen(known)
+        self.spread = unseen | known
+        self._new_zeros = self._zeros_of_new_setups()
+        self._usual = {e.free[0].name: self.usual_size(e) for e in effects}
+        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self._usual, *self._new_zeros]))
+        self._row = {name: k for k, name in enumerate(self.names)}
+        self._at = np.array([self.simulation.number(n, points) for n in self.names])
+        self._sigma = {channel: _usual(s) for channel, s in search.problem.sigma.items()}
+        if unseen:  # nothing is known of the noise of Fx: forces usually scatter alike
+            self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
+        self._base = _information(self.problem.free(self.names).linear(self._at).slope)
+        self._of_run: dict[str, np.ndarray] = {}
+        self._nominal = measured.nominal.load if measured.nominal else config.tyre.nominal_load
+        self._pressure = float(np.median(points.p[main_pressure(points)]))
+        outliers = np.isin(np.arange(len(points)), [o.row for o in found.outliers])
+        self._near = points.select(self._decides_epsilon(points) & ~outliers)
+        self._directly, self._known_directly = direct, dict[tuple[str, ...], DirectU | None]()
+
+    def posterior(
+        self,
+        runs: Sequence[PlannedRun],
+        free: Mapping[str, float] | None = None,
+        held: Mapping[str, float] | None = None,
+    ) -> Posterior:
+        """The posterior of a build with these runs.
+
+        ``free`` and ``held`` are spreads of numbers that the build would fit, or hold without letting the points inform them,
+        other than this build does.
+        """
+        free, held = free or {}, held or {}
+        spread = {**self._spread(runs), **free, **held}
+        names = [n for n in dict.fromkeys([*self._free(runs), *free]) if n not in held]
+        beside = {n: u for n, u in spread.items() if n not in names and math.isfinite(u)}
+        return self._solved(runs, names, spread, beside)
+
+    def u_of_effect(self, runs: Sequence[PlannedRun], effect: Effect, *rivals: Effect) -> float:
+        """u of an effect's number from the data alone, with the fitted numbers and its rival effects free."""
+        name, partners = effect.free[0].name, [e.free[0].name for e in rivals]
+        spread = self._usual | self._spread(runs)
+        spread |= {n: self._usual[n] for n in partners if n not in self.rig}
+        spread |= {PECP1: math.inf, name: math.inf}
+        names = list(dict.fromkeys([*self._free(runs), PECP1, *partners, name]))
+        return self._solved(runs, names, spread, {}).stderr[name]
+
+    def usual_size(self, effect: Effect) -> float:
+        """Usual size of an effect's number, 1 sigma."""
+        number = effect.free[0]
+        size = abs(self.simulation.number(number.name, self.points)) if number.relative else 1.0
+        return number.spread * size
+
+    def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
+        """Uncertainty of a goal in its unit after any runs; infinite if it is not measured at all."""
+        curves = self._curves_of(goal) if goal.kind in (BANDS, FILE) else None
+        known: dict[tuple[str, ...], float] = {}
+
+        def u(runs: Sequence[PlannedRun]) -> float:
+            if goal.kind in (EPSILON, JOINT):
+                found = self.direct(runs) if goal.kind == EPSILON else self.joint(runs)
+            else:
+                posterior = self.as_built(runs)
+                found = curves.band(posterior) if curves else posterior.stderr.get(goal.name)
+            return math.inf if found is None or not math.isfinite(found) else found
+
+        def once(runs: Sequence[PlannedRun]) -> float:
+            key = _key(runs)
+            if key not in known:
+                known[key] = u(runs)
+            return known[key]
+
+        return once
+
+    def joint(self, runs: Sequence[PlannedRun]) -> float | None:
+        """u(PECP1) as a free coefficient of the joint fit of tyre and rig; None if held by hand, or without a measured force."""
+        if not self.config.rig.on_disc or not self.rig or PECP1 in self.hand.held:
+            return None
+        return self._with_free_epsilon(runs).stderr[PECP1]
+
+    def direct(self, runs: Sequence[PlannedRun]) -> float | None:
+        """u(eps_gamma) that a build would state for the direct method."""
+        found = self._direct(runs)
+        return None if found is None else found.stated
+
+    def as_built(self, runs: Sequence[PlannedRun]) -> Posterior:
+        """The posterior with PECP1 as the file takes it: held by hand, from the direct method, or from the joint fit."""
+        by_hand = PECP1 in self.hand.held
+        if self.config.spin.pecp1 == "model" and self.config.rig.on_disc and not by_hand:
+            return self._with_free_epsilon(runs)
+        direct = None if by_hand else self._direct(runs)
+        return self.posterior(runs, held={PECP1: 0.0 if direct is None else direct.held})
+
+    def _with_free_epsilon(self, runs: Sequence[PlannedRun]) -> Posterior:
+        prior = self.hand.priors.get(PECP1)
+        return self.posterior(runs, free={PECP1: math.inf if prior is None else prior.spread})
+
+    def _direct(self, runs: Sequence[PlannedRun]) -> DirectU | None:
+        """The direct method on the present points and the predicted readings of the new ones, asked once."""
+        if not self.config.rig.on_disc:
+            return None
+        relevant = [r for r in runs if r.points is None or np.any(self._decides_epsilon(r.points))]
+        key = _key(relevant)
+        if key not in self._known_directly:
+            new = [self._with_readings(run.points, run) for run in relevant if run.points is not None]
+            declared = self._declared(relevant)
+            self._known_directly[key] = self._directly(declared, concatenate([self._near, *new]))
+        return self._known_directly[key]
+
+    def _decides_epsilon(self, points: Points) -> np.ndarray:
+        """Mask (n,) of the points from which the direct method reads eps_gamma at the nominal load."""
+        near = np.abs(np.log(points.Fz / self._nominal)) < levels.LOAD.tolerance
+        main = np.abs(points.p - self._pressure) < levels.PRESSURE.tolerance
+        deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
+        return deciding
+
+    def _declared(self, runs: Sequence[PlannedRun]) -> Config:
+        """The configuration once the rig has been measured as the runs demand."""
+        better = {key: value for run in runs for key, value in run.rig.items()}
+        return self.config.model_copy(update={"rig": self.config.rig.model_copy(update=better)})
+
+    def _channels_of(self, run: PlannedRun) -> tuple[str, ...]:
+        """Channels that a run measures: those of the programme, and what it adds."""
+        return tuple(c for c in self._sigma if c in (*self.problem.channels, *run.addition.measures))
+
+    def _with_readings(self, points: Points, run: PlannedRun) -> Points:
+        """The set-points of a run with the readings that the fitted rig would give."""
+        return points.replace(**self.simulation.readings(points, self._channels_of(run)))
+
+    def _spread_of_unseen(self, known: Mapping[str, float]) -> dict[str, float]:
+        """Standard deviation of the coefficients that only a run of longitudinal slip would free; empty once one was made."""
+        if self.config.rig.on_disc or "Fx" in self.problem.channels:
+            return {}
+        values, shown = self.found.tyre.values, self._shown(candidates(self.config, self.points))
+        return {
+            name: row.stderr
+            or scatter(name, float(values[name]), from_base=row.status == "base", curved=False)
+            for name, row in self.found.coefficients.items()
+            if name in shown and name not in known
+        }
+
+    def _shown(self, runs: Sequence[PlannedRun]) -> dict[str, None]:
+        """Coefficients that the coverage of a programme with some more runs allows to free, as keys."""
+        # Coverage asks only whether there are readings, not which.
+        new = [
+            run.points.replace(**dict.fromkeys(run.addition.measures, 0.0))
+            for run in runs
+            if run.points is not None
+        ]
+        cover = coverage(concatenate([self.points, *new]), self.config.tyre.side, self.hand.held)
+        return dict.fromkeys(name for row in cover for name in row.free)
+
+    def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
+        """What this build fitted, what more runs show beyond it, and their new zeros."""
+        beyond = [name for name in self._shown(runs) if name not in self._shown_now]
+        return list(dict.fromkeys([*self._fitted, *beyond, *self._new_of(runs)]))
+
+    def _zeros_of_new_setups(self) -> dict[str, float]:
+        """Prior spread of the zeros of set-ups that runs may add, by number."""
+        present, new = self.points.used_setups, new_setups(self.config, self.points)
+        if not self.rig or not new:
+            return {}
+        numbers = rig_numbers(self.config, self.measured, (*present, *new), self.problem.channels)
+        return {n.name: n.spread for n in numbers if n.name.partition(OF_RUN)[2] in new}
+
+    def _new_of(self, runs: Sequence[PlannedRun]) -> list[str]:
+        """Numbers of the zeros of the new set-ups that some runs are in."""
+        used = {name for run in runs if run.points is not None for name in run.points.used_setups}
+        return [name for name in self._new_zeros if name.partition(OF_RUN)[2] in used]
+
+    def _spread(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
+        """Prior spread of each number once the rig has been measured as the runs demand."""
+        row = self.measured.nominal
+        new = {name: self._new_zeros[name] for name in self._new_of(runs)}
+        if row is None or not any(run.rig for run in runs):
+            return {**self.spread, **new}
+        config = self._declared(runs)
+        R = measured_path_radius(config)
+        if R is not None:
+            row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
+        # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
+        misaligned = alignment_verdict(config, row).beyond
+        setups = tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)]))
+        mounts = [self.points.mount, *(run.points.mount for run in runs if run.points is not None)]
+        turned = len(np.unique(np.concatenate(mounts))) > 1
+        measured = replace(self.measured, nominal=row, misaligned=misaligned)
+        numbers = rig_numbers(config, measured, setups, self.problem.channels, turned=turned)
+        held = held_rig(config, setups, turned=turned)
+        found = {n.name: n.spread for n in numbers} | held
+        separated = self._held_rig - held.keys()
+        known = {name: u for name, u in self.spread.items() if name not in separated} | new
+        return known | {name: u for name, u in found.items() if name in (*self.spread, *new)}
+
+    def _added(self, run: PlannedRun) -> np.ndarray:
+        """Information of the rows of one run."""
+        if run.points is None:
+            return np.zeros_like(self._base)
+        if run.name not in self._of_run:
+            sigma = {c: np.full(run.cost, self._sigma[c]) for c in self._channels_of(run)}
+            points = self._with_readings(run.points, run)
+            seen = replace(self.problem, points=points, sigma=sigma, envelope=None, radii=())
+            slope = seen.free(self.names).linear(self._at).slope
+            if self._new_of([run]):  # zeros of its own instead of those without a set-up
+                slope[:, [self._row[e.name] for e in ZEROS if e.name in self.rig]] = 0.0
+            self._of_run[run.name] = _information(slope)
+        return self._of_run[run.name]
+
+    def _solved(
+        self,
+        runs: Sequence[PlannedRun],
+        free: Sequence[str],
+        spread: Mapping[str, float],
+        held: Mapping[str, float],
+    ) -> Posterior:
+        """Like :func:`mffit.fit.posterior.joint`, computed from the information matrix."""
+        information = self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
+        f, h = ([self._row[n] for n in names] for names in (free, held))
+        prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
+        covariance = inverse(information[np.ix_(f, f)] + prior)
+        return beside_held(free, covariance, held, information[np.ix_(f, h)])
+
+    def _curves_of(self, goal: Goal) -> _Curves:
+        """Curves over sideslip and camber at three loads on a straight path, and over slip where it counts."""
+        names = [n for n in self.names if error_of(n) is None]
+        tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
+        channels = [goal.name]
+        if goal.kind == FILE:
+            belt = () if self.config.rig.on_disc else ("Fx",)
+            channels = [c for c in ("Fx", "Fy", "Mx", "Mz") if c in (*belt, *self.problem.channels)]
+        driven = goal.kind == FILE or goal.name == "Fx" or not np.all(self.points.free_rolling)
+        forces, slopes = tyre.sensitivities(self._on_curves(driven=driven), names, channels)
+        size = {c: np.max(np.abs(forces[c])) if goal.kind == FILE else 1.0 for c in channels}
+        return _Curves(names, [slopes[c] / size[c] for c in channels])
+
+    def _on_curves(self, *, driven: bool) -> Points:
+        """Conditions of the curves; ``driven``: over slip too, without and with sideslip."""
+        tyre, tested = self.found.tyre, tested_ranges(swept(self.points))
+        loads = [tested["FZMIN"], float(tyre["FNOMIN"]), tested["FZMAX"]]
+        n = int(ANGLES_OF_A_CURVE)
+        steer, camber = (np.linspace(-tested[end], tested[end], n) for end in ("ALPMAX", "CAMMAX"))
+        none = np.zeros(n)
+        lines = [(steer, none, none), (none, camber, none)]
+        if driven:
+            drive = np.linspace(-1.0, 1.0, n) * largest_slip(self.points)
+            lines += [(none, none, drive), (none + 0.5 * tested["ALPMAX"], none, drive)]
+        alpha, gamma, kappa = (np.tile(np.concatenate(part), len(loads)) for part in zip(*lines, strict=True))
+        Fz = np.repeat(loads, len(lines) * n)
+        p, V = float(tyre["NOMPRES"]), float(tyre["LONGVL"])
+        return make_points(alpha, gamma, Fz, kappa=kappa, p=p, V=V, phi_t=0.0)
+
+
+class _Curves(NamedTuple):
+    """Curves of the tyre whose band is the goal."""
+
+    names: Sequence[str]  #: (k,) coefficients
+    slopes: Sequence[np.ndarray]  #: (n, k) by these, per channel; of several channels over the largest force
+
+    def band(self, posterior: Posterior) -> float:
+        """Half width of the 95 % band, rms."""
+        rows = [posterior.names.index(n) for n in self.names if n in posterior.names]
+        columns = [k for k, n in enumerate(self.names) if n in posterior.names]
+        covariance = posterior.covariance[np.ix_(rows, rows)]
+        spread = [rms(spread_through(slopes[:, columns], covariance)) for slopes in self.slopes]
+        return COVERAGE_FACTOR_95 * rms(np.array(spread))
+
+
+def _key(runs: Sequence[PlannedRun]) -> tuple[str, ...]:
+    return tuple(sorted(run.name for run in runs))
+
+
+def _information(slope: np.ndarray) -> np.ndarray:
+    slope = np.nan_to_num(slope)
+    information: np.ndarray = slope.T @ slope
+    return information
+
+
+def _usual(sigma: np.ndarray) -> float:
+    known = sigma[np.isfinite(sigma)]
+    return float(np.median(known)) if len(known) else math.inf
