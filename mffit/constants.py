@@ -42,6 +42,15 @@ STRAIGHT = Real(
     "deg",
     "Sideslip as read within which a wheel runs straight, and within which two angles are one level of a programme.",
 )
+LARGEST_CAMBER_REDUCTION = Real(
+    0.9,
+    "-",
+    "Largest eps_gamma that PECP2 may reach within the loads, or that zeros without camber sweeps may suggest; beyond it the "
+    "camber stiffness is wrong.",
+)
+VISIBLE_TEMPERATURE = Real(
+    3.0, "K", "Smallest difference of temperature whose effect exceeds the noise: grip changes by 1 %."
+)
 SLIP_BEYOND_THE_PEAK = Real(
     0.3, "-", "Longest slip at which files are compared or converted: well beyond the peak of every tyre."
 )

@@ -25,7 +25,6 @@ FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was sw
 
 # What the data must vary for an effect to be visible
 VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
-VISIBLE_TEMPERATURE = Real(3.0, "K", "Smallest range of temperature whose effect exceeds the noise.")
 VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
 DISTANCE_LIKE_TIME = Real(0.98, "-", "Correlation of distance and time above which wear looks like drift.")
 VISIBLE_RUNS = Count(3, "-", "Fewest runs that show a scatter of their zeros.")

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import VISIBLE_TEMPERATURE
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
@@ -59,7 +60,7 @@ MET: dict[str, Callable[[Points], bool]] = {
     "loads": lambda p: _varies(p.Fz, levels.LOAD),
     "pressures": lambda p: _varies(p.p, levels.PRESSURE),
     "moment": lambda p: bool(np.any(np.isfinite(p.Mz))),
-    "temperatures": lambda p: _spread(p.T) > constants.VISIBLE_TEMPERATURE,
+    "temperatures": lambda p: _spread(p.T) > VISIBLE_TEMPERATURE,
     "speeds": lambda p: _varies(p.V, levels.SPEED),
     "times": lambda p: _spread(p.t) > constants.VISIBLE_TIME,
     "distances": _distance_is_not_time,

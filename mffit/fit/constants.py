@@ -23,11 +23,6 @@ LEAST_SPREAD_BASE_FILE = Real(
 LEAST_SPREAD_DEFAULT = Real(
     0.1, "-", "Smallest standard deviation around the table's default, over the usual range."
 )
-LARGEST_CAMBER_REDUCTION = Real(
-    0.9,
-    "-",
-    "Largest PECP1 that zeros without camber sweeps may suggest; beyond it the camber stiffness is wrong.",
-)
 CONDITIONS_OF_A_MISFIT = Count(
     500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."
 )
@@ -179,7 +174,6 @@ SPIN_CORRECTION_OF_MODEL = Real(
 )
 
 # Numbers of the tyre's state and of the rig
-LEAST_TEMPERATURE_RANGE = Real(3.0, "K", "Temperatures that move by less say nothing beyond their noise.")
 LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the angle moving in either sense.")
 
 # Relaxation lengths from steps

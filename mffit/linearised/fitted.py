@@ -236,7 +236,9 @@ def _missed(alone: Mixed, rig: Sequence[Uncertain], given: Variances) -> np.ndar
     """
     functions = len(given.common)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
-    expected, spread = (np.array([getattr(number, name) for number in rig]) for name in ("expected", "spread"))
+    expected, spread = (
+        np.array([getattr(number, name) for number in rig]) for name in ("expected", "spread")
+    )
     columns = alone.common[:, functions:]
     model = replace(
         alone,

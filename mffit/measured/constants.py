@@ -25,7 +25,6 @@ SLOPE_WITHOUT_CUBIC = Real(
     0.05, "-", "Relative difference of shapes assumed where too few points near zero allow a cubic."
 )
 
-LARGEST_EPSILON = Real(0.9, "-", "PECP2 is not written if eps_gamma would reach this within the loads.")
 
 SPIN_LOSS = Real(
     0.03,
@@ -55,7 +54,4 @@ REST_OF_PLAY = Real(
     "-",
     "Standard uncertainty, over half the play, of sideslip zeros: where the moment changes sign, the wheel floats in the play.",
     "noise-free sample tyres with 0.17 deg of play",
-)
-TEMPERATURE_APART = Real(
-    2.0, "K", "Mean temperatures of zeros and camber sweeps that differ by less need no sentence."
 )

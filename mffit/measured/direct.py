@@ -10,7 +10,8 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.measured import constants, wording
+from mffit.constants import VISIBLE_TEMPERATURE
+from mffit.measured import wording
 from mffit.measured.axis import (
     AlignmentVerdict,
     SetupAngle,
@@ -404,7 +405,7 @@ def _conicity(evidence: DirectEvidence, row: LoadResult) -> list[str]:
 
 def _temperature(evidence: DirectEvidence, row: LoadResult, warmer: float) -> list[str]:
     assert row.epsilon_gamma is not None
-    if abs(warmer) < constants.TEMPERATURE_APART:
+    if abs(warmer) < VISIBLE_TEMPERATURE:
         return []
     spread = evidence.warming.std_dev
     return [wording.temperature(warmer, spread, abs((1.0 - row.epsilon_gamma.value) * warmer * spread))]

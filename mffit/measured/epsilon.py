@@ -9,7 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, USUAL_U_MOMENT
+from mffit.constants import (
+    CAMBER_OF_SLOPES,
+    COVERAGE_FACTOR_95,
+    LARGEST_CAMBER_REDUCTION,
+    USUAL_U_MOMENT,
+)
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
@@ -127,7 +132,7 @@ def load_dependence(
         why = wording.slope_in_noise(slope, u)
     elif abs(pecp1) <= COVERAGE_FACTOR_95 * at_nominal.std_dev:
         why = wording.EPSILON_IN_NOISE
-    elif most >= constants.LARGEST_EPSILON:
+    elif most >= LARGEST_CAMBER_REDUCTION:
         why = wording.slope_too_steep(most)
     else:
         return LoadDependence(pecp1, slope / pecp1, u_pecp2, wording.load_slope(slope / pecp1, u_pecp2))

@@ -86,9 +86,17 @@ class View(NamedTuple):
 
     group: Group
     errors: tuple[Error, ...]  #: the worst first
-    doubt: Doubt | None  #: where it contradicts the others
+    looks: str  #: what would explain where it contradicts the others
     mistake: Mistake | None  #: that explains it
     left: float  #: share of the usual size that is left when the mistake is undone
+
+    @property
+    def off(self) -> tuple[str, ...]:
+        """Channels in which it contradicts the others."""
+        certain = float(ndtr(-constants.CERTAIN_SIGMA))
+        return tuple(
+            e.channel for e in self.errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain
+        )
 
     @property
     def gross(self) -> Error:
@@ -199,9 +207,20 @@ def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
     """
     named: list[set[int]] = []
     for v in sorted(seen, key=lambda v: (not v.group.whole, -v.errors[0].ratio)):
-        if v.doubt is not None and not any(set(v.group.index) <= rows for rows in named):
+        if v.off and not any(set(v.group.index) <= rows for rows in named):
             named.append(set(v.group.index))
-            yield v.doubt
+            worst = v.errors[0]
+            yield Doubt(
+                sweep=v.group.name,
+                file=v.group.file,
+                index=v.group.index,
+                channel=worst.channel,
+                rms=worst.rms,
+                ratio=worst.ratio,
+                share=worst.share,
+                looks=v.looks,
+                channels=v.off,
+            )
 
 
 def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
@@ -269,13 +288,12 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
     best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
-    return View(
-        group=group,
-        errors=tuple(errors),
-        doubt=_doubt(campaign, group, fitted.simulation, part, found, errors),
-        mistake=None if best is None else best.mistake,
-        left=1.0 if best is None else best.left,
+    view = View(
+        group, tuple(errors), "", None if best is None else best.mistake, 1.0 if best is None else best.left
     )
+    if not view.off:
+        return view
+    return view._replace(looks=explanation(part, found, fitted.simulation, campaign.signs))
 
 
 def _part(points: Points, group: Group, found: Errors) -> Points:
@@ -301,30 +319,3 @@ def _away(
         least = min(rms(measured), rms(measured - error))
         out[name] = Away(e.rms, e.share, e.rms <= constants.IMPLAUSIBLE_SHARE * least)
     return out
-
-
-def _doubt(
-    campaign: JudgedSweeps,
-    group: Group,
-    simulation: Simulation,
-    part: Points,
-    found: Errors,
-    errors: Sequence[Error],
-) -> Doubt | None:
-    """The doubt about a group, if chance does not explain its errors."""
-    certain = float(ndtr(-constants.CERTAIN_SIGMA))
-    off = tuple(e.channel for e in errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain)
-    if not off:
-        return None
-    worst = errors[0]
-    return Doubt(
-        sweep=group.name,
-        file=group.file,
-        index=group.index,
-        channel=worst.channel,
-        rms=worst.rms,
-        ratio=worst.ratio,
-        share=worst.share,
-        looks=explanation(part, found, simulation, campaign.signs),
-        channels=off,
-    )

@@ -5,7 +5,7 @@ Numbers in another unit can be plausible one by one and impossible together.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -75,7 +75,7 @@ class Impossible(NamedTuple):
     """Something that no tyre shows."""
 
     column: str
-    said: str  #: in words, as the end of a sentence
+    said: str  #: in words, after the name of the column
 
 
 def _steep(part: Points, config: Config) -> Iterator[Impossible]:
@@ -153,14 +153,14 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
 )
 def impossible_file(part: Points, config: Config) -> Iterator[Finding]:
     """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; as read and without each mistake."""
-    wrong = impossible(part, config)
-    if not wrong:
+    found = impossible(part, config)
+    if not found:
         return
-    facts: Mapping[str, str]
+    column, said = found[0]
+    looks = "no single unit or exchanged heading explains it: check the columns and units of this file"
     for mistake in MISTAKES:
         if mistake.beyond_doubt and not impossible(mistake.undone(part, AS_READ), config):
-            facts = {"said": wrong[0].said, "looks": f"it looks like {mistake.looks}: {mistake.remedy}"}
-            yield Finding(facts, column=mistake.column)
-            return
-    looks = "no single unit or exchanged heading explains it: check the columns and units of this file"
-    yield Finding({"said": wrong[0].said, "looks": looks}, column=wrong[0].column)
+            said = said if column == mistake.column else f"{column} {said}"
+            column, looks = mistake.column, f"it looks like {mistake.looks}: {mistake.remedy}"
+            break
+    yield Finding({"said": said, "looks": looks}, column=column)

@@ -8,7 +8,7 @@ backwards, side force rises with the sideslip reading.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from scipy.special import stdtrit
 from mffit.constants import CAMBER_OF_SLOPES, FALSE_ALARM, STRAIGHT, UPRIGHT
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Outcome, Rule
+from mffit.suspicion.rule import Finding, Outcome, Rule, rule
 
 
 class SlopeWithError(NamedTuple):
@@ -148,14 +148,21 @@ def _thrust(points: Points) -> float:
     return float((thrust[gamma > 0].mean() + thrust[gamma < 0].mean()) / 2.0)
 
 
-def _where(holds: Callable[[Signatures], bool], column: str, **facts: Callable[[Signatures], float]):
-    """A function that finds one case if something holds for the signatures."""
+def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str) -> Rule:
+    """A slope of the signatures that no tyre has with this sign."""
 
     def find(found: Signatures) -> Iterator[Finding]:
-        if holds(found):
-            yield Finding({name: fact(found) for name, fact in facts.items()}, column=column)
+        if getattr(found, slope).sign == sign:
+            yield Finding({}, column=column)
 
-    return find
+    return Rule(
+        id=id,
+        looks_at=looks_at,
+        limits=(FALSE_ALARM,),
+        outcome=Outcome.CONTRADICTION,
+        sentence=told,
+        find=find,
+    )
 
 
 def contradictions(found: Signatures) -> list[str]:
@@ -163,65 +170,54 @@ def contradictions(found: Signatures) -> list[str]:
     return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
 
 
-_sign = partial(Rule, limits=(FALSE_ALARM,), outcome=Outcome.CONTRADICTION)
-_size = partial(Rule, outcome=Outcome.CONTRADICTION)
-NO_TYRE = (
-    _sign(
-        id="force-rises-with-sideslip",
-        looks_at="Slope of Fy over sideslip, rolling forwards",
-        sentence="Fy_N rises with alpha_deg",
-        find=_where(lambda found: found.cornering.sign > 0, "alpha_deg"),
-    ),
-    _sign(
-        id="force-rises-with-camber",
-        looks_at="Slope of Fy over camber, rolling forwards",
-        sentence="Fy_N rises with gamma_deg",
-        find=_where(lambda found: found.camber.sign > 0, "gamma_deg"),
-    ),
-    _size(
-        id="camber-force-too-steep",
-        looks_at="Slope of Fy per load over camber, plus two standard errors",
-        limits=(constants.STEEPEST_CAMBER_STIFFNESS,),
-        sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg",
-        find=_where(
-            lambda found: found.camber.value + 2.0 * found.camber.error < constants.STEEPEST_CAMBER_STIFFNESS,
-            "gamma_deg",
-            slope=lambda found: -found.camber.value,
-        ),
-    ),
-    _size(
-        id="camber-thrust",
-        looks_at="-Fy over Fz tan(gamma) at large camber of both signs",
-        limits=(constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST),
-        sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)",
-        find=_where(
-            lambda found: (
-                found.thrust < constants.SMALLEST_CAMBER_THRUST
-                or found.thrust > constants.LARGEST_CAMBER_THRUST
-            ),
-            "gamma_deg",
-            thrust=lambda found: -found.thrust,
-        ),
-    ),
-    _sign(
-        id="moment-falls-with-sideslip",
-        looks_at="Slope of Mz over sideslip, rolling forwards",
-        sentence="Mz_Nm falls with alpha_deg",
-        find=_where(lambda found: found.aligning.sign < 0, "Mz_Nm"),
-    ),
-    _sign(
-        id="force-falls-with-sideslip-backwards",
-        looks_at="Slope of Fy over sideslip, rolling backwards",
-        sentence="Fy_N falls with alpha_deg in backward runs",
-        find=_where(lambda found: found.backward.sign < 0, "alpha_deg"),
-    ),
-    _size(
-        id="turn-slip-force-inwards",
-        looks_at="Fy per load at alpha = gamma = 0, outwards, mean of both directions",
-        limits=(constants.WEAK_TURN_SLIP_FORCE,),
-        sentence="Fy_N at alpha = gamma = 0 points towards the declared centre of the path",
-        find=_where(lambda found: found.outward < -constants.WEAK_TURN_SLIP_FORCE, "Fy_N"),
-    ),
+_size = partial(rule, outcome=Outcome.CONTRADICTION)
+
+
+@_size(
+    id="camber-force-too-steep",
+    limits=(constants.STEEPEST_CAMBER_STIFFNESS,),
+    sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg",
 )
+def camber_too_steep(found: Signatures) -> Iterator[Finding]:
+    """Slope of Fy per load over camber, plus two standard errors."""
+    if found.camber.value + 2.0 * found.camber.error < constants.STEEPEST_CAMBER_STIFFNESS:
+        yield Finding({"slope": -found.camber.value}, column="gamma_deg")
+
+
+@_size(
+    id="camber-thrust",
+    limits=(constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST),
+    sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)",
+)
+def camber_thrust(found: Signatures) -> Iterator[Finding]:
+    """-Fy over Fz tan(gamma) at large camber of both signs."""
+    if found.thrust < constants.SMALLEST_CAMBER_THRUST or found.thrust > constants.LARGEST_CAMBER_THRUST:
+        yield Finding({"thrust": -found.thrust}, column="gamma_deg")
+
+
+@_size(
+    id="turn-slip-force-inwards",
+    limits=(constants.WEAK_TURN_SLIP_FORCE,),
+    sentence="Fy_N at alpha = gamma = 0 points towards the declared centre of the path",
+)
+def turn_slip_inwards(found: Signatures) -> Iterator[Finding]:
+    """Fy per load at alpha = gamma = 0, outwards, mean of both directions."""
+    if found.outward < -constants.WEAK_TURN_SLIP_FORCE:
+        yield Finding({}, column="Fy_N")
+
+
+SIGNS = tuple(
+    _sign(*row)
+    for row in (
+        ("cornering", 1, "alpha_deg", "Fy_N rises with alpha_deg",
+         "Slope of Fy over sideslip, rolling forwards", "force-rises-with-sideslip"),
+        ("camber", 1, "gamma_deg", "Fy_N rises with gamma_deg",
+         "Slope of Fy over camber, rolling forwards", "force-rises-with-camber"),
+        ("aligning", -1, "Mz_Nm", "Mz_Nm falls with alpha_deg",
+         "Slope of Mz over sideslip, rolling forwards", "moment-falls-with-sideslip"),
+        ("backward", -1, "alpha_deg", "Fy_N falls with alpha_deg in backward runs",
+         "Slope of Fy over sideslip, rolling backwards", "force-falls-with-sideslip-backwards"),
+    )
+)  # fmt: skip
+NO_TYRE = (*SIGNS, camber_too_steep, camber_thrust, turn_slip_inwards)
 """What no tyre does."""
-SIGNS = tuple(rule for rule in NO_TYRE if rule.limits == (FALSE_ALARM,))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -69,7 +69,7 @@ def _temperatures(points: Points) -> str:
     if not np.all(known):
         return f"T_degC is missing at {int(np.sum(~known))} of {len(points)} points"
     moved = float(np.ptp(points.T))
-    least = constants.LEAST_TEMPERATURE_RANGE
+    least = VISIBLE_TEMPERATURE
     return "" if moved > least else f"T_degC moves by {moved:.1f} K only, and {least:g} K are needed"
 
 

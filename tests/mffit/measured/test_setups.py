@@ -12,7 +12,7 @@ from plain_tyre import NEWTON, Plain, settings, share
 from mffit import config as configuration
 from mffit.config import setup_names
 from mffit.errors import InputError
-from mffit.measured import align, measure
+from mffit.measured import align, at_the_axis, measure
 from mffit.measured.setups import SCATTER
 from mffit.parts import split
 from mffit.points.points import concatenate
@@ -218,3 +218,13 @@ def test_of_several_set_ups_the_last_one_is_aligned():
     assert found.correction_deg == pytest.approx(-0.4, rel=0.2)  # with the usual stiffness of 10 per load
     (said,) = [sentence for sentence in found.warnings if "set-ups" in sentence]
     assert said.endswith("the last one, 2")
+
+
+def test_the_alignment_takes_the_zeros_and_the_stiffness_of_the_report():
+    """With play, and a parabola through the angles near zero."""
+    whole, config = Plain(alpha_0=math.radians(0.4)).campaign(), settings(backlash_deg=0.2)
+    points, stiffness = at_the_axis(config, whole, split(whole))
+    (step,) = (step for step in align(points, measured=stiffness).steps if step.load == 1500.0)
+    row = measure(config, whole, split(whole)).nominal
+    assert (step.F_forward, step.F_backward) == pytest.approx((row.F_forward, row.F_backward))
+    assert step.F_forward != pytest.approx(align(whole).steps[-1].F_forward, abs=0.5)

@@ -242,7 +242,7 @@ def sentence(rule: str, points: Points) -> str:
         (
             "impossible-file",
             tyre(Fy=30.0 * np.sign(ALPHA), Mz=1200.0 * np.sign(ALPHA)),
-            "reaches 0.8 m times the load, where no tyre exceeds 0.15 m",
+            "Mz_Nm reaches 0.8 m times the load, where no tyre exceeds 0.15 m",
         ),
         ("impossible-file", tyre(Fy=28.0 * np.sign(ALPHA)), "is at most 28 N at loads of 1500 N"),
         (
