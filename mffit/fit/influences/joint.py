@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.optimize import minimize
-from scipy.special import bdtrc, gammaincc
+from scipy.special import bdtrc, gammaincc, ndtri
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit.fitted import uncertain
@@ -187,6 +187,12 @@ class JointFit:
         of_row = np.tile(group[self.looked_at], len(self.channels))
         found = self.model.left_out(given, [np.flatnonzero(of_row == g) for g in np.unique(of_row)])
         return LeftOutGroups.of(found, self.sigma, self.channels)
+
+
+def clearly_above_zero(change: np.ndarray) -> bool:
+    """Whether changes (g,) of groups are above zero on average by more than their scatter makes them by chance."""
+    error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
+    return bool(np.mean(change) > -ndtri(PREDICTION_FALSE_ALARM) * error)
 
 
 def in_most(better: np.ndarray) -> bool:

@@ -12,7 +12,7 @@ from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.errors import InputError
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, in_most
+from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, clearly_above_zero, in_most
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, minimum
@@ -191,7 +191,8 @@ def _of_runs(
     if not beyond_chance(differ.value - alike.value, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
     # A gain that few runs hold is theirs; a scatter shows in most of them.
-    if not in_most(beside.density > without.density):
+    of_run = np.unique(halves) // 2
+    if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):
         reason = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, reason, *gaps), {}
     beside_missed = joint.beside_missed(points, model.problem.simulation)
