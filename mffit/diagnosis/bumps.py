@@ -114,7 +114,7 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
                 shapes.append(shape.astype(np.float32))
                 regions.append(_narrowed(region, column, centre - width, centre + width))
     spread = {
-        name: constants.BUMP_AMPLITUDE * float(np.nanmax(np.abs(points.channel(name))))
+        name: constants.USUAL_MISS_OF_A_FORMULA * float(np.nanmax(np.abs(points.channel(name))))
         for name in noise.channels
         if np.any(np.isfinite(points.channel(name)))
     }

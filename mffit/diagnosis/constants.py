@@ -43,17 +43,12 @@ NO_NOISE_SHARE = Real(
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
-NOISE_BEYOND_STATED = Real(
-    4.0,
-    "-",
-    "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
-)
 SURPRISING_LOG_ODDS = Real(
     2.5,
     "-",
     "Log odds that offsets of runs need against a memory of the errors, and noise that grows with the reading or has heavy "
     "tails against plain noise: one programme in thirteen has such.",
-    "diagnosis_study.py --correlated, docs/diagnosis.md",
+    "diagnosis_study.py --correlated, docs/evidence-diagnosis.md",
 )
 USUAL_GROWTH = Real(0.004, "-", "Usual part of the noise that grows with the reading.")
 USUAL_LOG_ODDS_OF_MEMORY = Real(
@@ -96,7 +91,11 @@ SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
-ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure until the scatter is known.")
+USUAL_MISS_OF_A_FORMULA = Real(
+    0.03,
+    "-",
+    "Usual smooth structure until the scatter is known, and usual bump (1 sigma), over the size of the channel.",
+)
 BUMP_RESIDUAL_CLIP = Real(
     3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
 )
@@ -124,16 +123,14 @@ MOST_EFFECTS_PER_CHANNEL = Count(
 )
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
-    "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
+    "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/evidence-diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
-TIED_EVIDENCE_OF_ALIKE = Real(
-    3.0, "-", "The same for effects that these data are not expected to separate: odds of 20, the usual 5 %."
-)
 TIE_EXCLUDED_BY_CHANCE = Real(
     0.05,
     "-",
-    "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied.",
+    "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied. Effects that the "
+    "data are not expected to separate are tied up to odds of one over it.",
 )
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
@@ -154,7 +151,6 @@ BUMP_WIDTHS_SLIP = Series(
 )
 BUMP_STEP_OF_ANGLE = Real(0.5, "deg", "Step of the centres of bumps over an angle.")
 BUMP_STEP_OF_SLIP = Real(0.01, "-", "Step of the centres of bumps over longitudinal slip.")
-BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
 BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
 MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
@@ -194,7 +190,7 @@ LOG_ODDS_DIVISOR = Real(
     1.35,
     "-",
     "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
-    "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/diagnosis.md",
+    "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/evidence-diagnosis.md",
 )
 LIKELY_ANSWER = Real(
     0.5,
@@ -208,7 +204,7 @@ KNOWN_BESIDE_UNKNOWN = Real(
     0.5,
     "-",
     "Prior odds that a named effect acts as well where misfit proves a cause that the library lacks.",
-    "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/diagnosis.md",
+    "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/evidence-diagnosis.md",
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 UNCHANGED_SHARE_OF_U = Real(

@@ -262,7 +262,7 @@ def learned(
             chains=chains,
             sweep=noise.chain[rows],
             named=_condensed(explained.named[rows], stated),
-            smooth=_condensed(constants.ASSUMED_SMOOTH_AMPLITUDE * explained.smooth[rows], stated),
+            smooth=_condensed(constants.USUAL_MISS_OF_A_FORMULA * explained.smooth[rows], stated),
             least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
             weight=np.ones(len(rows)),
             runs=np.zeros((len(rows), 0)),
