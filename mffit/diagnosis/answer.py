@@ -196,7 +196,7 @@ def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
     """
     lead = chosen.log_evidence - rival.log_evidence
     alike = chosen.apart(rival) < constants.SEPARATING_CHI2
-    near = lead < (constants.TIED_EVIDENCE_OF_ALIKE if alike else constants.TIED_EVIDENCE)
+    near = lead < (-math.log(constants.TIE_EXCLUDED_BY_CHANCE) if alike else constants.TIED_EVIDENCE)
     return near or not chosen.excludes(rival, constants.TIE_EXCLUDED_BY_CHANCE)
 
 

@@ -44,17 +44,12 @@ NO_NOISE_SHARE = Real(
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
-NOISE_BEYOND_STATED = Real(
-    4.0,
-    "-",
-    "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
-)
 SURPRISING_LOG_ODDS = Real(
     2.5,
     "-",
     "Log odds that offsets of runs need against a memory of the errors, and noise that grows with the reading or has heavy "
     "tails against plain noise: one programme in thirteen has such.",
-    "diagnosis_study.py --correlated, docs/diagnosis.md",
+    "diagnosis_study.py --correlated, docs/evidence-diagnosis.md",
 )
 USUAL_GROWTH = Real(0.004, "-", "Usual part of the noise that grows with the reading.")
 USUAL_LOG_ODDS_OF_MEMORY = Real(
@@ -97,7 +92,6 @@ SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
-ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure until the scatter is known.")
 BUMP_RESIDUAL_CLIP = Real(
     3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
 )
@@ -125,16 +119,14 @@ MOST_EFFECTS_PER_CHANNEL = Count(
 )
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
-    "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
+    "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/evidence-diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
-TIED_EVIDENCE_OF_ALIKE = Real(
-    3.0, "-", "The same for effects that these data are not expected to separate: odds of 20, the usual 5 %."
-)
 TIE_EXCLUDED_BY_CHANCE = Real(
     0.05,
     "-",
-    "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied.",
+    "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied. Effects that the "
+    "data are not expected to separate are tied up to odds of one over it.",
 )
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
@@ -153,21 +145,32 @@ BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
 BUMP_WIDTHS_SLIP = Series(
     (0.01, 0.03), "-", "Widths of bumps over longitudinal slip: a tenth and a third of the slip at the peak."
 )
-BUMP_STEP_OF_ANGLE = Real(0.5, "deg", "Step of the centres of bumps over an angle.")
-BUMP_STEP_OF_SLIP = Real(0.01, "-", "Step of the centres of bumps over longitudinal slip.")
-BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
-BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
 MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
-DIVISIONS_OF_AN_ANGLE = Count(
-    3, "-", "Shortest length of smooth structure over an angle, as a part of its range."
-)
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )
 SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
 LEAST_CERTAINTY = Real(
-    0.9, "-", "Certainty, less the unexplained share, that effects need beside smooth structure."
+    0.85,
+    "-",
+    "Certainty, less the unexplained share, that an effect needs: it explains six times as much as stays unexplained beside it.",
+)
+DIVISIONS_BESIDE_NOISE = Count(
+    3,
+    "-",
+    "Shortest length of smooth structure over an angle while the noise is found, as a part of its range: shorter ones would take "
+    "up errors with a memory.",
+)
+USUAL_MISS_OF_A_FORMULA = Real(
+    0.03,
+    "-",
+    "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
+)
+SHARES_OF_STRUCTURE = Series(
+    (1.0, 0.3, 0.1, 0.0),
+    "-",
+    "Shares of smooth structure that may be left beside a further effect, tried to first order.",
 )
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(
@@ -195,7 +198,7 @@ LOG_ODDS_DIVISOR = Real(
     1.35,
     "-",
     "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
-    "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/diagnosis.md",
+    "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/evidence-diagnosis.md",
 )
 LIKELY_ANSWER = Real(
     0.5,
@@ -209,7 +212,7 @@ KNOWN_BESIDE_UNKNOWN = Real(
     0.5,
     "-",
     "Prior odds that a named effect acts as well where misfit proves a cause that the library lacks.",
-    "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/diagnosis.md",
+    "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/evidence-diagnosis.md",
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 UNCHANGED_SHARE_OF_U = Real(

@@ -58,7 +58,7 @@ def _with_bumps(
     """What could explain the misfit (c n, k), with the bumps that are found beside it."""
     points = problem.points
     for _ in range(constants.MOST_BUMPS_SET_ASIDE):
-        allowed = problem.noise.sharing(named, constants.ASSUMED_SMOOTH_AMPLITUDE * basis)
+        allowed = problem.noise.sharing(named, constants.USUAL_MISS_OF_A_FORMULA * basis)
         white = allowed.whiten(np.nan_to_num(residual))
         channel = allowed.used // len(points)
         for k in range(len(problem.channels)):

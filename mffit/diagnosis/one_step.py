@@ -96,7 +96,7 @@ def _as_good(other: OneStep, best: OneStep, left: Remainder) -> bool:
     if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
         return False
     if left.at_noise:
-        return other.log_chance < best.log_chance + constants.TIED_EVIDENCE_OF_ALIKE
+        return other.log_chance < best.log_chance - math.log(constants.TIE_EXCLUDED_BY_CHANCE)
     return other.share > constants.AS_GOOD_SHARE * best.share
 
 

@@ -269,7 +269,7 @@ def learned(
             chains=chains,
             sweep=noise.chain[rows],
             named=_condensed(explained.named[rows], stated),
-            smooth=_condensed(constants.ASSUMED_SMOOTH_AMPLITUDE * explained.smooth[rows], stated),
+            smooth=_condensed(constants.USUAL_MISS_OF_A_FORMULA * explained.smooth[rows], stated),
             least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
             weight=np.ones(len(rows)),
             runs=np.zeros((len(rows), 0)),
@@ -304,6 +304,7 @@ def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
 
 def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Fewer columns that change as much: directions of hardly any change are left out."""
+    columns = columns[:, np.any(columns != 0.0, axis=0)]
     white = columns / u[:, None]
     power, turn = np.linalg.eigh(white.T @ white)
     return columns @ turn[:, power > constants.NEGLIGIBLE_CHANGE]

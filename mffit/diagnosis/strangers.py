@@ -93,7 +93,7 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
     for channel, residual in left.items():
         u = noise.of_channel(noise.u, channel)
         known = np.isfinite(u)
-        if rms(u[known] / noise.of_channel(noise.stated, channel)[known]) > constants.NOISE_BEYOND_STATED:
+        if rms(u[known] / noise.of_channel(noise.stated, channel)[known]) > constants.STATED_NOISE_FACTOR**2:
             off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
             off = {name: size for name, size in off.items() if np.isfinite(size)}
             worst = max(off, key=off.__getitem__)
