@@ -98,8 +98,8 @@ class Explanation:
         return replace(self, refined=refined, coefficients=coefficients)
 
     def withdrawn(self) -> Explanation:
-        """Nothing named, nothing repaired."""
-        null = self.problem.null
+        """Nothing named, nothing repaired; what is without a name is what the effects would leave."""
+        null = replace(self.problem.null, smooth=self.smooth)
         return replace(self, chosen=null, refined=null, coefficients={}, steps=self.steps[:1])
 
     def certainty(self, effect: Effect) -> float:
