@@ -8,8 +8,8 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 3. ``where``: regions in which measurement and simulation disagree.
 4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
 5. ``explain``: the rounds. ``learning``, ``scatter``, ``tails`` find the real noise, its memory, and whether runs are
-   offset; ``selection`` the effects; ``bumps``, ``smooth``, ``rivals`` structure without a name; ``prediction`` judges
-   effects by left-out sweeps.
+   offset; ``selection`` the effects, each beside the structure without a name that it leaves (``smooth``, ``bumps``);
+   ``prediction`` judges effects by left-out sweeps.
 6. ``validation``: the part that left-out sweeps confirm.
 7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
 8. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.

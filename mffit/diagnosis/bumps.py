@@ -9,17 +9,18 @@ from functools import cached_property
 
 import numpy as np
 
+from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
 
 SWEPT = {
-    "alpha_deg": (constants.BUMP_WIDTHS_SIDESLIP, constants.BUMP_STEP_OF_ANGLE),
-    "gamma_deg": (constants.BUMP_WIDTHS_CAMBER, constants.BUMP_STEP_OF_ANGLE),
-    "kappa": (constants.BUMP_WIDTHS_SLIP, constants.BUMP_STEP_OF_SLIP),
+    "alpha_deg": constants.BUMP_WIDTHS_SIDESLIP,
+    "gamma_deg": constants.BUMP_WIDTHS_CAMBER,
+    "kappa": constants.BUMP_WIDTHS_SLIP,
 }
-"""Conditions of ``mffit.quantities`` over which bumps are sought: their widths, and the steps of their centres."""
+"""Conditions of ``mffit.quantities`` over which bumps are sought: their widths. Their centres are the smallest apart."""
 Ranges = dict[str, tuple[float, float]]
 """Column -> smallest and largest value."""
 
@@ -105,7 +106,7 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
     Those over slip also within one side of sideslip.
     """
     parts = _parts(points)
-    beside = {"kappa": list(_sides("alpha_deg", points, constants.BUMP_UPRIGHT))}
+    beside = {"kappa": list(_sides("alpha_deg", points, STRAIGHT))}
     shapes, regions = [], []
     for column, centre, width, bell in _bells(points):
         for region, mask in (*parts, *beside.get(column, ())):
@@ -124,11 +125,11 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
 
 def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
     """Column, centre, width and height (n,) of Gaussian bells along each swept condition, in the unit of its column."""
-    for column, (widths, step) in SWEPT.items():
+    for column, widths in SWEPT.items():
         values = points.condition(column)
         if column == "kappa" and np.all(points.free_rolling):
             continue
-        for centre in _centres(values, step):
+        for centre in _centres(values, min(widths)):
             for width in widths:
                 bell = np.exp(-0.5 * ((values - centre) / width) ** 2)
                 yield column, centre, width, bell
@@ -150,7 +151,7 @@ def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
     """Parts of the programme to which a bump may be confined, with their masks (n,)."""
     return [
         ({}, np.ones(len(points))),
-        *_sides("gamma_deg", points, constants.BUMP_UPRIGHT),
+        *_sides("gamma_deg", points, UPRIGHT),
         *_loads(points),
         *(
             [({"direction": (-1.0, -1.0)}, (points.direction < 0) * 1.0)]

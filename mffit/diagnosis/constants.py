@@ -91,11 +91,6 @@ SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
-USUAL_MISS_OF_A_FORMULA = Real(
-    0.03,
-    "-",
-    "Usual smooth structure until the scatter is known, and usual bump (1 sigma), over the size of the channel.",
-)
 BUMP_RESIDUAL_CLIP = Real(
     3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
 )
@@ -149,20 +144,32 @@ BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
 BUMP_WIDTHS_SLIP = Series(
     (0.01, 0.03), "-", "Widths of bumps over longitudinal slip: a tenth and a third of the slip at the peak."
 )
-BUMP_STEP_OF_ANGLE = Real(0.5, "deg", "Step of the centres of bumps over an angle.")
-BUMP_STEP_OF_SLIP = Real(0.01, "-", "Step of the centres of bumps over longitudinal slip.")
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
-BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
 MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
-DIVISIONS_OF_AN_ANGLE = Count(
-    3, "-", "Shortest length of smooth structure over an angle, as a part of its range."
-)
 SMOOTH_AMPLITUDES = Series(
     (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
 )
 SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
 LEAST_CERTAINTY = Real(
-    0.9, "-", "Certainty, less the unexplained share, that effects need beside smooth structure."
+    0.85,
+    "-",
+    "Certainty, less the unexplained share, that an effect needs: it explains six times as much as stays unexplained beside it.",
+)
+DIVISIONS_BESIDE_NOISE = Count(
+    3,
+    "-",
+    "Shortest length of smooth structure over an angle while the noise is found, as a part of its range: shorter ones would take "
+    "up errors with a memory.",
+)
+USUAL_MISS_OF_A_FORMULA = Real(
+    0.03,
+    "-",
+    "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
+)
+SHARES_OF_STRUCTURE = Series(
+    (1.0, 0.3, 0.1, 0.0),
+    "-",
+    "Shares of smooth structure that may be left beside a further effect, tried to first order.",
 )
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.diagnosis import constants
+from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.imitation import imitations
 from mffit.diagnosis.inexact import Inexactness
@@ -15,9 +16,10 @@ from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.rivals import certain, competed, selected, structured
-from mffit.diagnosis.smooth import smooth_basis
+from mffit.diagnosis.selection import select
+from mffit.diagnosis.smooth import StructureBeside, smooth_basis
 from mffit.effects import Effect
+from mffit.linearised.constants import DIVISIONS_OF_A_SWEEP
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -39,7 +41,8 @@ def explain(
     points; what its formulae cannot follow then stays as smooth structure, which is no evidence against an effect beside it.
     """
     channels = stated.channels
-    basis = smooth_basis(points, start.readings(points, channels))
+    simulated = start.readings(points, channels)
+    coarse, basis = smooth_basis(points, simulated), smooth_basis(points, simulated, DIVISIONS_OF_A_SWEEP)
     measured = np.concatenate([points.channel(name) for name in channels])
     misfit = measured - start.predict(points, channels)
     found: Explanation | None = None
@@ -56,7 +59,7 @@ def explain(
         without_offsets = without_offsets or lost
         before, state = noise, start if found is None else found.without_run_offsets
         noise = learned_noise(
-            stated, before, points, state, candidates, inexact, basis, without_offsets=without_offsets
+            stated, before, points, state, candidates, inexact, coarse, without_offsets=without_offsets
         )
         around_start = bool(inexact) and at is start
         if found is not None and settled(before, noise) and not (around_start or lost):
@@ -67,19 +70,13 @@ def explain(
             at = start.with_numbers({name: value for name, (value, _) in found.coefficients.items()})
             offset = inexact.moved(points, found.refined.state, at, channels)
         columns = inexact.columns(points, start if found is None else found.refined.state, channels)
-        problem = DiagnosisProblem(points, at, noise.sharing(columns), declared, offset)
+        noise_of_all = noise.sharing(columns)
+        # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
+        beside = None if found is None and inexact and not seen else StructureBeside.over(basis, noise_of_all)
+        problem = DiagnosisProblem(points, at, noise_of_all, declared, offset, beside)
         last = found
         visible = beyond_memory(noise, candidates)
-        left = structured(problem, columns, visible, basis) if seen and visible else None
-        # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
-        if left is not None:  # which effects predict left-out sweeps is asked below
-            found = left
-        elif found is None and inexact:
-            found = selected(problem, visible, basis)
-        else:
-            found = competed(problem, columns, visible, basis)
-        if found.smooth.found:
-            found = certain(found, counted=not seen)
+        found = _selected(problem, visible)
         if seen and rms(misfit / noise.u) > constants.MISFIT_AT_NOISE:
             found = replace(found, misfit=misfit)
         found = found.with_coefficients(inexact)
@@ -93,6 +90,20 @@ def explain(
         if seen and found.smooth.found
         else found
     )
+
+
+def _selected(given: DiagnosisProblem, candidates: Sequence[Effect]) -> Explanation:
+    """The effects that explain most beside the structure that each of them leaves, but those that are hardly certain."""
+    problem, chosen, steps = select(given, candidates)
+    bumps = bump_scan(problem.points, problem.noise)
+    found = Explanation(problem, chosen, steps, bumps.best(chosen), bumps, refined=chosen)
+    while given.beside is not None and found.chosen.effects:
+        certainty = {effect: found.certainty(effect) for effect in found.chosen.effects}
+        least = min(certainty, key=lambda effect: certainty[effect])
+        if certainty[least] >= constants.LEAST_CERTAINTY:
+            break
+        found = found.only(found.chosen.others(least))
+    return found
 
 
 def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from mffit.diagnosis.bumps import Bump, BumpScan
+from mffit.diagnosis.bumps import Bump, BumpScan, bump_scan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
 from mffit.diagnosis.inexact import Inexactness
@@ -16,7 +16,7 @@ from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import ForwardStep
-from mffit.diagnosis.smooth import Smooth, smooth_scan
+from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
 from mffit.rig import Simulation
 
@@ -29,20 +29,21 @@ class Explanation:
     chosen: Hypothesis
     steps: list[ForwardStep]
     bump: Bump  #: best local structure in the residual
-    smooth: Smooth  #: smooth structure in the residual; part of the covariance if found
     bumps: BumpScan
-    basis: np.ndarray  #: (c n, k) of the smooth structure
     refined: Hypothesis  #: the chosen effects, the coefficients of the model estimated beside them
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Inexact coefficients as estimated: name -> (value, standard error)."""
-    unaided: Mapping[str, float] = field(default_factory=dict)
-    """Gain of each effect alone, without smooth structure beside it."""
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None
     """Measured minus simulated (c n,) of the given model, if it was fitted to these points and is not at their noise."""
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Share of a cause outside the library that an effect of it explains: of each effect, with itself taken out."""
+
+    @property
+    def smooth(self) -> Smooth:
+        """Smooth structure beside the effects; part of the covariance if found."""
+        return self.chosen.smooth
 
     @property
     def scatter(self) -> Noise:
@@ -84,7 +85,12 @@ class Explanation:
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The same with some of its effects, fitted again by themselves."""
-        return self.choosing(refitted(self.problem, self.chosen, effects))
+        chosen = refitted(self.problem, self.chosen, effects)
+        problem = self.problem.at_amplitude(chosen.smooth)
+        if problem is self.problem:
+            return self.choosing(chosen)
+        bumps = bump_scan(problem.points, problem.noise)
+        return replace(self, problem=problem, bumps=bumps).choosing(refitted(problem, chosen, effects))
 
     def with_coefficients(self, inexact: Inexactness) -> Explanation:
         """The same with the model's coefficients estimated beside the effects."""
@@ -92,19 +98,17 @@ class Explanation:
         return replace(self, refined=refined, coefficients=coefficients)
 
     def withdrawn(self) -> Explanation:
-        """Nothing named, nothing repaired."""
-        null = self.problem.null
+        """Nothing named, nothing repaired; what is without a name is what the effects would leave."""
+        null = replace(self.problem.null, smooth=self.smooth)
         return replace(self, chosen=null, refined=null, coefficients={}, steps=self.steps[:1])
 
-    def certainty(self, effect: Effect, *, counted: bool = True) -> float:
+    def certainty(self, effect: Effect) -> float:
         """Probability of an effect against its absence with the best structure without a name in its place.
 
-        If ``counted``, misfit that stays unexplained lowers it.
+        It is lower the more of the misfit stays unexplained beside it.
         """
-        if effect.id in self.predicted:
-            return self.predicted[effect.id].confidence
         against, share = self._weighed(effect)
-        return (share if counted else 1.0) / (1.0 + math.exp(-against))
+        return share / (1.0 + math.exp(-against))
 
     def confidence(self, effect: Effect) -> float:
         """The certainty, less the probability that the effect imitates a cause outside the library.
@@ -128,11 +132,22 @@ class Explanation:
         if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
-        explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
+        explains = max(gain, chosen.alone - without.alone, self._unaided(effect), 0.0)
         share = explains / (explains + open_) if open_ else 1.0
         return float(np.clip(against, -500.0, 500.0)), share
 
+    def _unaided(self, effect: Effect) -> float:
+        """Gain of an effect alone without smooth structure beside it."""
+        first = self.steps[0]
+        trials = [trial for trial in first.trials if trial.effects[-1].id == effect.id]
+        return max((trial.alone - first.before.alone for trial in trials), default=0.0)
+
     def left(self, hypothesis: Hypothesis) -> float:
-        """Log evidence of the best structure without a name beside a hypothesis; 0 without any."""
-        smooth = smooth_scan(self.basis, self.problem.noise).best(hypothesis)
-        return max(self.bumps.best(hypothesis).gain, smooth.gain, 0.0)
+        """Log evidence of the best bump beside a hypothesis; 0 without any."""
+        problem, bumps = self.problem.at_amplitude(hypothesis.smooth), self.bumps
+        if problem is not self.problem:
+            hypothesis, bumps = (
+                refitted(problem, hypothesis, hypothesis.effects),
+                bump_scan(problem.points, problem.noise),
+            )
+        return max(bumps.best(hypothesis).gain, 0.0)

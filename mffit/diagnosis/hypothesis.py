@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
+from mffit.diagnosis.smooth import NO_SMOOTH, Smooth
 from mffit.effects import Effect
 from mffit.rig import Simulation
 
@@ -21,10 +22,13 @@ class Hypothesis:
     numbers: Mapping[str, float]  #: fitted value of every freed number
     stderr: Mapping[str, float]
     chi2: float
-    log_evidence: float  #: up to a constant that all hypotheses about the same data share
+    log_evidence: float
+    """Up to a constant that all hypotheses about the same data share; with smooth structure beside it, if that is allowed."""
     state: Simulation
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
+    smooth: Smooth = NO_SMOOTH  #: the likeliest structure beside it
+    alone: float = -math.inf  #: log evidence without structure
 
     @property
     def ids(self) -> frozenset[str]:

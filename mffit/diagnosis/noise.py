@@ -165,6 +165,11 @@ class Noise:
         lost = 1.0 - 1.0 / np.sqrt(1.0 + variance)
         return z - axes @ ((lost * (axes.T @ z).T).T)
 
+    def with_shared(self, x: np.ndarray) -> np.ndarray:
+        """The inverse of :meth:`less_shared`."""
+        axes, variance = self._axes
+        return x + axes @ (((np.sqrt(1.0 + variance) - 1.0) * (axes.T @ x).T).T) if len(variance) else x
+
     def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
         """By how much the sum of squares (k,) of differences (m, k) falls with shared changes, z its only rows that are not 0."""
         axes, variance = self._axes

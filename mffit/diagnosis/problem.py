@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,10 +10,11 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.hypothesis import Hypothesis, outside
+from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched
+from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
 from mffit.points import Points
@@ -41,7 +43,8 @@ class DiagnosisProblem:
     """Readings against a simulation.
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
-    ``start`` is not at the centre of the coefficients' prior.
+    ``start`` is not at the centre of the coefficients' prior. ``beside`` is smooth structure that every hypothesis is weighed
+    with.
     """
 
     def __init__(
@@ -51,8 +54,10 @@ class DiagnosisProblem:
         noise: Noise,
         declared: Mapping[str, tuple[float, float]] | None = None,
         offset: np.ndarray | None = None,
+        beside: StructureBeside | None = None,
     ) -> None:
-        self.points, self.start, self.noise = points, start, noise
+        self.points, self.start, self.beside = points, start, beside
+        self.noise = noise if beside is None else beside.noise
         self.declared, self.offset = declared or {}, offset
         self.measured = np.concatenate([points.channel(name) for name in noise.channels])
         if offset is not None:
@@ -72,6 +77,20 @@ class DiagnosisProblem:
         """The same with another noise."""
         return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
 
+    def _with_share(self, share: float) -> DiagnosisProblem:
+        """The same with a part of the smooth structure in the covariance."""
+        assert self.beside is not None
+        part = {name: share * size for name, size in self.beside.amplitude.items()} if share else {}
+        return self.at_amplitude(Smooth(part, math.inf))
+
+    def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
+        """The same with smooth structure in the covariance as it was found beside a hypothesis."""
+        amplitude = smooth.amplitude if smooth.found else {}
+        if self.beside is None or amplitude == self.beside.amplitude:
+            return self
+        beside = replace(self.beside, amplitude=amplitude)
+        return DiagnosisProblem(self.points, self.start, self.noise, self.declared, self.offset, beside)
+
     def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""
         return self.noise.whiten(np.nan_to_num(self.measured - self.predict(state)))
@@ -81,7 +100,7 @@ class DiagnosisProblem:
         state = self.start.with_numbers(numbers)
         residual = self.whitened(state)
         chi2 = float(residual @ residual)
-        return Hypothesis(
+        found = Hypothesis(
             effects=tuple(effects),
             numbers=dict(numbers),
             stderr={},
@@ -91,6 +110,7 @@ class DiagnosisProblem:
             residual=residual,
             jacobian=np.empty((len(residual), 0)),
         )
+        return self._weighed(found, ())
 
     def fit(self, effects: Sequence[Effect], start: Mapping[str, float] | None = None) -> Hypothesis:
         """The best fit of all numbers of the effects; the last effect starts from every value of its scan."""
@@ -163,19 +183,24 @@ class DiagnosisProblem:
             gradient=information @ away + white.T @ residual,
         )
 
-    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
-        """Candidates with their gain in log evidence to first order, best first."""
-        axes = before.axes
-        residual = outside(axes, before.residual)
+    def promising(
+        self, before: Hypothesis, candidates: Sequence[Effect]
+    ) -> list[tuple[Effect, float, DiagnosisProblem]]:
+        """Candidates with their gain in log evidence to first order, best first, and the problem to fit each in.
+
+        Its covariance has the part of the smooth structure that is likeliest to be left beside the candidate.
+        """
+        columns = self.columns(before.state, candidates)
+        beside = self.beside or StructureBeside.nothing(self.noise)
+        numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
+        model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
+        known, alone, problems = model.near(now)[0], beside.scatter.alone(), {1.0: self, 0.0: self}
+        if now:
+            problems = {share: self._with_share(share) for share in constants.SHARES_OF_STRUCTURE}
         out = []
-        for effect, groups in self.columns(before.state, candidates).items():
-            gains = [0.0]
-            for columns in groups:
-                white = outside(axes, self.noise.whiten(columns))
-                power = white.T @ white + np.eye(white.shape[1])
-                score = white.T @ residual
-                gains.append(0.5 * float(score @ np.linalg.solve(power, score) - np.linalg.slogdet(power)[1]))
-            out.append((effect, max(gains)))
+        for effect, groups in columns.items():
+            found = max(model.with_columns(alone.whiten(one)).near(now) for one in groups)
+            out.append((effect, max(found[0] - known, 0.0), problems[found[1]]))
         return sorted(out, key=lambda row: -row[1])
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
@@ -227,7 +252,7 @@ class DiagnosisProblem:
             scaled = found.jacobian * np.array([n.spread for n in numbers])
             occam = 0.5 * float(np.linalg.slogdet(scaled.T @ scaled + np.eye(len(numbers)))[1])
         known = sum(beyond_declaration(n, values[n.name], self.declared) for n in numbers)
-        return Hypothesis(
+        hypothesis = Hypothesis(
             effects=tuple(effects),
             numbers=values,
             stderr=_standard_errors(found),
@@ -237,6 +262,33 @@ class DiagnosisProblem:
             residual=-found.data,
             jacobian=-found.jacobian,
         )
+        return self._weighed(hypothesis, numbers)
+
+    def _weighed(self, fitted: Hypothesis, numbers: Sequence[FreeNumber]) -> Hypothesis:
+        """The hypothesis with the likeliest smooth structure beside it, in the linear model at its numbers.
+
+        Structure is as improbable beforehand as ``STRUCTURE_EVIDENCE`` says.
+        """
+        if self.beside is None:
+            return replace(fitted, alone=fitted.log_evidence)
+        columns, residual = self._at_priors(fitted, numbers)
+        model, now = self.beside.structure.beside(columns, residual), self.beside.amplitude
+        found, alone = model.best(), fitted.log_evidence
+        if now:
+            alone -= self.beside.half_log_determinant
+            alone -= model.evidence(now) + model.improbable(now) - model.evidence({})
+        value = float(np.logaddexp(alone, alone + found.gain - constants.STRUCTURE_EVIDENCE))
+        return replace(fitted, log_evidence=value, smooth=found, alone=alone)
+
+    def _at_priors(self, fitted: Hypothesis, numbers: Sequence[FreeNumber]) -> tuple[np.ndarray, np.ndarray]:
+        """Changes (m, k) by one prior standard deviation of every number, and the residual (m,) at the centres of the priors.
+
+        Both without the changes that readings share.
+        """
+        away = np.array([fitted.numbers[n.name] - n.expected for n in numbers])
+        at_centre = fitted.residual - fitted.jacobian @ away
+        columns = fitted.jacobian * np.array([n.spread for n in numbers])
+        return self.noise.with_shared(columns), self.noise.with_shared(at_centre)
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""

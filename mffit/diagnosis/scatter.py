@@ -297,6 +297,7 @@ def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
 
 def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Fewer columns that change as much: directions of hardly any change are left out."""
+    columns = columns[:, np.any(columns != 0.0, axis=0)]
     white = columns / u[:, None]
     power, turn = np.linalg.eigh(white.T @ white)
     return columns @ turn[:, power > constants.NEGLIGIBLE_CHANGE]

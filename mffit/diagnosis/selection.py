@@ -66,12 +66,16 @@ def price(candidates: int) -> float:
     return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN
 
 
-def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[ForwardStep]]:
+def select(
+    problem: DiagnosisProblem, candidates: Sequence[Effect]
+) -> tuple[DiagnosisProblem, Hypothesis, list[ForwardStep]]:
     """Forward steps until nothing passes; after each, exchange effects and drop one that became needless.
 
     A fit may end in a local optimum, so that a set can look better or worse when it is met again. A set that was replaced is
-    therefore never entered a second time, which ends the search.
+    therefore never entered a second time, which ends the search. The problem that is returned has in its covariance the smooth
+    structure that is likeliest beside the effects.
     """
+    problem = problem.at_amplitude(problem.null.smooth)
     current, steps, left = problem.null, [], set[Ids]()
     most = min(constants.MOST_EFFECTS_PER_CHANNEL * len(problem.channels), len(candidates))
     while len(current.effects) < most:
@@ -84,20 +88,23 @@ def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hyp
         near = [trial.effects[-1] for trial in (*step.trials[:first], *steps[0].trials[:first])]
         current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
         current = _without_needless(problem, current, step.threshold, left)
-    return current, steps
+        beside = problem.at_amplitude(current.smooth)
+        if beside is not problem:
+            problem, current = beside, refitted(beside, current, current.effects)
+    return problem, current, steps
 
 
 def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> ForwardStep:
     """Every candidate beside the accepted effects; those with any prospect are fitted in full."""
     trials = []
     ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
-    for rank, (effect, gain) in enumerate(ranked):
+    for rank, (effect, gain, within) in enumerate(ranked):
         effects = (*before.effects, effect)
         hope = max(constants.PROMISING_GAIN, constants.PROMISING_SHARE * ranked[0][1])
         if rank < constants.FEWEST_CANDIDATES_FITTED or (
             rank < constants.MOST_CANDIDATES_FITTED and gain > hope
         ):
-            trials.append(problem.fit(effects, before.numbers))
+            trials.append(within.fit(effects, before.numbers))
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
@@ -117,10 +124,10 @@ def _exchanged(
             new = [e for e in candidates if e not in current.effects and _ids(*rest, e) not in left]
             without = refitted(problem, current, rest)
             lacks = best.log_evidence - without.log_evidence
-            for other, gain in problem.promising(without, new):
+            for other, gain, within in problem.promising(without, new):
                 if (1.0 + constants.PROMISING_SHARE) * gain + constants.PROMISING_GAIN < lacks:
                     continue
-                trial = problem.fit((*rest, other), current.numbers_of(rest))
+                trial = within.fit((*rest, other), current.numbers_of(rest))
                 if trial.log_evidence > best.log_evidence + constants.TIED_EVIDENCE:
                     best = trial
         if best is current:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.noise import Noise
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
@@ -39,15 +40,18 @@ class Smooth:
 NO_SMOOTH = Smooth({}, 0.0)
 
 
-def smooth_basis(points: Points, simulated: Readings) -> np.ndarray:
+def smooth_basis(
+    points: Points, simulated: Readings, divisions: float = constants.DIVISIONS_BESIDE_NOISE
+) -> np.ndarray:
     """Smooth changes (c n, k) of the readings, separate for every channel, smaller the faster they change.
 
+    The shortest length along an angle is its range over ``divisions``.
     At amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are proportional to the
     ``simulated`` readings, because the measured ones contain the errors to be explained.
     """
     angles, others = _conditions(points)
-    shapes = _functions({**angles, **others})
-    gains = _functions(others)[:, 1:]
+    shapes = _functions({**angles, **others}, divisions)
+    gains = _functions(others, divisions)[:, 1:]
     rows = []
     for name, model in simulated.items():
         size = float(np.nan_to_num(rms(points.channel(name))))
@@ -67,14 +71,14 @@ def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.nda
     return varying[0], varying[1]
 
 
-def _functions(conditions: Mapping[str, np.ndarray]) -> np.ndarray:
+def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.ndarray:
     """Smooth functions (n, k) of some conditions, the constant first; where a condition is not known it is in the middle."""
     inputs, at = [], []
     for name, x in conditions.items():
         lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
         steps = {
-            "alpha": constants.DIVISIONS_OF_AN_ANGLE,
-            "gamma": constants.DIVISIONS_OF_AN_ANGLE,
+            "alpha": divisions,
+            "gamma": divisions,
             "t": 2,
             "Fz": 2,
         }
@@ -89,50 +93,136 @@ def _functions(conditions: Mapping[str, np.ndarray]) -> np.ndarray:
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class SmoothScan:
-    """All smooth structure that the programme could show."""
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Smooth structure that may stand beside any hypothesis; all rows (m,) are independent readings of unit variance."""
 
-    shapes: np.ndarray  #: (m, k) whitened
-    channels: tuple[str, ...]  #: each with as many columns
+    channels: tuple[str, ...]  #: (c,)
+    shared: np.ndarray  #: (m, p) changes that readings share, one standard deviation each
+    axes: tuple[np.ndarray, ...]  #: (m, k) orthonormal directions of every channel's structure
+    variances: tuple[np.ndarray, ...]  #: (k,) of these at amplitude 1
+    changes: tuple[np.ndarray, ...]  #: (c n, k) of the readings along them, one standard deviation each
 
-    def best(self, hypothesis: Hypothesis) -> Smooth:
-        """The amplitudes that explain most of a hypothesis' residual, its own freed numbers projected out."""
-        axes = hypothesis.axes
-        shapes, residual = outside(axes, self.shapes), outside(axes, hypothesis.residual)
-        power, score = shapes.T @ shapes, shapes.T @ residual
-        size, gain = dict.fromkeys(self.channels, 0.0), 0.0
-        paid = len(self.channels) * math.log(len(AMPLITUDES))
-        for channel in (*self.channels, *self.channels[:-1]):  # inexact coefficients correlate the channels
+    @classmethod
+    def over(cls, basis: np.ndarray, noise: Noise) -> Structure:
+        """Of a basis (c n, k) with as many columns for every channel, beside the shared changes of a noise."""
+        alone = noise.alone()
+        axes, variances, changes = [], [], []
+        for columns in np.split(basis, len(noise.channels), axis=1):
+            left, size, turn = np.linalg.svd(alone.whiten(columns), full_matrices=False)
+            some = size > 1e-4 * max(float(size.max(initial=0.0)), 1e-9)
+            axes.append(left[:, some])
+            variances.append(size[some] ** 2)
+            changes.append(columns @ turn[some].T)
+        nothing = np.zeros((len(noise.used), 0))
+        shared = nothing if noise.shared is None else alone.whiten(noise.shared)
+        return cls(noise.channels, shared, tuple(axes), tuple(variances), tuple(changes))
+
+    def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
+        """The structure beside columns (m, j) of unit prior variance that may explain a residual (m,)."""
+        return BesideColumns.of(self, np.column_stack([residual, self.shared, columns]))
+
+
+class BesideColumns(NamedTuple):
+    """What the evidence of any amplitude needs: products of a residual and of columns, and their parts along the structure."""
+
+    structure: Structure
+    rows: np.ndarray  #: (m, 1 + j) the residual first
+    products: np.ndarray  #: (1 + j, 1 + j)
+    along: tuple[np.ndarray, ...]  #: (k, 1 + j) for every channel
+
+    @classmethod
+    def of(cls, structure: Structure, rows: np.ndarray) -> BesideColumns:
+        return cls(structure, rows, rows.T @ rows, tuple(axes.T @ rows for axes in structure.axes))
+
+    def with_columns(self, columns: np.ndarray) -> BesideColumns:
+        """The same with further columns (m, i)."""
+        across = self.rows.T @ columns
+        return BesideColumns(
+            self.structure,
+            np.column_stack([self.rows, columns]),
+            np.block([[self.products, across], [across.T, columns.T @ columns]]),
+            tuple(
+                np.column_stack([along, axes.T @ columns])
+                for along, axes in zip(self.along, self.structure.axes, strict=True)
+            ),
+        )
+
+    def evidence(self, amplitude: Mapping[str, float]) -> float:
+        """Log evidence with the columns and with structure of given amplitudes by channel, less a constant."""
+        products, log = self.products, self.improbable(amplitude)
+        for name, along, variance in zip(
+            self.structure.channels, self.along, self.structure.variances, strict=True
+        ):
+            if amplitude.get(name):
+                size = amplitude[name] ** 2 * variance
+                products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
+                log += 0.5 * float(np.sum(np.log1p(size)))
+        root = cholesky(np.eye(len(products) - 1) + products[1:, 1:], lower=True)
+        found = solve_triangular(root, products[1:, 0], lower=True)
+        return -0.5 * float(products[0, 0] - found @ found) - float(np.sum(np.log(np.diag(root)))) - log
+
+    def improbable(self, amplitude: Mapping[str, float]) -> float:
+        """By how much amplitudes are less probable beforehand than none, as a logarithm."""
+        return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
+
+    @property
+    def price(self) -> float:
+        """Log evidence that the choice of amplitudes costs, and that structure needs beforehand."""
+        return len(self.structure.channels) * math.log(len(AMPLITUDES)) + constants.STRUCTURE_EVIDENCE
+
+    def near(self, amplitude: Mapping[str, float]) -> tuple[float, float]:
+        """The best evidence with amplitudes that are a share of the given ones, the price paid, and that share."""
+        shares = constants.SHARES_OF_STRUCTURE if amplitude else (0.0,)
+        found = []
+        for share in shares:
+            value = self.evidence({name: share * size for name, size in amplitude.items()})
+            found.append((value - self.price if share else value, share))
+        return max(found)
+
+    def best(self) -> Smooth:
+        """The likeliest amplitudes, with the price of their search."""
+        channels = self.structure.channels
+        size, without = dict.fromkeys(channels, 0.0), self.evidence({})
+        paid, gain = len(channels) * math.log(len(AMPLITUDES)), 0.0
+        for channel in (*channels, *channels[:-1]):  # shared changes correlate the channels
             for amplitude in AMPLITUDES:
-                trial = {**size, channel: amplitude}
-                value = _gain(power, score, _of_columns(trial, self.channels, len(score))) - paid
+                trial = {**size, channel: float(amplitude)}
+                value = self.evidence(trial) - without - paid
                 if value > gain:
                     size, gain = trial, value
         return Smooth(size, gain)
 
 
-def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
-    """The basis, whitened."""
-    return SmoothScan(noise.whiten(basis), noise.channels)
+@dataclass(frozen=True, eq=False)
+class StructureBeside:
+    """Structure that is weighed with every hypothesis of a problem, and the part of it that is in the covariance."""
 
+    scatter: Noise  #: with the other changes that readings share
+    structure: Structure
+    amplitude: Mapping[str, float] = field(default_factory=dict)  #: by channel, in the covariance
 
-def amplified(basis: np.ndarray, smooth: Smooth, channels: Sequence[str]) -> np.ndarray:
-    """The basis (c n, k) of some channels at the amplitudes that were found."""
-    return basis * _of_columns(smooth.amplitude, channels, basis.shape[1])
+    @classmethod
+    def over(cls, basis: np.ndarray, noise: Noise) -> StructureBeside:
+        """None of it in the covariance."""
+        return cls(noise, Structure.over(basis, noise))
 
+    @classmethod
+    def nothing(cls, noise: Noise) -> StructureBeside:
+        """No structure at all."""
+        return cls.over(np.zeros((len(noise.u), 0)), noise)
 
-def _of_columns(amplitude: Mapping[str, float], channels: Sequence[str], k: int) -> np.ndarray:
-    """The amplitude (k,) of every column of a basis."""
-    return np.repeat([float(amplitude.get(name, 0.0)) for name in channels], k // len(channels))
+    @cached_property
+    def half_log_determinant(self) -> float:
+        """Half the logarithm of the determinant of the covariance, over that without structure."""
+        rows = len(self.structure.shared)
+        model = self.structure.beside(np.zeros((rows, 0)), np.zeros(rows))
+        return model.evidence({}) - model.evidence(self.amplitude) - model.improbable(self.amplitude)
 
-
-def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
-    """Log evidence of smooth structure of given amplitudes (k,)."""
-    some = amplitude > 0.0
-    scaled = amplitude[some]
-    root = cholesky(
-        np.eye(int(some.sum())) + scaled[:, None] * power[np.ix_(some, some)] * scaled, lower=True
-    )
-    found = solve_triangular(root, scaled * score[some], lower=True)
-    return 0.5 * float(found @ found) - float(np.sum(np.log(np.diag(root))))
+    @property
+    def noise(self) -> Noise:
+        """The covariance."""
+        own = [] if self.scatter.shared is None else [self.scatter.shared]
+        sizes = [self.amplitude.get(name, 0.0) for name in self.structure.channels]
+        found = zip(sizes, self.structure.changes, strict=True)
+        return self.scatter.sharing(*own, *(size * changes for size, changes in found if size))

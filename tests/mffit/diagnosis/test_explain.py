@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.explain import significant
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Origin
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.smooth import NO_SMOOTH
 from mffit.diagnosis.stated import stated_noise
 from mffit.effects import CATALOG
 from mffit.rig import Simulation
@@ -33,9 +30,7 @@ def test_an_effect_that_vanishes_is_not_named(stiffer_camber):
         chosen=both,
         steps=[],
         bump=bumps.best(both),
-        smooth=NO_SMOOTH,
         bumps=bumps,
-        basis=np.zeros((2 * len(points), 0)),
         refined=nothing,
     )
     left = significant(found, EXACT)

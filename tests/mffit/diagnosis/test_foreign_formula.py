@@ -1,0 +1,76 @@
+"""An effect beside what the formula misses is named, and what it leaves is said: the tyre is of another formula.
+
+The brush of ``brush.py`` and the tyre of four lines of ``disc_project.py`` are independent programs that no Magic Formula fits.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import brush
+import numpy as np
+import pandas as pd
+import pytest
+from brush import Brush
+from disc_project import disc_project
+
+import mffit
+from mffit.diagnosis import Diagnosis
+from tir import Tyre
+
+
+def toy(folder: Path, seed: int) -> Path:
+    """The small campaign on a disc, with more noise [N], [Nm] of a draw of its own."""
+    project, rng = disc_project(folder), np.random.default_rng(seed)
+    project.config["spin"] = {"exact": "turn-slip"}
+    for table in project.tables.values():
+        table["Fy_N"] += 2.5 * rng.standard_normal(len(table))
+        table["Mz_Nm"] += 0.25 * rng.standard_normal(len(table))
+    return project.write()
+
+
+@pytest.fixture(scope="module")
+def fitted_toy(tmp_path_factory) -> Tyre:
+    """The best file for it, which misses by 8 N where the noise is 5 N."""
+    return mffit.build(toy(tmp_path_factory.mktemp("toy"), 7), with_report=False).tyre
+
+
+@pytest.fixture(scope="module")
+def fitted_brush(tmp_path_factory) -> Tyre:
+    """The best file for the brush, which misses by 11 N where the noise is 6 N."""
+    return mffit.build(brush.written(Brush(), tmp_path_factory.mktemp("brush"), 51), with_report=False).tyre
+
+
+def assert_named(found: Diagnosis, *effects: str) -> None:
+    """These alone, and what the formula misses stays unexplained."""
+    assert [one.effect.id for one in found.effects] == list(effects)
+    assert found.unexplained
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_wrong_camber_reduction_is_named_beside_the_miss_of_the_formula(fitted_toy, tmp_path, seed):
+    wrong = fitted_toy.replace(PECP1=fitted_toy["PECP1"] + 0.3)
+    found = mffit.diagnose(toy(tmp_path, seed), wrong)
+    assert_named(found, "camber-reduction")
+    assert found.tyre["PECP1"] == pytest.approx(fitted_toy["PECP1"], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("column", "change", "effect"),
+    [
+        ("Mz_Nm", lambda moment: moment + 1.5, "loadcell-offset-mz"),
+        ("Fy_N", lambda Fy: 1.04 * Fy, "loadcell-gain"),
+    ],
+)
+def test_an_error_of_the_rig_is_named_beside_the_miss_of_the_formula(
+    fitted_brush, tmp_path, column, change, effect
+):
+    project = brush.written(Brush(), tmp_path, 81)
+    for path in tmp_path.glob("*.csv"):
+        table = pd.read_csv(path)
+        table.assign(**{column: change(table[column])}).to_csv(path, index=False)
+    assert_named(mffit.diagnose(project, fitted_brush), effect)
+
+
+def test_the_miss_of_the_formula_alone_is_no_effect(fitted_brush, tmp_path):
+    assert_named(mffit.diagnose(brush.written(Brush(), tmp_path, 81), fitted_brush))
