@@ -156,7 +156,7 @@ CASES = {
     "UTF-16": (content("alpha_deg,gamma_deg\n".encode("utf-16")), "no data"),
     "binary": (content(b"\0\1\2alpha_deg,gamma_deg\n"), "binary"),
     "semicolons": (content("alpha_deg;gamma_deg;Fz_N;Fy_N\n0,1;0;1500;eins\n"), ":2: column Fy_N"),
-    "radians": (in_radians, "radians"),
+    "radians": (in_radians, "it looks like its sideslip in rad"),
     "zero load": (edit(3, "1500.0", "0.0"), ":3: column Fz_N: the load is zero"),
     "loads of mixed sign": (edit(3, "1500.0", "-1500.0"), ":3: column Fz_N"),
     "loads in kN": (scaled(Fz_N=1e-3), "kN"),

@@ -275,15 +275,15 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "TYDEX without channels": (other("sideslip.tdx", "**HEADER\n**END\n"), "add **MEASURCHANNELS"),
     "binary TYDEX": (other("sideslip.tdx", b"**HEADER\n\0\0\0\1"), "belongs to a .tdm file, and not TYDEX"),
     # one sweep that does not belong to the others
-    "a tenth of the load": (column(Fz_N=150.0), "side forces reach 12 times the load (150 N)"),
+    "a tenth of the load": (column(Fz_N=150.0), "Fy_N reaches 8.2 times the load, where no tyre exceeds 4"),
     "a dead force": (column(Fy_N=0.0), "Fy_N: is 0 in every row, so the channel was dead"),
     "force and moment exchanged": (
         lambda project: column(Fy_N=project.tables[SWEEP].Mz_Nm, Mz_Nm=project.tables[SWEEP].Fy_N)(project),
-        "column Mz_Nm: reaches 1861 Nm at loads of 1500 N while Fy_N stays below 18.9 N, so the heading",
+        "column Fy_N: is at most 18.9 N at loads of 1500 N; it looks like side force and moment exchanged",
     ),
     "a force reversed": (column(Fy_N=lambda x: -x), "Fy_N rises with alpha_deg in this file alone"),
-    "a moment in Nmm": (column(Mz_Nm=lambda x: 1000.0 * x), "which looks like N mm"),
-    "an angle in radians": (column(alpha_deg=np.radians), "the angles look like radians"),
+    "a moment in Nmm": (column(Mz_Nm=lambda x: 1000.0 * x), "it looks like its moment in N mm"),
+    "an angle in radians": (column(alpha_deg=np.radians), "it looks like its sideslip in rad"),
     "backward runs undeclared": (all_forward, "in this file and in backward_1500.csv"),
 }
 

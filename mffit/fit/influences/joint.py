@@ -39,6 +39,7 @@ class LeftOutGroups(NamedTuple):
     """Left-out groups of points as all others predict them."""
 
     density: np.ndarray  #: (g,) logarithm of the probability of the readings of every group
+    squares: np.ndarray  #: (g,) sum of squared errors in units of their weights
     gaps: dict[str, float]  #: by channel, rms error [N] or [Nm]
 
     @classmethod
@@ -56,6 +57,7 @@ class LeftOutGroups(NamedTuple):
                 gaps[name] = rms(errors[used] * u[used])
         return cls(
             density=np.array([one.log_density for one in found]),
+            squares=np.array([one.error @ one.error for one in found]),
             gaps=gaps,
         )
 

@@ -174,7 +174,8 @@ def _of_runs(
     """The verdict on numbers of every run, and their scatter if they are modelled.
 
     What a run that is left out shows of its own numbers is unknown, so halves of runs are left out: the other half shows them.
-    What the formula misses must not explain it as well: a mistake at some loads looks like a difference of their runs.
+    What the formula misses must not explain it as well, a mistake at some loads looks like a difference of their runs; and whole
+    runs must not be predicted worse.
     """
     points = model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
@@ -198,6 +199,10 @@ def _of_runs(
     beside_missed = joint.beside_missed(points, model.problem.simulation)
     if not beyond_chance(beside_missed.explained().value - beside_missed.alike().value, len(scatter)):
         return Verdict(nuisance, False, "what the formula misses explains it as well", *gaps), {}
+    without, beside = (joint.left_out(of.given, sweeps) for of in (alike, differ))
+    if in_most(beside.squares > without.squares):
+        reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
+        return Verdict(nuisance, False, reason, without.gaps, beside.gaps), {}
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 
 
