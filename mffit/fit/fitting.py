@@ -90,7 +90,7 @@ def fit(
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
-    fitted, full, plan = found.plain, found.full, found.plan
+    fitted, full = found.plain, found.full
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
 

@@ -46,22 +46,6 @@ class FitPlan:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
 
-    def without(self, names: Collection[str], why: str) -> FitPlan:
-        """The plan with some coefficients held at their expected values; ``why`` is what the data lack for them."""
-        cover = tuple(
-            replace(
-                row,
-                free=tuple(name for name in row.free if name not in names),
-                held=(*row.held, *(name for name in row.free if name in names)),
-                missing=(*row.missing, why),
-                supported=any(name not in names for name in row.free),
-            )
-            if any(name in names for name in row.free)
-            else row
-            for row in self.cover
-        )
-        return replace(self, cover=cover, held={**self.held, **{name: self.scatter[name] for name in names}})
-
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with their bounds and priors."""
         return [

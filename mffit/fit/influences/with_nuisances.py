@@ -11,7 +11,6 @@ from mffit.config import Config
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
-from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish
 from mffit.fit.problem import FitProblem
@@ -27,7 +26,6 @@ class NuisanceFit:
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
     refit: Callable[[np.ndarray], Fitted]  #: the full fit to some of the points (rows)
-    plan: FitPlan  #: without the coefficients that turned out not to be determined
 
     @property
     def at_temperature(self) -> bool:
@@ -42,28 +40,24 @@ def fit_with_nuisances(
     progress("fitting tyre and rig")
     fitted = first_fit(problem, start, plan)
     choice = choose(config, fitted)
-    known, near = without_runaways(fitted, plan, choice), choice.near.problem
-    held = {name: plan.expected[name] for name in plan.free if name not in known.free}
-    if held:
-        fitted, near = polish(fitted.problem.with_values(held), known), near.with_values(held)
 
     def refit(rows: np.ndarray) -> Fitted:
         part = problem.select(rows)
-        return _polished(config, part, known, choice, choice.modelled, first_fit(part, start, known))
+        return _polished(config, part, plan, choice, choice.modelled, first_fit(part, start, plan))
 
     if choice.modelled:
         progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-    full = _polished(config, problem, known, choice, choice.modelled, fitted, near.simulation)
+    full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-        return NuisanceFit(full, full, choice, refit, known)
+        return NuisanceFit(full, full, choice, refit)
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
-    plain = _polished(config, problem, known, choice, others, fitted)
+    plain = _polished(config, problem, plan, choice, others, fitted)
     # The shift of all its coefficients together from those at one temperature is one more error of known size.
     shift = np.array(
         [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
     )
-    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, refit, known)
+    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, refit)
 
 
 def _polished(

@@ -11,9 +11,6 @@ from mffit.diagnosis.one_step import best_effect
 from mffit.diagnosis.remainder import remainder
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
-from mffit.fit.influences.nuisance_choice import NearSolution
-from mffit.fit.influences.nuisances import NUISANCES
-from mffit.fit.influences.runaways import without_runaways
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
@@ -179,36 +176,6 @@ def test_slip_without_sideslip_is_fitted_to_the_noise():
         assert abs(row.value - true[name]) < 3.3 * row.stderr, name
 
 
-@pytest.fixture(scope="module")
-def plan(points):
-    project = belt.config()
-    _, measured = measure(project, points, None)
-    known = known_before_fit(project, points, measured, None, {}, NO_HAND)
-    return fit_plan(project, points, measured, known, starting_values(known.values, points, measured), {})
-
-
-@pytest.fixture(scope="module")
-def pushed(found):
-    """The fit with a coefficient at the end of its usual range that these sweeps do not need there."""
-    fitted = found.search
-    return replace(
-        fitted,
-        values={**fitted.values, "RBX3": 100.0},
-        problem=fitted.problem.with_values({"RBX3": 100.0}),
-        at_bound=frozenset({"RBX3"}),
-    )
-
-
-def test_a_coefficient_at_its_bound_for_nothing_is_put_back(found, plan, pushed):
-    assert without_runaways(found.search, plan, found.choice) is plan  # nothing is at a bound
-    later = without_runaways(pushed, plan, found.choice)
-    assert "RBX3" not in later.free
-    assert later.held["RBX3"] == plan.scatter["RBX3"]
-    row = next(row for row in later.cover if row.stage == "combined-Fx")
-    assert "RBX3" in row.held
-    assert "left-out sweeps are predicted as well" in row.missing[-1]
-
-
 def test_a_rare_value_is_warned_of_unless_the_base_has_it(found):
     rare = replace(found.search, values={**found.search.values, "RBX3": 300.0}, at_bound=frozenset())
     assert _held_by_bounds(rare) == "outside the range of usual tyres: RBX3"
@@ -216,18 +183,6 @@ def test_a_rare_value_is_warned_of_unless_the_base_has_it(found):
         replace(n, start=310.0, expected=310.0) if n.name == "RBX3" else n for n in found.search.numbers
     ]
     assert _held_by_bounds(replace(rare, numbers=like_the_base)) == ""
-
-
-def test_a_coefficient_that_the_file_at_temperature_needs_at_its_bound_stays(found, plan, pushed):
-    """The plain fit predicts as well without it, but the readings of the other model are those of a tyre at the bound."""
-    problem = pushed.problem
-    there = problem.readings()["Fx"]
-    noise = np.random.default_rng(4).normal(0.0, belt.NOISE["Fx"], len(there))
-    points = problem.points.replace(Fx=there + noise)
-    inner = [number for number in pushed.numbers if number.name not in pushed.at_bound]
-    near = NearSolution(replace(problem, points=points), inner, NUISANCES[:1])
-    choice = replace(found.choice, near=near)
-    assert without_runaways(pushed, plan, choice) is plan
 
 
 def test_the_uncertainty_of_the_camber_stiffness_contains_the_skew_of_the_axis(found):
