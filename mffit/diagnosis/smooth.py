@@ -94,7 +94,7 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.nda
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class SmoothStructure:
     """Smooth structure that may stand beside any hypothesis; all rows (m,) are independent readings of unit variance."""
 
     channels: tuple[str, ...]  #: (c,)
@@ -104,7 +104,7 @@ class Structure:
     changes: tuple[np.ndarray, ...]  #: (c n, k) of the readings along them, one standard deviation each
 
     @classmethod
-    def over(cls, basis: np.ndarray, noise: Noise) -> Structure:
+    def over(cls, basis: np.ndarray, noise: Noise) -> SmoothStructure:
         """Of a basis (c n, k) with as many columns for every channel, beside the shared changes of a noise."""
         alone = noise.alone()
         axes, variances, changes = [], [], []
@@ -126,13 +126,13 @@ class Structure:
 class BesideColumns(NamedTuple):
     """What the evidence of any amplitude needs: products of a residual and of columns, and their parts along the structure."""
 
-    structure: Structure
+    structure: SmoothStructure
     rows: np.ndarray  #: (m, 1 + j) the residual first
     products: np.ndarray  #: (1 + j, 1 + j)
     along: tuple[np.ndarray, ...]  #: (k, 1 + j) for every channel
 
     @classmethod
-    def of(cls, structure: Structure, rows: np.ndarray) -> BesideColumns:
+    def of(cls, structure: SmoothStructure, rows: np.ndarray) -> BesideColumns:
         return cls(structure, rows, rows.T @ rows, tuple(axes.T @ rows for axes in structure.axes))
 
     def with_columns(self, columns: np.ndarray) -> BesideColumns:
@@ -199,13 +199,13 @@ class StructureBeside:
     """Structure that is weighed with every hypothesis of a problem, and the part of it that is in the covariance."""
 
     scatter: Noise  #: with the other changes that readings share
-    structure: Structure
+    structure: SmoothStructure
     amplitude: Mapping[str, float] = field(default_factory=dict)  #: by channel, in the covariance
 
     @classmethod
     def over(cls, basis: np.ndarray, noise: Noise) -> StructureBeside:
         """None of it in the covariance."""
-        return cls(noise, Structure.over(basis, noise))
+        return cls(noise, SmoothStructure.over(basis, noise))
 
     @classmethod
     def nothing(cls, noise: Noise) -> StructureBeside:

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag
 from scipy.optimize import minimize
-from scipy.special import bdtrc, gammaincc, ndtri
+from scipy.special import gammaincc, ndtri
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit.fitted import uncertain
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
-from mffit.linearised import linearised
 from mffit.linearised.constants import POINTS_EXAMINED
-from mffit.linearised.inputs import settings_of
 from mffit.linearised.mixed import LeftOutReadings, Mixed, Variances
-from mffit.points import Points
-from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 
@@ -84,9 +78,6 @@ class JointFit:
     channels: tuple[str, ...]  #: (c,)
     looked_at: np.ndarray  #: (n,) rows of the points: of very many, some
     usual: np.ndarray  #: (q,) scatter of the own numbers from which the search for it starts
-    missed: tuple[np.ndarray, ...] = ()
-    """By channel, logarithms of the variances of the functions of what the formula misses, of unit size; behind ``names``."""
-    sizes: tuple[float, ...] = ()  #: of it [N] or [Nm], from which the search for them starts
 
     @classmethod
     def of(
@@ -121,58 +112,27 @@ class JointFit:
             usual=np.array([BY_NAME[name].spread for name in own]),
         )
 
-    def beside_missed(self, points: Points, simulation: Simulation) -> JointFit:
-        """The same with what the formula misses, as smooth functions of the conditions."""
-        points = points.select(self.looked_at)
-        sigma = dict(zip(self.channels, self.sigma, strict=True))
-        at_tyre, found = simulation.felt(points), linearised(points, simulation, sigma, ()).channels
-        blocks = [
-            found[name].smooth.columns(settings_of(at_tyre, found[name].smooth.inputs)) / u[:, None]
-            for name, u in sigma.items()
-        ]
-        radii = np.zeros((len(self.model.residual) - self.sigma.size, sum(b.shape[1] for b in blocks)))
-        columns = np.vstack([block_diag(*blocks), radii])
-        lengths = [np.array(found[name].components.lengths) for name in sigma]
-        return replace(
-            self,
-            model=replace(self.model, common=np.hstack([self.model.common, columns])),
-            missed=tuple(found[n].smooth.log_variance(x)[0] for n, x in zip(sigma, lengths, strict=True)),
-            sizes=tuple(found[name].components.missed for name in sigma),
-        )
-
     def explained(self, held: Collection[str] = ()) -> Explained:
         """The evidence if some numbers are held at their expected values, by the scatter that makes it largest."""
-        return self._explained(held, np.log(self.usual))
+        common = self._held(held)
+
+        def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
+            found = self.model.evidence(Variances(common, 2.0 * x, 0.0))
+            return -found.value, -2.0 * found.own
+
+        start = np.log(self.usual)
+        bounds = [(x + float(np.log(NO_SCATTER)), 0.0) for x in start.tolist()]
+        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
+        return Explained(-float(found.fun), Variances(common, 2.0 * found.x, 0.0))
 
     def alike(self, held: Collection[str] = ()) -> Explained:
         """The same if the groups do not differ."""
-        return self._explained(held, np.zeros(0))
+        given = Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
+        return Explained(self.model.evidence(given).value, given)
 
-    def _explained(self, held: Collection[str], scatter: np.ndarray) -> Explained:
-        """By the scatter (q,) near its logarithm, or without, and by the size of what the formula misses."""
-        of_numbers = np.where(np.isin(self.names, [*held]), HELD, 0.0)
-        none, c = np.full(self.model.own.shape[1], HELD), len(self.missed)
-
-        def variances(x: np.ndarray) -> Variances:
-            missed = [log + 2.0 * size for log, size in zip(self.missed, x[:c], strict=True)]
-            return Variances(
-                np.concatenate([of_numbers, *missed]), 2.0 * x[c:] if len(scatter) else none, 0.0
-            )
-
-        def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
-            found = self.model.evidence(variances(x))
-            ends = np.cumsum([len(of_numbers), *(len(log) for log in self.missed)])
-            sizes = [float(np.sum(found.common[a:b])) for a, b in pairwise(ends)]
-            return -found.value, -2.0 * np.concatenate([sizes, found.own if len(scatter) else []])
-
-        start = np.concatenate([np.log(self.sizes), scatter])
-        if not len(start):
-            given = variances(start)
-            return Explained(self.model.evidence(given).value, given)
-        low = float(np.log(NO_SCATTER))
-        bounds = [(x + low, x - low if k < c else 0.0) for k, x in enumerate(start.tolist())]
-        found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
-        return Explained(-float(found.fun), variances(found.x))
+    def _held(self, names: Collection[str]) -> np.ndarray:
+        """Logarithm (k,) of the variances of the shared numbers."""
+        return np.where(np.isin(self.names, [*names]), HELD, 0.0)
 
     def gain(self, more: Collection[str], held: Collection[str] = ()) -> float:
         """By how much some numbers raise the logarithm of the largest likelihood, beside all others but those that are held.
@@ -195,11 +155,6 @@ def clearly_above_zero(change: np.ndarray) -> bool:
     """Whether changes (g,) of groups are above zero on average by more than their scatter makes them by chance."""
     error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
     return bool(np.mean(change) > -ndtri(PREDICTION_FALSE_ALARM) * error)
-
-
-def in_most(better: np.ndarray) -> bool:
-    """Whether something holds (g,) in so many groups that chance seldom makes it do so in as many."""
-    return bool(bdtrc(np.sum(better) - 1, len(better), 0.5) < PREDICTION_FALSE_ALARM)
 
 
 def beyond_chance(gain: float, numbers: int, candidates: int = 1) -> bool:
