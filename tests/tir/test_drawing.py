@@ -63,6 +63,7 @@ def test_a_notebook_shows_a_small_picture():
     assert len(shown) < 60_000
 
 
+@needs_matplotlib
 def test_a_tyre_of_which_nothing_can_be_computed_is_text_in_a_notebook():
     shown = tir.read(FILE).replace(NOMPRES=0.0)._repr_html_()
     assert "NOMPRES is 0" in shown
