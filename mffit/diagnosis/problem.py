@@ -62,6 +62,7 @@ class DiagnosisProblem:
         self.measured = np.concatenate([points.channel(name) for name in noise.channels])
         if offset is not None:
             self.measured = self.measured + offset
+        self._at_others: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
         self.null = self.evaluate((), {})
 
     @property
@@ -88,8 +89,15 @@ class DiagnosisProblem:
         amplitude = smooth.amplitude if smooth.found else {}
         if self.beside is None or amplitude == self.beside.amplitude:
             return self
-        beside = replace(self.beside, amplitude=amplitude)
-        return DiagnosisProblem(self.points, self.start, self.noise, self.declared, self.offset, beside)
+        key = frozenset(amplitude.items())
+        if key not in self._at_others:  # few amplitudes are tried, each beside many hypotheses
+            beside = replace(self.beside, amplitude=amplitude)
+            other = DiagnosisProblem(self.points, self.start, self.noise, self.declared, self.offset, beside)
+            other._at_others = self._at_others
+            while len(self._at_others) >= constants.MOST_AMPLITUDES_KEPT:
+                del self._at_others[next(iter(self._at_others))]
+            self._at_others[key] = other
+        return self._at_others[key]
 
     def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""
