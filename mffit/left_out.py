@@ -29,7 +29,7 @@ class Predicted:
     def falls(self, other: Predicted, channel: int | None = None) -> float:
         """By how many standard errors over the groups ``other`` predicts better, in all channels or in one by number."""
         change = self.chi2 - other.chi2
-        return _z(np.sum(change, axis=1) if channel is None else change[:, channel])
+        return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
 
     def raised(self, other: Predicted, loss: np.ndarray | float = 0.0) -> bool:
         """Whether ``other`` predicts one of the channels worse beyond chance and by more than ``loss``.
@@ -40,7 +40,7 @@ class Predicted:
         allowed = np.broadcast_to(loss, self.chi2.shape[1])
         return any(
             float(np.sum(there - here)) > allowed[k]
-            and (_z(here - there) < -constants.WORSE_PREDICTION or _larger(here, there))
+            and (over_scatter(here - there) < -constants.WORSE_PREDICTION or _larger(here, there))
             for k, (here, there) in enumerate(zip(self.chi2.T, other.chi2.T, strict=True))
         )
 
@@ -88,6 +88,7 @@ def _larger(before: np.ndarray, after: np.ndarray) -> bool:
     return bool(fdtrc(len(before), len(before), ratio) < constants.PREDICTION_FALSE_ALARM)
 
 
-def _z(change: np.ndarray) -> float:
+def over_scatter(change: np.ndarray) -> float:
+    """Mean of the changes (s,) of groups over the standard error that their scatter gives it; 0 without scatter."""
     error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
     return float(np.mean(change)) / error if error > 0.0 else 0.0

@@ -62,7 +62,7 @@ class DiagnosisProblem:
         self.measured = np.concatenate([points.channel(name) for name in noise.channels])
         if offset is not None:
             self.measured = self.measured + offset
-        self._at_others: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
+        self._at_amplitudes: dict[frozenset[tuple[str, float]], DiagnosisProblem] = {}
         self.null = self.evaluate((), {})
 
     @property
@@ -89,15 +89,17 @@ class DiagnosisProblem:
         amplitude = smooth.amplitude if smooth.found else {}
         if self.beside is None or amplitude == self.beside.amplitude:
             return self
+        kept = self._at_amplitudes  # few amplitudes are tried, each beside many hypotheses
+        kept.setdefault(frozenset(self.beside.amplitude.items()), self)
         key = frozenset(amplitude.items())
-        if key not in self._at_others:  # few amplitudes are tried, each beside many hypotheses
+        if key not in kept:
             beside = replace(self.beside, amplitude=amplitude)
             other = DiagnosisProblem(self.points, self.start, self.noise, self.declared, self.offset, beside)
-            other._at_others = self._at_others
-            while len(self._at_others) >= constants.MOST_AMPLITUDES_KEPT:
-                del self._at_others[next(iter(self._at_others))]
-            self._at_others[key] = other
-        return self._at_others[key]
+            other._at_amplitudes = kept
+            while len(kept) >= constants.MOST_AMPLITUDES_KEPT:
+                del kept[next(iter(kept))]
+            kept[key] = other
+        return kept[key]
 
     def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""

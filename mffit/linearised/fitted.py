@@ -223,29 +223,27 @@ def _channel(
         variances=with_further(of_functions, np.zeros(turn.shape[1])),
         alone=alone,
         declared=declared,
-        missed=_missed(alone, [sight.numbers[i] for i in of_rig], of_functions),
+        missed=_missed(alone, [sight.numbers[i] for i in of_rig], declared, of_functions),
         turn=turn,
         sweeps=np.unique(part.sweep),
     )
 
 
-def _missed(alone: Mixed, rig: Sequence[Uncertain], given: Variances) -> np.ndarray:
+def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given: Variances) -> np.ndarray:
     """Weights (m,) of the functions beside the errors of the rig, of which the zeros and what the fit took as exact stay.
 
     No reading tells a zero from a constant that the formula misses: readings are then foretold with the zeros that are stated.
     """
     functions = len(given.common)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
-    expected, spread = (
-        np.array([getattr(number, name) for number in rig]) for name in ("expected", "spread")
-    )
+    expected = np.array([number.expected for number in rig])
     columns = alone.common[:, functions:]
     model = replace(
         alone,
         residual=alone.residual + columns[:, stays] @ expected[stays],
         common=np.hstack([alone.common[:, :functions], columns[:, ~stays]]),
     )
-    found = model.posterior(with_further(given, 2.0 * np.log(spread[~stays])))
+    found = model.posterior(with_further(given, declared[~stays]))
     return np.asarray(found.mean[:functions])
 
 

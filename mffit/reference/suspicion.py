@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mffit.constants
 import mffit.points.constants
+import tir.constants
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Rule, When
 from mffit.suspicion.rules import RULES
@@ -16,7 +17,7 @@ The rules that find mistakes in readings, in the order in which they are applied
 """
 NAMES = {
     id(value): name
-    for module in (mffit.constants, mffit.points.constants, constants)
+    for module in (mffit.constants, mffit.points.constants, tir.constants, constants)
     for name, value in vars(module).items()
     if name.isupper()
 }

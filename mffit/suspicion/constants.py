@@ -54,7 +54,6 @@ STEEPEST_OVER_SIDESLIP = Real(
 SMALLEST_FRICTION = Real(
     0.02, "-", "Side force per load that every tyre exceeds at angles that show a force."
 )
-LARGEST_FRICTION = Real(4.0, "-", "Side force per load that no tyre reaches.")
 LARGEST_MOMENT_ARM = Real(
     0.15,
     "m",

@@ -16,6 +16,7 @@ from mffit.suspicion import constants
 from mffit.suspicion.rereadings import MISTAKES
 from mffit.suspicion.rule import Finding, rule_of_files
 from mffit.suspicion.slopes import slope
+from tir.constants import CREDIBLE_FRICTION
 
 WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(constants.SMALLEST_CAMBER_THRUST))
 """Slope over load and camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
@@ -59,13 +60,13 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
 
 @rule_of_files(
     id="wild-force",
-    limits=(constants.LARGEST_FRICTION, constants.FEWEST),
+    limits=(CREDIBLE_FRICTION, constants.FEWEST),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
 def wild_force(part: Points, config: Config) -> Iterator[Finding]:
     """Fy per load of one or two rows."""
     friction = np.abs(part.Fy) / part.Fz
-    if 0 < np.sum(friction > constants.LARGEST_FRICTION) < constants.FEWEST:
+    if 0 < np.sum(friction > CREDIBLE_FRICTION) < constants.FEWEST:
         row = int(np.argmax(friction))
         facts = {"force": part.Fy[row], "friction": friction[row]}
         yield Finding(facts, line=int(part.line[row]) or None, column="Fy_N")
@@ -101,9 +102,9 @@ def _reached(values: np.ndarray) -> float:
 
 def _strong(part: Points, config: Config) -> Iterator[Impossible]:
     for column, reading, largest in (
-        ("Fy_N", part.Fy, constants.LARGEST_FRICTION),
+        ("Fy_N", part.Fy, CREDIBLE_FRICTION),
         ("Mz_Nm", part.Mz, constants.LARGEST_MOMENT_ARM),
-        ("Mx_Nm", part.Mx, constants.LARGEST_FRICTION * config.tyre.unloaded_radius),
+        ("Mx_Nm", part.Mx, CREDIBLE_FRICTION * config.tyre.unloaded_radius),
     ):
         reached = _reached(reading / part.Fz)
         if reached > largest:
@@ -145,7 +146,7 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
         constants.SMALLEST_CAMBER_THRUST,
         constants.SIDESLIP_OF_SLOPES,
         constants.SMALLEST_FRICTION,
-        constants.LARGEST_FRICTION,
+        CREDIBLE_FRICTION,
         constants.LARGEST_MOMENT_ARM,
         constants.FEWEST,
     ),

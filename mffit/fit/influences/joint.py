@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.special import gammaincc, ndtri
+from scipy.special import gammaincc
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.fit.fitted import uncertain
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
+from mffit.left_out import needed_fall, over_scatter
 from mffit.linearised.constants import POINTS_EXAMINED
 from mffit.linearised.mixed import LeftOutReadings, Mixed, Variances
 from mffit.rig_errors import BY_NAME
@@ -26,7 +27,7 @@ HELD = -60.0
 """Logarithm of the variance of a number that is held."""
 
 UNKNOWN = 1e3
-"""Standard deviation of a number without a prior, over what the readings leave of it."""
+"""Standard deviation of the prior of a number that has none, over the standard error that the readings alone give it."""
 
 
 class LeftOutGroups(NamedTuple):
@@ -153,8 +154,7 @@ class JointFit:
 
 def clearly_above_zero(change: np.ndarray) -> bool:
     """Whether changes (g,) of groups are above zero on average by more than their scatter makes them by chance."""
-    error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
-    return bool(np.mean(change) > -ndtri(PREDICTION_FALSE_ALARM) * error)
+    return over_scatter(change) > needed_fall(1)
 
 
 def beyond_chance(gain: float, numbers: int, candidates: int = 1) -> bool:
