@@ -23,7 +23,6 @@ from mffit.report.figures import (
     residuals,
     slip,
     spin,
-    structure,
 )
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
@@ -158,16 +157,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         section="residuals",
         draw=residuals.of_driven,
         when=lambda view: bool(residuals.driven(view.points, view.conditions)),
-    ),
-    Picture(
-        name="structure",
-        title="Mean residuals over the conditions over which they are not random",
-        shows="Mean of measured minus model over bins of each condition, in units of the point's uncertainty; bars show one "
-        "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
-        "Only what chance does not explain is drawn, the number of comparisons accounted for.",
-        section="structure",
-        draw=lambda view: structure.residual_means(view.build.remains.structure),
-        when=lambda view: bool(view.build.remains.structure.found),
     ),
 )
 """Every picture of the report, in its order."""

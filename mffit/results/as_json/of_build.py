@@ -7,9 +7,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from mffit.diagnosis.one_step import BestEffect
-from mffit.diagnosis.remains import OddSweep, Remains
-from mffit.diagnosis.structure import ResidualComparison, Structure
+from mffit.diagnosis.remains import BestEffect, OddSweep, Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandOfCombined, BandsByPressure
 from mffit.fit.borrowed.sister import Lent
@@ -166,9 +164,14 @@ def _file(files: Files, use: str) -> dict[str, object]:
     return out
 
 
-keys(Remains, "effect structure sweep held left_out")
-keys(Structure, "chance comparisons found", comparisons=lambda found: len(found.comparisons))
-keys(ResidualComparison, "channel over log_chance")
+keys(
+    Remains,
+    "effect missed sweep held left_out",
+    missed=lambda found: {
+        name: {"rms": one.size, "log_evidence": one.proof, "over": one.missed_over}
+        for name, one in (found.linear.channels if found.linear else {}).items()
+    },
+)
 keys(OddSweep, "name looks_like=looks")
 keys(HeldNumber, "name sigma share")
 keys(

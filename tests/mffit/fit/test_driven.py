@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mffit.diagnosis.one_step import best_effect
-from mffit.diagnosis.remainder import remainder
+from mffit.diagnosis.remains import Left, best_effect
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
+from mffit.fit.fitted import left_by
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
@@ -50,13 +50,13 @@ def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
     unaware = replace(
         fit, problem=fit.problem.with_values({name: 0.0}), numbers=[n for n in fit.numbers if n.name != name]
     )
-    best = best_effect(remainder(unaware))
+    best = best_effect(Left.of(unaware, left_by(unaware)))
     assert best.best.effect.id == "crosstalk-fx-mx"
     assert best.significant
     assert not best.rivals
     value, u = best.best.numbers[name]
     assert value == pytest.approx(belt.FX_INTO_MX, abs=4.0 * u)
-    after = best_effect(remainder(fit))
+    after = best_effect(Left.of(fit, left_by(fit)))
     assert after.best.effect.id != "crosstalk-fx-mx"
     assert not after.significant
 
