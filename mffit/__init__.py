@@ -36,7 +36,6 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
-        verify,
         write_tydex,
     )
 
@@ -52,7 +51,6 @@ __all__ = [
     "predict",
     "show",
     "spin",
-    "verify",
     "write_c",
     "write_fmu",
     "write_tydex",

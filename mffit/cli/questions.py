@@ -90,7 +90,7 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis), "corrected.toml")
+    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis))
     voice.give(lambda: as_json.diagnosis(diagnosis))
     if not diagnosis.trusted:
         voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")
@@ -164,8 +164,7 @@ def plan(
             tyre_toml, coefficient or goal, runs=runs, without=without, out=out, progress=show
         )
     voice.say(text.plan_summary(found))
-    inside = "sheets to fill in" if found.points else "what changes in tyre.toml"
-    voice.written(out, "plan.html", "plan.json", *([f"runs ({inside})"] if found.steps else []))
+    voice.written(out, "plan.html", "plan.json", *(["runs (sheets to fill in)"] if found.steps else []))
     voice.give(lambda: as_json.plan(found))
 
 

@@ -5,7 +5,7 @@ from mffit.results.as_json.of_build import fit, write_information
 from mffit.results.as_json.of_questions import conversion, problems
 from mffit.results.values import document, text, write
 
-alignment = build = comparison = diagnosis = fleet = outcome = plan = sniffed = spin = verification = document
+alignment = build = comparison = diagnosis = fleet = outcome = plan = sniffed = spin = document
 """What is written of each answer: the JSON of its record."""
 
 __all__ = [
@@ -23,7 +23,6 @@ __all__ = [
     "sniffed",
     "spin",
     "text",
-    "verification",
     "write",
     "write_information",
 ]

@@ -18,7 +18,7 @@ from mffit.diagnosis.validation import Gap, Validation
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.hierarchy import Hierarchy, Population
 from mffit.fleet.record import FleetScatter, Row
-from mffit.planning import Plan, PlannedRun, PlanStep, Tie, Trial
+from mffit.planning import Plan, PlannedRun, PlanStep
 from mffit.planning import wording as planned
 from mffit.planning.goals import Goal
 from mffit.points.stretch import stretch_table
@@ -29,7 +29,6 @@ from mffit.recordings.sniffed import SniffedRecording
 from mffit.recordings.summary import BadRun
 from mffit.results.as_json.of_build import estimates, of_rig
 from mffit.results.values import Json, document, keys, plain
-from mffit.results.verification import Verification
 from tir.errors import Problem
 
 keys(
@@ -70,20 +69,14 @@ keys(
 # Uncertainties of a plan are in the goal's unit, k = 1 except for bands; null if not measured.
 keys(
     Plan,
-    "goal headline promise identified ties=identified.ties u_now=now u_then=then "
-    "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps alone=trials",
+    "goal headline promise identified u_now=now u_then=then runs=steps alone=trials",
     headline=planned.headline,
     promise=planned.promise,
     identified=lambda found: planned.identified(found.identified),
 )
 keys(Goal, "kind name label unit")
-keys(Tie, "* told")
-keys(
-    PlanStep,
-    "**run u_before=before u_after=after u_epsilon_gamma_direct=direct u_epsilon_gamma_joint=joint",
-)
-keys(Trial, "**run u_after=u")
-keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost rig", title=planned.title)
+keys(PlanStep, "**run u_before=before u_after=after")
+keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost", title=planned.title)
 
 keys(Comparison, "first second headline numbers coefficients curves sweeps notes", headline=compared.headline)
 keys(Difference, "* change u_change=u in_u=z")
@@ -129,19 +122,6 @@ keys(
 )
 keys(Guess, "* channel=channel.name")
 keys(BadRun, "file=recording lines why")
-
-keys(
-    Verification,
-    "folder same headline numbers exact method version libraries changes notes",
-    method=lambda found: _then_and_now(found.method),
-    version=lambda found: _then_and_now(found.version),
-    libraries=lambda found: _then_and_now(found.libraries),
-)
-
-
-def _then_and_now(pair: tuple[object, object]) -> dict[str, object]:
-    return dict(zip(("stored", "now"), pair, strict=True))
-
 
 keys(
     Conversion,
