@@ -36,7 +36,6 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
-        write_tydex,
     )
 
     __version__: str
@@ -53,7 +52,6 @@ __all__ = [
     "spin",
     "write_c",
     "write_fmu",
-    "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",

@@ -83,7 +83,6 @@ def _build(
 ) -> None:
     from mffit import config, pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
@@ -96,7 +95,7 @@ def _build(
     voice.say(text.build_summary(result, f"{out}: {tables}{drawn}"))
     if explain:
         voice.say("\n" + text.build_explained(result))
-    voice.give(lambda: as_json.build(result))
+    voice.give(result)
     if not result.trusted:
         voice.distrust(f"{result.tir_path} is not to be trusted: see above")
     if strict and result.trust.doubts:
@@ -115,7 +114,6 @@ def _build_many(
 ) -> None:
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     finished: list[BuildOutcome] = []
     interrupted = False
@@ -138,7 +136,7 @@ def _build_many(
         voice.say(text.many_summary(finished))
     if out is not None and not interrupted:
         _compare_built(finished, out, voice)
-    voice.give(lambda: [as_json.outcome(outcome) for outcome in finished])
+    voice.give(finished)
     _end(finished, interrupted, strict, voice)
 
 
@@ -194,10 +192,9 @@ def fleet(folders: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     with voice.progress() as show:
         found = pipeline.fleet(folders, out, progress=show)
     voice.say(text.fleet_summary(found))
     voice.written(out, "fleet.html", "fleet.json", "fleet.csv")
-    voice.give(lambda: as_json.fleet(found))
+    voice.give(found)

@@ -3,7 +3,6 @@
 from mffit.pipeline.building import build
 from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
-from mffit.pipeline.exporting import write_tydex
 from mffit.pipeline.fleets import fleet
 from mffit.pipeline.intake import init_from, project_of, write_sniffed
 from mffit.pipeline.many import build_many
@@ -26,5 +25,4 @@ __all__ = [
     "show",
     "spin",
     "write_sniffed",
-    "write_tydex",
 ]

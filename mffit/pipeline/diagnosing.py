@@ -165,5 +165,5 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] =
         diagnosis.tyre.write(folder / diagnosis.model_after)
         if diagnosis.with_terms is not None:
             diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
-        as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
+        as_json.write(folder / "diagnosis.json", diagnosis)
         report.write_diagnosis(diagnosis, folder)

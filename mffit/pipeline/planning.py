@@ -136,7 +136,7 @@ def write_plan(found: Plan, out: Path) -> None:
     from mffit import report
 
     with output_folder(out, by="plan", protected=inputs_of(found.config)) as folder:
-        as_json.write(folder / "plan.json", as_json.plan(found))
+        as_json.write(folder / "plan.json", found)
         runs = [step.run for step in found.steps]
         if runs:
             (folder / SHEETS).mkdir()

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from pathlib import Path
 
 from mffit.comparison import Comparison, Difference
 from mffit.comparison import wording as compared
@@ -28,8 +26,7 @@ from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import SniffedRecording
 from mffit.recordings.summary import BadRun
 from mffit.results.as_json.of_build import estimates, of_rig
-from mffit.results.values import Json, document, keys, plain
-from tir.errors import Problem
+from mffit.results.values import document, keys
 
 keys(
     Diagnosis,
@@ -129,13 +126,3 @@ keys(
     trusted=lambda found: not converted.reasons(found),
     reasons=converted.reasons,
 )
-
-
-def conversion(found: Conversion, out: Path) -> dict[str, Json]:
-    """The output of ``mffit convert --json``: SI units, shares of 1."""
-    return {"file": str(found.old.path), "written": str(out), **document(found)}
-
-
-def problems(path: Path, found: Sequence[Problem]) -> dict[str, Json]:
-    """The output of ``mffit check --json``."""
-    return {"file": str(path), "problems": plain(list(found))}

@@ -106,7 +106,7 @@ def test_uncertainties_have_the_unit_of_the_goal():
 
 
 def test_the_json_of_a_plan():
-    found = as_json.plan(plan())
+    found = as_json.document(plan())
     assert found["goal"] == {
         "kind": "eps_gamma", "name": "", "label": "u(eps_gamma) by the direct method", "unit": "-",
     }  # fmt: skip
