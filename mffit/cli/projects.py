@@ -26,13 +26,12 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     """
     from mffit import pipeline, recordings
     from mffit.report import text
-    from mffit.results import as_json
 
     with voice.progress() as show:
         show("reading recordings")
         found = recordings.sniff(files)
     voice.say(text.sniff_summary(found))
-    voice.give(lambda: as_json.sniffed(found))
+    voice.give(found)
     if out is None:
         project = recordings.project_text(found, Path())
         voice.say("\n" + project, end="")
@@ -100,7 +99,7 @@ def init(
         written = init_project(folder)
     for path in written:
         voice.say(f"written {path}")
-    voice.give(lambda: {"written": [str(path) for path in written]})
+    voice.give({"written": [str(path) for path in written]})
 
 
 def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
@@ -136,4 +135,4 @@ def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
         show("simulating")
         truth = virtual_rig.simulate(rig_toml, out, seed=seed)
     voice.written(out, "sweeps", "tyre.toml", "truth.json")
-    voice.give(truth.to_json)
+    voice.give(truth.to_json())

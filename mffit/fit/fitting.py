@@ -25,6 +25,7 @@ from mffit.fit.influences.temperature import at_temperature
 from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
+from mffit.fit.polish import refitted
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import relaxation_sentences
@@ -161,7 +162,8 @@ def _fitted_and_judged(
     progress("predicting each sweep from the others")
 
     def refit(without: np.ndarray) -> FittedModel:
-        fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
+        others = np.setdiff1d(np.arange(len(problem.points)), without)
+        fitted = refitted(found.full, replace(problem, simulation=found.full.simulation).select(others))
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
             weights[without] = problem.sigma[name][without]

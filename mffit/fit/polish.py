@@ -59,6 +59,16 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     return _fitted(problem, solution, plan.numbers(problem), plan, scale)
 
 
+def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
+    """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
+    for _ in range(2):
+        here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
+        problem, scale = here.with_noise_of_misfit().reweighted()
+        problem, solution = _solved(problem, fitted.numbers)
+        fitted = _fitted(problem, solution, fitted.numbers, fitted, scale)
+    return fitted
+
+
 def _fitted(
     problem: FitProblem,
     solution: Solution,

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
 
 _of_angle = partial(RigError, kind="rig", place=Place.ANGLE, acts_on=("alpha",))
 
@@ -71,11 +71,6 @@ SIDESLIP_ZERO = _of_angle(
         source="sideslip alignment",
         force_at_zero=lambda force, at: force,
         turns_with_direction=True,
-        measurement=Measurement(
-            id="sideslip-zero",
-            title="better zero of the sideslip axis",
-            reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-        ),
     ),
 )
 HYSTERESIS = _of_angle(
@@ -172,11 +167,6 @@ CAMBER_SKEW = _of_angle(
         default=constants.CAMBER_SKEW,
         source="camber skew",
         camber_stiffness=lambda skew, at: RADIANS * at.C_alpha * skew,
-        measurement=Measurement(
-            id="camber-squareness",
-            title="better squareness of the camber axis",
-            reason="Sideslip that leaning adds is taken for camber stiffness, and so for camber reduction.",
-        ),
     ),
 )
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
 
 CAMBER_ZERO = RigError(
     name="gamma_0_deg",
@@ -38,11 +38,6 @@ CAMBER_ZERO = RigError(
         default=constants.CAMBER_ZERO,
         source="camber alignment",
         force_at_zero=lambda zero, at: RADIANS * at.C_gamma * zero,
-        measurement=Measurement(
-            id="camber-zero",
-            title="better zero of the camber axis",
-            reason="A camber error makes a force like turn slip; it is often the largest line in the budget of eps_gamma.",
-        ),
     ),
 )
 LOAD_CAMBER = RigError(
@@ -100,11 +95,6 @@ PATH_RADIUS = RigError(
         default=None,
         source="path radius",
         value="radius",
-        measurement=Measurement(
-            id="path-radius",
-            title="better path radius",
-            reason="The curvature of the path is known as well as its radius.",
-        ),
     ),
 )
 SLIP_ZERO = RigError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import Appearance, Declared, Place, RigError
 
 _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 _zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)
@@ -132,11 +132,6 @@ FORCE_ZERO = _zero_of(
         default=constants.LOADCELL_ZERO,
         source="load-cell offset",
         force_at_zero=lambda zero, at: zero,
-        measurement=Measurement(
-            id="loadcell-zero",
-            title="better zero of the side-force cell",
-            reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-        ),
     ),
 )
 MOMENT_ZERO = _zero_of(
