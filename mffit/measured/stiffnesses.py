@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +40,13 @@ class LoadSlopes:
     C_gamma_backward: UFloat | None  #: the same of a backward sweep
     slope: UFloat | None  #: of the forward sweep at zero [N/rad]
     secant: UFloat | None  #: of the forward sweep [N/rad]
+
+    def of_camber(self, better: Callable[[UFloat], UFloat]) -> LoadSlopes:
+        """The same with better estimates of the camber stiffness."""
+        C_gamma, slope, secant = (
+            None if C is None else better(C) for C in (self.C_gamma, self.slope, self.secant)
+        )
+        return replace(self, C_gamma=C_gamma, slope=slope, secant=secant)
 
     @property
     def exists(self) -> bool:
