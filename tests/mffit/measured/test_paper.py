@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import pytest
-
 from uncertainties import UFloat
 
 from mffit.measured.camber_reduction import camber_reduction, turn_slip_force, uncertain_rig
