@@ -13,9 +13,6 @@ RARE_SAMPLES = Real(
 LIKENESS_OF_UNUSED_HEADING = Real(
     0.8, "-", "Similarity to a channel's name from which an unused column is pointed out."
 )
-LARGE_TEXT_FILE = Count(
-    500_000, "bytes", "Larger files are read by pandas, which is fifty times as fast but names no bad cell."
-)
 LARGEST_UNPACKED = Count(
     600_000_000,
     "bytes",
