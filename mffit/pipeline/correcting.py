@@ -14,9 +14,8 @@ from mffit.config import Config, axis_signs, path_curvature, resolved
 from mffit.csv_tables import write_csv
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
-from mffit.points.lag import Lag
-from mffit.points.loading import settled_sweeps
 from mffit.quantities import column, u_column
+from mffit.rig.lag import lagged_setting
 
 CORRECTED_TOML, CORRECTED_POINTS = "corrected.toml", "points-corrected.csv"
 FLIPPED_POINTS = "points-corrected-flipped.csv"
@@ -97,4 +96,5 @@ def _corrected(diagnosis: Diagnosis, config: Config) -> Points:
         return points
     if config.rig.on_disc:
         return points.select(~points.continuous)
-    return settled_sweeps(points, Lag(diagnosis.state.faults["relaxation_m"], 0.0))
+    follows, _ = lagged_setting(points, diagnosis.state.faults["relaxation_m"])
+    return points.replace(alpha=follows, continuous=False)

@@ -8,7 +8,7 @@ SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below thi
 RARE_SAMPLES = Real(
     0.01,
     "-",
-    "Share of samples that spikes spoil or a recorder writes twice; more have a cause, such as a wrong unit.",
+    "Share of samples that spikes spoil; more have a cause, such as a wrong unit.",
 )
 LIKENESS_OF_UNUSED_HEADING = Real(
     0.8, "-", "Similarity to a channel's name from which an unused column is pointed out."
