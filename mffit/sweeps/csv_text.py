@@ -18,7 +18,7 @@ import pandas as pd
 
 from mffit.errors import InputError
 from mffit.sweeps.channels import SWEEP_CHANNELS
-from mffit.sweeps.extras import first_bytes
+from mffit.sweeps.extras import content_of
 from mffit.sweeps.grid import head_of, ragged, without_data
 from mffit.sweeps.raw_table import (
     SPREADSHEET_ERRORS,
@@ -91,7 +91,7 @@ def read_csv(path: Path) -> RawTable:
 
 def _utf8(path: Path) -> bytes:
     """The text in UTF-8, with ``\\n`` at the end of its lines."""
-    content = first_bytes(path)
+    content = content_of(path)
     if content.startswith(UTF16_MARKS):
         content = content.decode("utf-16", errors="replace").encode()
     if b"\0" in content:
