@@ -50,19 +50,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
         k = int(reason[stretch.begin]) if sweep.point is None else -1
         found.append(stretch if k < 0 else Stretch(stretch.begin, stretch.end, ends[k].reason, MOVE))
-    return _merged(found)
-
-
-def _merged(found: list[Stretch]) -> list[Stretch]:
-    """The stretches, with neighbours that are dropped for the same reason joined."""
-    out: list[Stretch] = []
-    for stretch in sorted(found):
-        last = out[-1] if out else None
-        if last and stretch.dropped and stretch == last._replace(begin=last.end, end=stretch.end):
-            out[-1] = last._replace(end=stretch.end)
-        else:
-            out.append(stretch)
-    return out
+    return sorted(found)
 
 
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:

@@ -11,7 +11,7 @@ from mffit.points import averaging, remarks
 from mffit.points.choice import chosen
 from mffit.points.faulty import DRIVEN, DRIVEN_RULE, Fault, driven, faults
 from mffit.points.left_out import LeftOut, by_rule, of_recording
-from mffit.points.points import Points, concatenate
+from mffit.points.points import Points
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
@@ -48,23 +48,15 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
     tried = _without_faulty_plateaus(chosen(sweep, wrong, scale), wrong, faulty)
     labels = _labels(sweep, tried)
-    plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
-    swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
-    steady = averaging.over_plateaus(sweep, phi_t, plateaus, faulty)
-    moving, averaged = averaging.along_sweeps(
-        sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
-    )
-    counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
-    used = np.isin(np.arange(len(sweep)), averaged)
-    for plateau in plateaus:
-        used[averaging.sound_rows(plateau, faulty)] = True
-    number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
+    giving = [s for kind in (PLATEAU, SWEEP) for s in tried if s.kind == kind and not s.dropped]
+    found = averaging.means(sweep, phi_t, giving, [labels[stretch] for stretch in giving], faulty)
+    number = dict(zip(giving, found.counts, strict=True))
     notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0)) for s in tried)
     return Reduced(
-        points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
+        points=found.points,
         warnings=(*remarks.faulty(sweep, wrong), *remarks.dropped(sweep, tried)),
         stretches=notes,
-        left_out=of_recording(sweep, wrong, tried, used),
+        left_out=of_recording(sweep, wrong, tried, found.used),
     )
 
 
