@@ -23,8 +23,8 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
 from mffit.points import Points, levels
+from mffit.points.clock import rolled_distance
 from mffit.points.constants import LONGEST_STEP
-from mffit.points.lag import rolled_distance
 from mffit.points.mean import autoregression
 from mffit.points.steps import STEPPED
 from mffit.quantities import CHANNELS
