@@ -31,7 +31,6 @@ from mffit.fit.relaxation import relaxation_sentences
 from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
 from mffit.fit.start import starting_values
-from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.wording import explanations, nuisance_sentences, unmodelled_sentences, warnings, with_remarks
 from mffit.fit.written.files import plain_use
@@ -80,13 +79,11 @@ def fit(
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
-    overturning = overturning_terms(points, known.values, config.tyre.side, hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),
-        **overturning.start,
         **(turning.start if turning else {}),
     }
-    plan = fit_plan(config, points, measured, known, start, fleet, turning, overturning.predicting)
+    plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
