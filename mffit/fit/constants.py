@@ -38,10 +38,6 @@ SISTER_SLIP = Real(
 )
 
 # Radii
-LARGEST_CAMBER_OF_RADII = Real(
-    6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
-)
-
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,
     "m",
