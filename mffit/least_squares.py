@@ -275,8 +275,8 @@ def _step(
 ) -> _Step | None:
     """The next place with a smaller sum of squares; None if there is none.
 
-    A damped step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops, such
-    steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, close to the minimum:
+    A damped step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops,
+    such steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, near the minimum:
     its fall may be too small to be seen beside rounding, so it only must not rise by more.
     """
     last = damping == UNDAMPED
