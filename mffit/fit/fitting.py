@@ -141,7 +141,6 @@ def fit(
         runs=runs,
         confounded=confounded,
         radii=radii,
-        beside=made.beside,
         lent=made.lent,
         relaxation=made.relaxation,
     )

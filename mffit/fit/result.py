@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandOfCombined, BandsByPressure
-from mffit.fit.beside import BesideNumbers
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
@@ -60,7 +59,6 @@ class FitResult(Brief):
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
     relaxation: tuple[Relaxation, ...] = ()  #: what steps of the sideslip angle and of slip determine
-    beside: tuple[BesideNumbers, ...] = ()  #: coefficients fitted to readings of their own: radii, My, steps
     lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
     runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (

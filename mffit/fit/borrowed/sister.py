@@ -144,7 +144,6 @@ def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
         covariance=errors @ errors.T + np.diag(np.square(own)),
         leans_on=fitted.names,
         slope=slope[:, :-2],
-        envelope=sister.envelope,
     )
     u = fitted.with_numbers(every).stderr
     return Lent(
