@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
-from mffit.fit.bands import BandOfCombined, BandsByPressure
+from mffit.fit.bands import Bands
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
@@ -52,9 +52,7 @@ class FitResult(Brief):
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
-    bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
-    band_of_combined: BandOfCombined | None = None  #: where slip was run at one sideslip only
-    bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
+    bands: Bands | None = None  #: where the 95 % bands are narrow
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
