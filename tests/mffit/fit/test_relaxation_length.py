@@ -19,7 +19,6 @@ from mffit.fit.relaxation import (
     _fitted,
     _Noise,
     relaxation,
-    relaxation_sentences,
 )
 from mffit.points import Points
 from mffit.points.loading import read
@@ -171,7 +170,6 @@ def test_without_steps_the_result_says_what_to_run(truth):
         assert not one.coverage.supported
         assert one.coverage.missing == (direction.run,)
         assert one.coverage.held == direction.names
-    assert relaxation_sentences(nothing) == []
 
 
 def test_what_readings_remember_is_taken_off_their_noise():
@@ -182,12 +180,6 @@ def test_what_readings_remember_is_taken_off_their_noise():
     assert noise.memory == pytest.approx([0.8], abs=0.05)
     assert noise.size == pytest.approx(np.std(white), rel=0.02)
     assert np.std(noise.whitened(red)) == pytest.approx(1.0, rel=0.01)
-
-
-def test_the_sentences_give_every_length_with_its_load(found):
-    for one, said in zip(found, relaxation_sentences(found), strict=True):
-        run = one.runs[0]
-        assert f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N, " in said
 
 
 def instant_steps(truth: tir.Tyre, rate: float, random: np.random.Generator) -> Points:
