@@ -72,7 +72,7 @@ def draw(folder: Path, planned: Planned) -> PagePicture | None:
         return None
     (folder / "plots").mkdir(parents=True, exist_ok=True)
     sheet = with_fewer_rows(whole, int(constants.MOST_PANELS))
-    picture = pictures.draw(sheet, planned.name)
+    picture = pictures.draw(sheet)
     (folder / "plots" / f"{planned.name}.png").write_bytes(picture.png)
     return PagePicture(
         name=planned.name,
