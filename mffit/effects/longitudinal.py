@@ -15,7 +15,6 @@ LONGITUDINAL_EFFECTS = (
         physics="The peak of the longitudinal force is higher, or lower, than the model's.",
         free=(Free(name="PDX1", spread=0.1, relative=True),),
         needs=("drive",),
-        parity="even in alpha and gamma; as Fx",
         confusable_with=("loadcell-gain-fx",),
     ),
     _effect(
@@ -24,7 +23,6 @@ LONGITUDINAL_EFFECTS = (
         physics="Longitudinal friction falls, or rises, with contact pressure.",
         free=(Free(name="PDX2", spread=0.1),),
         needs=("drive", "loads"),
-        parity="even in alpha and gamma; as Fx",
     ),
     _effect(
         id="slip-stiffness",
@@ -32,7 +30,6 @@ LONGITUDINAL_EFFECTS = (
         physics="The longitudinal force per unit of slip near free rolling differs from the model's.",
         free=(Free(name="PKX1", spread=0.15, relative=True),),
         needs=("drive",),
-        parity="even in alpha and gamma; as Fx",
         confusable_with=("loadcell-gain-fx",),
     ),
     _effect(
@@ -41,7 +38,6 @@ LONGITUDINAL_EFFECTS = (
         physics="The longitudinal force is zero at another slip than that of free rolling, at which slip is counted from zero.",
         free=(Free(name="PHX1", spread=0.002),),
         needs=("drive",),
-        parity="even in alpha, gamma and slip",
         confusable_with=("slip-zero",),
         prior=-2.0,
     ),
@@ -51,7 +47,6 @@ LONGITUDINAL_EFFECTS = (
         physics="A share of the load that the slip does not change acts along the tyre, as rolling resistance does.",
         free=(Free(name="PVX1", spread=0.005),),
         needs=("drive",),
-        parity="even in alpha, gamma and slip",
         confusable_with=("loadcell-offset-fx", "longitudinal-drag"),
         prior=-0.3,
     ),
@@ -61,7 +56,6 @@ LONGITUDINAL_EFFECTS = (
         physics="Sideslip uses part of the grip, so that less is left for drive and brake.",
         free=(Free(name="RBX1", spread=0.2, relative=True),),
         needs=("drive", "combined"),
-        parity="even in alpha; as Fx",
     ),
     _effect(
         id="combined-lateral",
@@ -69,7 +63,6 @@ LONGITUDINAL_EFFECTS = (
         physics="Drive and brake use part of the grip, so that less is left for the side force.",
         free=(Free(name="RBY1", spread=0.2, relative=True),),
         needs=("drive", "combined"),
-        parity="even in slip; as Fy",
     ),
     _effect(
         id="combined-camber",
@@ -80,7 +73,6 @@ LONGITUDINAL_EFFECTS = (
             Free(name="RBY4", spread=10.0),
         ),
         needs=("drive", "combined_camber"),
-        parity="even in gamma; as Fx and Fy",
     ),
     _effect(
         id="longitudinal-arm",
@@ -89,7 +81,6 @@ LONGITUDINAL_EFFECTS = (
         "turned on its rim.",
         free=(Free(name="SSZ1", spread=0.006),),
         needs=("drive", "moment"),
-        parity="odd in slip",
         confusable_with=("crosstalk-fx-mz",),
         prior=-2.0,
     ),

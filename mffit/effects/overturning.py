@@ -15,7 +15,6 @@ OVERTURNING_EFFECTS = (
         physics="The load acts a little off the middle of the wheel, from conicity and plies.",
         free=(Free(name="QSX1", spread=0.01),),
         needs=("overturning",),
-        parity="even in alpha and gamma, proportional to load",
         confusable_with=("loadcell-offset-mx",),
         prior=-0.3,
     ),
@@ -25,7 +24,6 @@ OVERTURNING_EFFECTS = (
         physics="A leaned tyre stands on another part of its crown, so that the load acts off the middle of the wheel.",
         free=(Free(name="QSX2", spread=0.2),),
         needs=("overturning", "camber"),
-        parity="odd in gamma",
     ),
     _effect(
         id="overturning-side-force",
@@ -33,7 +31,6 @@ OVERTURNING_EFFECTS = (
         physics="Side force bends the carcass, and the load acts off the middle of the wheel.",
         free=(Free(name="QSX3", spread=0.02),),
         needs=("overturning", "slip"),
-        parity="as Fy, times load",
         confusable_with=("crosstalk-fy-mx", "overturning-arm"),
     ),
     _effect(
@@ -42,7 +39,6 @@ OVERTURNING_EFFECTS = (
         physics="The side force acts a little above or below the plane of the road, at the same height under every load.",
         free=(Free(name="QSX13", spread=0.01),),
         needs=("overturning", "slip"),
-        parity="as Fy",
         confusable_with=("crosstalk-fy-mx", "overturning-side-force"),
         prior=-2.0,
     ),
