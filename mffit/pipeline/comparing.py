@@ -67,9 +67,7 @@ def compare(
         found = _with_data(_subject(files[0]), config)
         files += inputs_of(config)
     else:
-        sides = [_subject(path) for path in paths]
-        if sides[0].name == sides[1].name:
-            sides = [replace(side, name=str(path)) for side, path in zip(sides, paths, strict=True)]
+        sides = _with_names_apart([_subject(path) for path in paths], paths)
         if turn_slip is not None:
             sides = [replace(side, turn_slip=turn_slip) for side in sides]
         progress("comparing")
@@ -122,6 +120,24 @@ def _build_beside(path: Path) -> Specimen | None:
         return fleet.read(path.parent)
     except (InputError, TirError):
         return None
+
+
+def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:
+    """The subjects; those with one name get as much of their paths as makes the names differ."""
+    if sides[0].name != sides[1].name:
+        return sides
+    files = [path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)]
+    return [replace(side, name=name) for side, name in zip(sides, _shortest_names(*files), strict=True)]
+
+
+def _shortest_names(first: Path, second: Path) -> tuple[str, str]:
+    """The shortest trailing parts of two paths that differ; both in full if the paths are the same."""
+    parts = [path.resolve().parts for path in (first, second)]
+    for k in range(2, max(map(len, parts)) + 1):
+        a, b = ("/".join(p[-k:]) for p in parts)
+        if a != b:
+            return a, b
+    return str(first), str(second)
 
 
 def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
