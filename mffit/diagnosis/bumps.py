@@ -72,8 +72,8 @@ class BumpScan:
         residual = np.clip(hypothesis.residual, -limit, limit)
         along = hypothesis.axes.T @ residual
         # Shared changes act on shapes and residual alike, so that they need to be taken off the smaller one only.
-        axes = self.noise.less_shared(hypothesis.axes).astype(np.float32)
-        left = self.noise.less_shared(residual).astype(np.float32)
+        axes = self.noise.back(hypothesis.axes).astype(np.float32)
+        left = self.noise.back(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
         for channel, first, rows, shapes, whole in self._white:

@@ -226,13 +226,6 @@ PARTS_OF_A_RUN = Count(
 
 # What a fit leaves
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
-INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
-MOST_POINTS_EXAMINED = Count(
-    40_000,
-    "-",
-    "Points whose residuals are examined, of more evenly spaced ones: a fiftieth of the noise still shows.",
-    "tests/benchmarks/scale.py",
-)
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
 )
@@ -241,11 +234,6 @@ DISTINCT_DIRECTION = Real(
     "-",
     "A direction with a smaller share of the power of the strongest one is one with others: it adds no number.",
 )
-AS_GOOD_SHARE = Real(
-    0.9,
-    "-",
-    "Share of what the best effect explains from which another explains as much, far above the noise.",
-)
 SAME_RESIDUALS = Real(
     0.5,
     "-",
@@ -253,9 +241,6 @@ SAME_RESIDUALS = Real(
     "channels have about 0, those that sweeps hardly separate nearly 1.",
 )
 MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
-BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
-NEIGHBOURS_OF_RESIDUALS = Count(2, "-", "Lags along a sweep at which residuals are compared.")
 MOST_NUMBERS_IN_SENTENCE = Count(
     3, "-", "Most numbers of an effect, or conditions of residuals, in a sentence."
 )
-SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")

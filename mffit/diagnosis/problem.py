@@ -298,7 +298,8 @@ class DiagnosisProblem:
         away = np.array([fitted.numbers[n.name] - n.expected for n in numbers])
         at_centre = fitted.residual - fitted.jacobian @ away
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        return self.noise.with_shared(columns), self.noise.with_shared(at_centre)
+        found = self.noise.unshared(np.column_stack([at_centre, columns]))
+        return found[:, 1:], found[:, 0]
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
@@ -312,9 +313,9 @@ class DiagnosisProblem:
 
         def linear(x: np.ndarray) -> Linear:
             out, slope = at(x).sensitivities(self.points, names, self.channels)
-            data = self.noise.whiten(np.nan_to_num(out.stacked - self.measured))
-            rows = np.where(np.isfinite(self.measured)[:, None], slope.stacked, 0.0)
-            return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
+            rows = np.column_stack([out.stacked - self.measured, slope.stacked])
+            white = self.noise.whiten(np.nan_to_num(np.where(np.isfinite(self.measured)[:, None], rows, 0.0)))
+            return Linear(white[:, 0], white[:, 1:], nothing, np.zeros((0, len(names))))
 
         return LeastSquaresProblem(residual, linear)
 

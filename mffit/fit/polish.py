@@ -17,7 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
-from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, minimum, solve
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, solve
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
@@ -37,11 +37,11 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
         begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
         numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
-        found = minimum(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+        found = solve(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
         ends.append(found)
     best = part.with_values(min(ends, key=lambda end: end.cost).values)
     numbers = plan.numbers(best)
-    near = minimum(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    near = solve(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
     return polish(problem.with_values(near.values), plan)
 
 
@@ -105,7 +105,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)
-        near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+        near = solve(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
         problem = problem.with_values(near.values)
     return problem
 

@@ -20,6 +20,7 @@ NONZERO_STARTS = {
     "QDTP1": 3.0,
     "QCRP1": 0.1,
     "QBRP1": 0.2,
+    "QSX2": 0.1,
     "RBX2": 8.0,
     "RBY2": 8.0,
     "RVY1": 0.01,

@@ -2,7 +2,6 @@
 
 from mffit.measured.alignment import align
 from mffit.measured.axis import alignment_verdict
-from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
@@ -21,7 +20,6 @@ __all__ = [
     "KEYS",
     "Alignment",
     "Contribution",
-    "DirectInputs",
     "LoadResult",
     "Measured",
     "RadiusReading",
@@ -32,7 +30,6 @@ __all__ = [
     "align",
     "alignment_verdict",
     "at_the_axis",
-    "direct_method",
     "measure",
     "measured_path_radius",
     "odd_alpha",

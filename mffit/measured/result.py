@@ -19,8 +19,8 @@ from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 from tir.parameters import BY_NAME
 
-CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
-"""Names of sources in the budget."""
+FINITE_SPIN = "finite spin of the disc"
+"""Its name in the budget."""
 
 
 def usual_ply_steer() -> float:
@@ -71,7 +71,7 @@ def path_in_words(phi_t: float) -> str:
 
 
 class SetupScatter(NamedTuple):
-    """Scatter of the zeros of repeated set-ups on one path, beside what is declared; one-way analysis of variance."""
+    """Scatter of the zeros of repeated set-ups on one path, in addition to what is declared; one-way analysis of variance."""
 
     load: float  #: at which it was measured [N]
     setups: tuple[str, ...]  #: the repeated ones
@@ -79,12 +79,7 @@ class SetupScatter(NamedTuple):
     degrees_of_freedom: int
     declared: float  #: the same as the uncertainties in [rig] give it [N]
     chance: float  #: probability of so much scatter if the declaration holds
-    within: float | None  #: standard deviation of the force at zero from sweep to sweep within a set-up [N]
-    degrees_of_freedom_within: int
-    stated: float | None  #: the same as the stated uncertainties of the points give it [N]
-    between_alpha: float | None  #: standard deviation of the sideslip zero from set-up to set-up [rad]
-    declared_alpha: float | None  #: [rad]
-    excess: float  #: force by which a set-up scatters beyond what is declared and stated [N]
+    excess: float  #: force by which a set-up scatters beyond what is declared [N]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -95,8 +90,6 @@ class LoadResult(Brief):
     C_alpha: Quantity | None = None  #: slope at zero on the path [N/rad]
     C_alpha_straight: Quantity | None = None  #: the same without spin, by the model of a build [N/rad]
     C_gamma: Quantity | None = None  #: the chosen estimate on the path, corrected for rig errors [N/rad]
-    C_gamma_slope: Quantity | None = None  #: corrected like it
-    C_gamma_secant: Quantity | None = None
     r_e: Quantity | None = None  #: [m]
     R: Quantity | None = None  #: [m]
     F_phit: Quantity | None = None  #: turn-slip force, corrected (23) [N]
@@ -113,7 +106,6 @@ class LoadResult(Brief):
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
-    left_out: tuple[Contribution, ...] = ()  #: lines that the published procedure leaves out of its budget
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
     setups: tuple[
         SetupResult, ...
@@ -247,19 +239,16 @@ class Measured(Brief):
         assert direct is not None
         u_bias = constants.SPIN_BIAS_OF_MODEL * abs(bias)
         before = math.hypot(*(line.contribution for line in row.budget if line.source == FINITE_SPIN))
-        rest = math.hypot(
-            math.sqrt(max(direct.u**2 - before**2, 0.0)), *(line.contribution for line in row.left_out)
-        )
+        rest = math.sqrt(max(direct.u**2 - before**2, 0.0))
         both = math.hypot(bias, u_bias)
         spin = Contribution(FINITE_SPIN, both, "-", both, value=0.0, sensitivity=1.0)
-        lines = [line for line in (*row.budget, *row.left_out) if line.source != FINITE_SPIN]
+        lines = [line for line in row.budget if line.source != FINITE_SPIN]
         whole, corrected = math.hypot(rest, both), direct.value - bias
         named = dataclasses.replace(
             row,
             epsilon_gamma=Quantity(direct.value, whole, direct.unit),
             epsilon_debiased=Quantity(corrected, math.hypot(rest, u_bias), direct.unit),
             budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
-            left_out=(),
         )
         return self.with_nominal(named)
 

@@ -1,9 +1,10 @@
-"""Stiffnesses at zero from odd curves: a saturating shape, cross-checked by a local cubic; the secant beside them."""
+"""Stiffnesses at zero from odd curves: a saturating shape, cross-checked by a local cubic; and the secant."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,35 +12,29 @@ from mffit.measured import constants
 from mffit.parts.constants import SAME_CAMBER
 
 
-@dataclass(frozen=True, slots=True)
-class SlopeAtZero:
+class SlopeAtZero(NamedTuple):
     """Slope of an odd curve at zero, in the unit of y per radian."""
 
     value: float
     u_noise: float  #: standard uncertainty from the scatter of the points
     u_shape: float  #: half the difference of two shapes, beyond noise; common to curves of one tyre
-    u_own: float  #: error of both shapes, which differs from curve to curve
-    cubic: float  #: the cross-check; NaN if too few points
-    points: int
-
-    @property
-    def u(self) -> float:
-        """Combined standard uncertainty."""
-        return math.hypot(self.u_noise, self.u_shape, self.u_own)
-
-    @property
-    def dof(self) -> float:
-        """Degrees of freedom of ``u_noise``."""
-        return max(1.0, self.points - 3.0)
+    dof: float  #: degrees of freedom of ``u_noise``
 
 
-@dataclass(frozen=True, slots=True)
-class Secant:
+class Secant(NamedTuple):
     """Secant of an odd curve at one angle, the paper's (20)."""
 
     value: float
     u: float
-    angle: float  #: of the point used [rad]
+
+
+def polynomial(
+    x: np.ndarray, y: np.ndarray, u: np.ndarray, powers: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients (k,) of these powers through readings (n,), and their standard uncertainties."""
+    A = x[:, None] ** np.array(powers) / u[:, None]
+    errors = np.linalg.inv(A.T @ A)
+    return errors @ A.T @ (y / u), np.sqrt(np.diag(errors))
 
 
 def slope_at_zero(
@@ -68,12 +63,11 @@ def slope_at_zero(
     scatter = max(1.0, scatter)
     u_noise *= scatter
     near = x <= local * 1.01
-    cubic, difference = np.nan, constants.SLOPE_WITHOUT_CUBIC * abs(shape)
+    difference = constants.SLOPE_WITHOUT_CUBIC * abs(shape)
     if len(np.unique(np.round(x[near], 4))) >= 3:
-        cubic, u_cubic = _cubic(x[near], y[near], u[near])
-        difference = math.sqrt(max((shape - cubic) ** 2 - u_cubic**2, 0.0))
-    u_own = float(constants.SLOPE_SHAPE * abs(shape))
-    return SlopeAtZero(shape, u_noise, float(difference / 2.0), u_own, float(cubic), len(x))
+        cubic, u_cubic = polynomial(x[near], y[near], u[near], (1, 3))
+        difference = math.sqrt(max((shape - cubic[0]) ** 2 - u_cubic[0] ** 2, 0.0))
+    return SlopeAtZero(shape, u_noise, float(difference / 2.0), max(1.0, len(x) - 3.0))
 
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
@@ -85,10 +79,10 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     if abs(nearest - angle) < reach:
         same = np.abs(x - nearest) < 1e-3
         u_mean = float(np.linalg.norm(u[same])) / same.sum()
-        return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest), angle)
+        return Secant(float(np.mean(y[same] / x[same])), float(u_mean / nearest))
     order = np.argsort(x)
     value, u_value = (float(np.interp(angle, x[order], one[order]) / angle) for one in (y, u))
-    return Secant(value, u_value, angle)
+    return Secant(value, u_value)
 
 
 def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:
@@ -122,10 +116,3 @@ def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -
     scatter = float(np.sqrt(out.chisqr / max(len(x) - 3, 1)))
     error = found.stderr if found.stderr is not None else abs(found.value)
     return float(found.value * start), float(error * abs(start)), scatter
-
-
-def _cubic(x: np.ndarray, y: np.ndarray, u: np.ndarray) -> tuple[float, float]:
-    A = np.column_stack([x, x**3]) / u[:, None]
-    cov = np.linalg.inv(A.T @ A)
-    a = cov @ (A.T @ (y / u))
-    return float(a[0]), float(np.sqrt(cov[0, 0]))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +14,9 @@ from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.measured import constants, wording
 from mffit.measured.evidence import DirectEvidence, rest_of_play
-from mffit.measured.slopes import Secant, SlopeAtZero, secant_at, slope_at_zero
+from mffit.measured.slopes import Secant, SlopeAtZero, polynomial, secant_at, slope_at_zero
 from mffit.measured.uncertain import named
-from mffit.measured.zeros import LoadGroup, polynomial, u_of
+from mffit.measured.zeros import LoadGroup, u_of
 from mffit.points import Points, main_path
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
@@ -40,6 +40,13 @@ class LoadSlopes:
     C_gamma_backward: UFloat | None  #: the same of a backward sweep
     slope: UFloat | None  #: of the forward sweep at zero [N/rad]
     secant: UFloat | None  #: of the forward sweep [N/rad]
+
+    def of_camber(self, better: Callable[[UFloat], UFloat]) -> LoadSlopes:
+        """The same with better estimates of the camber stiffness."""
+        C_gamma, slope, secant = (
+            None if C is None else better(C) for C in (self.C_gamma, self.slope, self.secant)
+        )
+        return replace(self, C_gamma=C_gamma, slope=slope, secant=secant)
 
     @property
     def exists(self) -> bool:
@@ -96,11 +103,9 @@ def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
     x = points.alpha[i]
     if len(np.unique(np.round(x, 3))) < constants.POINTS_FOR_PARABOLA or not x.min() < 0.0 < x.max():
         return None
-    found, errors = polynomial(x / reach, points.Fy[i], u_of(points, "Fy")[i], 3)
+    found, errors = polynomial(x / reach, points.Fy[i], u_of(points, "Fy")[i], range(4))
     scale = 2.0 / reach**2
-    return named(
-        scale * found[2], scale * math.sqrt(errors[2, 2]), "bend of the sideslip curve", "N/rad^2", kind="A"
-    )
+    return named(scale * found[2], scale * errors[2], "bend of the sideslip curve", "N/rad^2", kind="A")
 
 
 def _camber_estimates(
@@ -190,7 +195,7 @@ def _number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | 
     if isinstance(estimate, Secant):
         return named(estimate.value, estimate.u, source, "N/rad", kind="A")
     noise = named(estimate.value, estimate.u_noise, source, "N/rad", kind="A", dof=estimate.dof)
-    own = named(0.0, estimate.u_own, f"{source}, shape of the curve", "N/rad")
+    own = named(0.0, constants.SLOPE_SHAPE * abs(estimate.value), f"{source}, shape of the curve", "N/rad")
     return noise + own + abs(estimate.value) * (shape or _shape_error([estimate], source))
 
 

@@ -7,13 +7,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from mffit.errors import InputError
 from mffit.recordings import constants
 from mffit.recordings.guess import candidates, simplified
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME
+from mffit.sweeps.columns import text_of
 from mffit.sweeps.raw_table import RawTable
 
 RUN = {
@@ -148,7 +147,7 @@ def _summary(file: Path, recordings: Sequence[Path]) -> RunSummary | None:
 def _row(raw: RawTable, columns: dict[str, str], k: int, recording: Path) -> SummaryRow:
     def text(names: Iterable[str]) -> str:
         heading = next((columns[name] for name in reversed(columns) if name in names), None)
-        return "" if heading is None else _text(raw.column(heading)[k])
+        return "" if heading is None else text_of(raw.column(heading)[k])
 
     return SummaryRow(
         recording=recording,
@@ -170,7 +169,7 @@ def _bad(quality: str, good: str, remark: str) -> str:
 
 def _recording(cell: str | float, recordings: Sequence[Path]) -> Path | None:
     """The recording that a cell names, by its file or by the number of the run; None if none or several fit."""
-    name = _text(cell)
+    name = text_of(cell)
     stems = {path: formats.stem(path.name).lower() for path in recordings}
     exact = [path for path in recordings if name.lower() in (path.name.lower(), stems[path])]
     if exact:
@@ -185,9 +184,3 @@ def _recording(cell: str | float, recordings: Sequence[Path]) -> Path | None:
             if name and re.search(rf"{re.escape(name.lower())}(?!\d)", stem)
         ]
     return found[0] if len(found) == 1 else None
-
-
-def _text(cell: str | float) -> str:
-    if isinstance(cell, str):
-        return cell.strip()
-    return "" if not np.isfinite(cell) else f"{float(cell):g}"

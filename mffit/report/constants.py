@@ -5,7 +5,7 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 POINTS_PER_SERIES = Count(
-    4000, "-", "Most points of a series in a picture and its table: more lie on top of each other."
+    4000, "-", "Most points of a series in the table behind a picture; points.csv has all."
 )
 MOST_MARKS = Count(150, "-", "Panels with more marks show them small, so that they cover each other less.")
 COLOURS_OF_MAP = Count(

@@ -12,17 +12,22 @@ from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.points import Points
-from mffit.report.catalogue import NamedChannel
+from mffit.quantities import CHANNELS, QuantityName
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GapChannel(NamedChannel):
+class GapChannel:
     """One channel before and after: measured minus simulated in units of the noise of each point, (n,)."""
 
+    name: str
     before: np.ndarray
     after: np.ndarray
-    noise: float  #: of a typical point, in ``unit``
+    noise: float  #: of a typical point, in the channel's unit
+
+    @property
+    def known(self) -> QuantityName:
+        return CHANNELS[self.name]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,6 +20,7 @@ from scipy.special import chdtr, chdtrc, ndtr
 
 from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
+from mffit.linearised.inputs import word_of
 from mffit.measured import LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
@@ -31,6 +32,7 @@ from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, When, rule
 from mffit.suspicion.unpublished import causes
+from tir.errors import listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +76,6 @@ class FinishedFit(JudgedMeasurement):
     linear: LinearisedFit | None = None
     """What the fit leaves; None if all that the model misses counts as noise."""
     against: tuple[Doubt, ...] = ()  #: sweeps that contradict the others, the worst first
-    structure: str = ""  #: where residuals are not random, in words
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
     held: tuple[HeldNumber, ...] = ()
@@ -404,13 +405,18 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="structure-in-the-residuals",
+    limits=(constants.CERTAIN_SIGMA,),
     outcome=Outcome.WARNED,
-    sentence="the residuals are not random: {structure}; see plots/structure.png",
+    sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
 )
 def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Means of residuals over each condition and their neighbours along sweeps, where the noise is stated."""
-    if fit.structure and _noise_is_stated(fit):
-        yield {"structure": fit.structure}
+    """Evidence of a smooth miss, where the noise is stated and the miss is no more than it."""
+    for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():
+        enough = 0.5 * constants.CERTAIN_SIGMA**2
+        over = [word_of(one) for one, gain in channel.missed_over.items() if gain > enough]
+        if channel.proof > enough and over:
+            facts = {"channel": name, "over": listed(over), "size": channel.size}
+            yield {**facts, "unit": CHANNELS[name].unit}
 
 
 @of_model(

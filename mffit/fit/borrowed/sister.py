@@ -29,7 +29,6 @@ from mffit.fit.priors import NOT_MEASURED, scatter
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.upright import sideways
 from mffit.points import Points, levels, main_pressure
-from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.parameters import BY_NAME, TABLE
@@ -144,7 +143,6 @@ def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
         covariance=errors @ errors.T + np.diag(np.square(own)),
         leans_on=fitted.names,
         slope=slope[:, :-2],
-        envelope=sister.envelope,
     )
     u = fitted.with_numbers(every).stderr
     return Lent(
@@ -209,15 +207,3 @@ def _scaled(
         found[name] = theirs[name] * math.exp(power * growth)
         derivative[name] = found[name] * power * by_growth[of_kappa]
     return _Scaled(found, derivative)
-
-
-def sister_sentence(lent: Lent) -> str:
-    """Where longitudinal and combined slip come from, with both ratios and what their uncertainty contains."""
-    sister, friction, slip = lent.sister, lent.friction, lent.stiffness
-    return ascii_only(
-        f"Fx and combined slip are those of the sister tyre {sister.file}, scaled by the measured side force: friction times "
-        f"{to_uncertainty(friction.value, friction.u)} +- {to_uncertainty(friction.u, friction.u)}, slip stiffness times "
-        f"{to_uncertainty(slip.value, slip.u)} +- {to_uncertainty(slip.u, slip.u)}. These contain the uncertainty of the fit, "
-        f"and {sister.u_friction:.0%} and {sister.u_stiffness:.0%} for tyres whose longitudinal force does not follow the side "
-        "force. No reading of this tyre tests them."
-    )

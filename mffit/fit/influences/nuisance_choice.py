@@ -15,7 +15,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, clearly_above_zero
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber, minimum
+from mffit.least_squares import FreeNumber, solve
 from mffit.points import Points
 from mffit.suspicion import parts_of_sweeps
 
@@ -274,7 +274,7 @@ def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
 def solved(model: NearSolution) -> NearSolution:
     """The model fitted again from where it is."""
     numbers = model.problem.starting_here(model.numbers)
-    found = minimum(model.problem.free([number.name for number in numbers]), numbers)
+    found = solve(model.problem.free([number.name for number in numbers]), numbers)
     return model._replace(problem=model.problem.with_values(found.values))
 
 

@@ -16,7 +16,7 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import EXACT, FreeNumber, inverse, minimum, of_model, solve
+from mffit.least_squares import EXACT, FreeNumber, inverse, of_model, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
@@ -55,7 +55,7 @@ def radius_coefficients(
     loads, target = np.array(list(r_e)), np.array(list(r_e.values()))
     radius = of_model(lambda free: effective_radius({**values, **free}, loads, speed), names, target, 1e-6)
     numbers = [FreeNumber(name, float(values[name])) for name in names]
-    return minimum(radius, numbers, tolerance=1e-12).values
+    return solve(radius, numbers, tolerance=1e-12).values
 
 
 @dataclass(frozen=True, slots=True)

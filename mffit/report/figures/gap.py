@@ -14,6 +14,7 @@ from mffit.diagnosis.where import Region
 from mffit.report import constants, labels, style
 from mffit.report.diagnosis_view import DiagnosisView, GapChannel, Shown
 from mffit.report.drawing.records import (
+    NOTHING,
     ZERO,
     Axis,
     Bars,
@@ -58,7 +59,7 @@ def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
     return Panel(
         title=f"{shown.word}: {labels.LOAD.of(curve.load)}{labels.held_unless_zero(curve)}{backward}",
         x=labels.angle_axis(curve.over),
-        y=Axis(label=f"{channel.symbol} [{channel.unit}]"),
+        y=Axis(label=channel.known.short_axis),
         series=[
             Trace(
                 name="measured",
@@ -74,6 +75,8 @@ def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
 
 def residuals_before_after(view: DiagnosisView) -> Sheet:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
+    if not view.channels:
+        return NOTHING
     limit = colour_limit(view.channels)
     rows = []
     for which, over in ((rolling, ANGLES), (driven, SLIPS)):
@@ -82,7 +85,7 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
             for channel in view.channels:
                 frames = _frames(view.frames(channel.name), condition.load) if over == ANGLES else []
                 for when in ("before", "after") if view.changed else ("before",):
-                    title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
+                    title = f"{channel.known.mathtext}{' ' + when if view.changed else ''}, {condition.title}"
                     framed = frames if when == "before" else ()
                     values = getattr(channel, when)
                     maps.append(residual_map(view.points, values, condition, title, framed, over=over))
@@ -102,7 +105,7 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
 def evidence(view: DiagnosisView) -> Sheet:
     """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
     panels = [_candidates(step, number_of) for number_of, step in enumerate(view.steps, 1)]
-    most = max(len(panel.y.words or {}) for panel in panels)
+    most = max((len(panel.y.words or {}) for panel in panels), default=1)
     present = {trial.effects[-1].kind for step in view.steps for trial in step.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
     return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)

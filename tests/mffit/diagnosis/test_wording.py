@@ -26,7 +26,7 @@ from mffit.diagnosis.notes import (
     OneSweep,
     WithoutNoise,
 )
-from mffit.diagnosis.one_step import BestEffect, OneStep
+from mffit.diagnosis.remains import BestEffect, OneStep
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
