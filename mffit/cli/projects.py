@@ -17,14 +17,13 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
-@out_option("Folder for tyre.toml, stretches.csv and pictures [default: only printed].")
 @voiced
-def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
+def sniff(files: tuple[Path, ...], voice: Voice) -> None:
     """Show the content of recordings.
 
     Prints channels, units, axes, conditions and stretches, and a tyre.toml for the recordings.
     """
-    from mffit import pipeline, recordings
+    from mffit import recordings
     from mffit.report import text
 
     with voice.progress() as show:
@@ -32,12 +31,7 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
         found = recordings.sniff(files)
     voice.say(text.sniff_summary(found))
     voice.give(found)
-    if out is None:
-        project = recordings.project_text(found, Path())
-        voice.say("\n" + project, end="")
-        return
-    for path in pipeline.write_sniffed(found, out):
-        voice.say(f"written {path}")
+    voice.say("\n" + recordings.project_text(found, Path()), end="")
 
 
 @click.command()

@@ -4,7 +4,7 @@ from mffit.pipeline.building import build
 from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
 from mffit.pipeline.fleets import fleet
-from mffit.pipeline.intake import init_from, project_of, write_sniffed
+from mffit.pipeline.intake import init_from, project_of
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
@@ -24,5 +24,4 @@ __all__ = [
     "project_of",
     "show",
     "spin",
-    "write_sniffed",
 ]

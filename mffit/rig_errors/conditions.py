@@ -25,7 +25,6 @@ CAMBER_ZERO = RigError(
             id="camber-misalignment",
             name="camber axis misaligned",
             physics="The camber axis reads zero while the wheel leans a little.",
-            parity="even in gamma",
             confusable_with=("camber-reduction", "path-radius"),
             remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
             "to all readings of the camber angle",
@@ -57,7 +56,6 @@ LOAD_CAMBER = RigError(
             name="load that changes with camber",
             physics="The load on the tyre falls, or rises, as the wheel leans, because its cell leans with it or is no longer "
             "above the contact point.",
-            parity="odd in alpha and gamma",
             needs=("camber",),
             confusable_with=("camber-grip", "camber-thrust-curvature"),
             remedy="hold the load constant over camber by a cell under the disc; or multiply the reported load by 1 + {value} "
@@ -83,7 +81,6 @@ PATH_RADIUS = RigError(
             id="path-radius",
             name="path radius",
             physics="The contact point runs on another radius than declared.",
-            parity="as turn slip",
             needs=("curved",),
             confusable_with=("camber-reduction",),
             remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
@@ -114,7 +111,6 @@ SLIP_ZERO = RigError(
             name="zero of longitudinal slip",
             physics="The slip reads zero while the wheel is driven or braked a little, because its rolling radius or a speed is "
             "not exactly known.",
-            parity="even in slip",
             needs=("drive",),
             confusable_with=("slip-shift",),
             remedy="count slip from the speed of the freely rolling wheel; or add {value} to all readings of the slip, "

@@ -68,7 +68,6 @@ class Appearance:
     id: str  #: of the effect
     name: str
     physics: str  #: one sentence
-    parity: str  #: under alpha, gamma, phi_t -> reversed
     needs: tuple[str, ...] = ()  #: what the data must vary; keys of effects.needs
     confusable_with: tuple[str, ...] = ()  #: ids of effects
     remedy: str = ""  #: at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
