@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.uncertain import Contribution, Expanded, expanded
@@ -82,6 +82,11 @@ class SetupScatter(NamedTuple):
     excess: float  #: force by which a set-up scatters beyond what is declared [N]
 
 
+def is_clear(misalignment: Quantity | None) -> bool:
+    """Whether a misalignment differs clearly from zero."""
+    return misalignment is not None and abs(misalignment.value) > COVERAGE_FACTOR_95 * misalignment.u
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
@@ -115,6 +120,14 @@ class LoadResult(Brief):
         """Side force [N] of a small sideslip angle [rad], by the usual stiffness if none was measured."""
         C_alpha = -USUAL_CORNERING_STIFFNESS * self.load if self.C_alpha is None else self.C_alpha.value
         return C_alpha * angle
+
+    def slips_beyond(self, u_force: float) -> bool:
+        """Whether the side force of alpha_M exceeds what the alignment of the axis is declared to leave [N]."""
+        return self.alpha_M is not None and abs(self.slip_force(self.alpha_M.value)) > u_force
+
+    def axis_off(self, u_force: float) -> bool:
+        """Whether it does, and the axis, not the tyre, clearly causes it."""
+        return self.slips_beyond(u_force) and is_clear(self.misalignment)
 
     def shift_by(self, force: float) -> float:
         """Change of eps_gamma by a force [N] that is taken for turn slip."""

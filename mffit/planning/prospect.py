@@ -19,7 +19,7 @@ from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.least_squares import inverse
-from mffit.measured import Measured, alignment_verdict, measured_path_radius
+from mffit.measured import Measured, measured_path_radius
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, Goal
 from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.points import Points, levels, main_pressure, make_points
@@ -247,7 +247,7 @@ class Prospect:
         if R is not None:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
         # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
-        misaligned = alignment_verdict(config, row).beyond
+        misaligned = row.slips_beyond(config.rig.u("alpha_0_deg"))
         setups = tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)]))
         mounts = [self.points.mount, *(run.points.mount for run in runs if run.points is not None)]
         turned = len(np.unique(np.concatenate(mounts))) > 1
