@@ -238,7 +238,6 @@ def _assembled(
     measured = replace(
         measured,
         nominal=nominal.row,
-        epsilon_gamma_debiased=nominal.row.epsilon_debiased,
         pecp1=law.pecp1,
         pecp2=law.pecp2,
         u_pecp2=law.u_pecp2,

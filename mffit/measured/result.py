@@ -180,7 +180,6 @@ class Measured(Brief):
     axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
-    epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     made: Made | None = None  #: set by ``mffit spin``
     reasons: tuple[str, ...] = ()  #: against trusting it, set by ``mffit spin``; a build judges the whole
 
@@ -216,6 +215,11 @@ class Measured(Brief):
         return self.nominal.C_gamma if self.nominal else None
 
     @property
+    def epsilon_gamma_debiased(self) -> Quantity | None:
+        """Corrected for the finite spin of the disc."""
+        return self.nominal.epsilon_debiased if self.nominal else None
+
+    @property
     def C_alpha(self) -> Quantity | None:
         return self.nominal.C_alpha if self.nominal else None
 
@@ -236,9 +240,7 @@ class Measured(Brief):
         return self.nominal.budget if self.nominal else ()
 
     def by_load(self, key: str) -> dict[float, float]:
-        """One quantity by load [N]: "C_alpha", "C_gamma" or "r_e_measured"."""
-        if key == "r_e_measured":
-            return dict(self.r_e_loads)
+        """One quantity by load [N], such as "C_alpha"."""
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
@@ -268,9 +270,7 @@ class Measured(Brief):
     def with_nominal(self, row: LoadResult) -> Measured:
         """The record with another row at the nominal load."""
         rows = tuple(row if other is self.nominal else other for other in self.per_load)
-        return dataclasses.replace(
-            self, nominal=row, per_load=rows, epsilon_gamma_debiased=row.epsilon_debiased
-        )
+        return dataclasses.replace(self, nominal=row, per_load=rows)
 
     def quantities(self) -> dict[str, Quantity]:
         """What goes into the property file's structured comments."""
@@ -313,11 +313,6 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-
-    @property
-    def secant(self) -> bool:
-        """Whether C_alpha is from two iterations."""
-        return self.source == "secant"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
