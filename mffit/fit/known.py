@@ -72,7 +72,7 @@ def known_before_fit(
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
     known = known.having(covered_ranges(points), "range")
-    r_e = dict(measured.by_load("r_e_measured"))
+    r_e = dict(measured.r_e_loads)
     if r_e:
         free = hand.without_held(RADIUS_COEFFICIENTS)
         known = known.having(
