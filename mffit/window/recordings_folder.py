@@ -20,7 +20,7 @@ from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, guesses
 from mffit.recordings.project_file import Stated, slug, tyre_found
 from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, rolls_backward, sniff
-from mffit.recordings.summary import RunSummary, apart, bad_runs, two_specimens
+from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
@@ -43,7 +43,7 @@ class RecordingsFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
         self._seen: object = None
-        self._apart: tuple[list[Path], tuple[RunSummary, ...]] = [], ()
+        self._apart: tuple[list[Path], tuple[SummaryRow, ...]] = [], ()
 
     @property
     def files(self) -> list[Path]:
@@ -51,11 +51,11 @@ class RecordingsFolder:
         return self._parted()[0]
 
     @property
-    def summaries(self) -> tuple[RunSummary, ...]:
+    def summaries(self) -> tuple[SummaryRow, ...]:
         """The summaries of tests that are in the folder now."""
         return self._parted()[1]
 
-    def _parted(self) -> tuple[list[Path], tuple[RunSummary, ...]]:
+    def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...]]:
         found = [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
         now = [(path, path.stat().st_mtime_ns) for path in found]
         if now != self._seen:
