@@ -17,7 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
-from mffit.least_squares import POLISH_TOLERANCE, solve
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
