@@ -126,9 +126,7 @@ UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
 MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
-FEWEST_CANDIDATES_FITTED = Count(
-    4, "-", "Best candidates of a step: always fitted in full, and tried in place of accepted ones."
-)
+FEWEST_CANDIDATES_FITTED = Count(4, "-", "Best candidates of a step, always fitted in full.")
 PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
 PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
 STRUCTURE_EVIDENCE = Real(
