@@ -41,6 +41,7 @@ COMMENT = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
+OPEN_QUOTE = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
 LABELS = frozenset(channel.name for channel in SWEEP_CHANNELS if channel.kind == "label")
 """Columns that are texts even if they look like numbers."""
 
@@ -174,12 +175,12 @@ def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path
             width = sum(isinstance(name, str) for name in names)
             raise ragged(int(found[2]), width, path, above + int(found[1])) from None
         line = above + 1 + int((re.findall(r"row (\d+)", str(error)) or ["0"])[0])
-        raise InputError(f"is not valid CSV ({error}); correct it", file=path, line=line) from None
+        sentence = OPEN_QUOTE if "EOF inside string" in str(error) else f"is not valid CSV ({error}); correct it"
+        raise InputError(sentence, file=path, line=line) from None
     if len(table) != body.count(b"\n") + (not body.endswith(b"\n")):
         lines = body.split(b"\n")
         line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
-        sentence = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
-        raise InputError(sentence, file=path, line=line)
+        raise InputError(OPEN_QUOTE, file=path, line=line)
     return table
 
 
