@@ -160,11 +160,6 @@ USUAL_MISS_OF_A_FORMULA = Real(
     "-",
     "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
 )
-SHARES_OF_STRUCTURE = Series(
-    (1.0, 0.3, 0.1, 0.0),
-    "-",
-    "Shares of smooth structure that may be left beside a further effect, tried to first order.",
-)
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(
     0.5, "-", "Share of the gain of a step that is added to this limit beside other effects."

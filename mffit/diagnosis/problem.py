@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -77,12 +76,6 @@ class DiagnosisProblem:
     def seen_through(self, noise: Noise) -> DiagnosisProblem:
         """The same with another noise."""
         return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
-
-    def _with_share(self, share: float) -> DiagnosisProblem:
-        """The same with a part of the smooth structure in the covariance."""
-        assert self.beside is not None
-        part = {name: share * size for name, size in self.beside.amplitude.items()} if share else {}
-        return self.at_amplitude(Smooth(part, math.inf))
 
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
         """The same with smooth structure in the covariance as it was found beside a hypothesis."""
@@ -193,24 +186,16 @@ class DiagnosisProblem:
             gradient=information @ away + white.T @ residual,
         )
 
-    def promising(
-        self, before: Hypothesis, candidates: Sequence[Effect]
-    ) -> list[tuple[Effect, float, DiagnosisProblem]]:
-        """Candidates with their gain in log evidence to first order, best first, and the problem to fit each in.
-
-        Its covariance has the part of the smooth structure that is likeliest to be left beside the candidate.
-        """
+    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
+        """Candidates with their gain in log evidence to first order, best first."""
         columns = self.columns(before.state, candidates)
         beside = self.beside or StructureBeside.nothing(self.noise)
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
         model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
-        known, alone, problems = model.near(now)[0], beside.scatter.alone(), {1.0: self, 0.0: self}
-        if now:
-            problems = {share: self._with_share(share) for share in constants.SHARES_OF_STRUCTURE}
-        out = []
+        known, alone, out = model.evidence(now), beside.scatter.alone(), []
         for effect, groups in columns.items():
-            found = max(model.with_columns(alone.whiten(one)).near(now) for one in groups)
-            out.append((effect, max(found[0] - known, 0.0), problems[found[1]]))
+            found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
+            out.append((effect, max(found - known, 0.0)))
         return sorted(out, key=lambda row: -row[1])
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:

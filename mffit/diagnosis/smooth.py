@@ -183,20 +183,6 @@ class BesideColumns(NamedTuple):
         """By how much amplitudes are less probable beforehand than none, as a logarithm."""
         return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
 
-    @property
-    def price(self) -> float:
-        """Log evidence that the choice of amplitudes costs, and that structure needs beforehand."""
-        return len(self.structure.channels) * math.log(len(AMPLITUDES)) + constants.STRUCTURE_EVIDENCE
-
-    def near(self, amplitude: Mapping[str, float]) -> tuple[float, float]:
-        """The best evidence with amplitudes that are a share of the given ones, the price paid, and that share."""
-        shares = constants.SHARES_OF_STRUCTURE if amplitude else (0.0,)
-        found = []
-        for share in shares:
-            value = self.evidence({name: share * size for name, size in amplitude.items()})
-            found.append((value - self.price if share else value, share))
-        return max(found)
-
     def best(self) -> Smooth:
         """The likeliest amplitudes, with the price of their search."""
         channels = self.structure.channels

@@ -175,7 +175,9 @@ def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path
             width = sum(isinstance(name, str) for name in names)
             raise ragged(int(found[2]), width, path, above + int(found[1])) from None
         line = above + 1 + int((re.findall(r"row (\d+)", str(error)) or ["0"])[0])
-        sentence = OPEN_QUOTE if "EOF inside string" in str(error) else f"is not valid CSV ({error}); correct it"
+        sentence = (
+            OPEN_QUOTE if "EOF inside string" in str(error) else f"is not valid CSV ({error}); correct it"
+        )
         raise InputError(sentence, file=path, line=line) from None
     if len(table) != body.count(b"\n") + (not body.endswith(b"\n")):
         lines = body.split(b"\n")

@@ -41,7 +41,7 @@ class Table:
     def promising(self, before, candidates):
         beside = frozenset(e.id for e in before.effects)
         known = {e: self.evidence.get(beside | {e.id}, (0.0,))[0] for e in candidates}
-        return [(e, max(value - before.log_evidence, 0.0), self) for e, value in known.items()]
+        return [(e, max(value - before.log_evidence, 0.0)) for e, value in known.items()]
 
     def at_amplitude(self, smooth):
         return self
