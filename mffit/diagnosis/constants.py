@@ -91,11 +91,6 @@ SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
-BUMP_RESIDUAL_CLIP = Real(
-    3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
-)
-MOST_BUMPS_SET_ASIDE = Count(2, "-", "Most bumps that may explain misfit while the scatter is estimated.")
-
 # Where the misfit is
 FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
 MOST_REGIONS = Count(12, "-", "Most regions that are listed.")

@@ -17,6 +17,7 @@ from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, s
 from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
+from mffit.left_out import moved_without
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
@@ -35,8 +36,7 @@ class LinearisedNumbers:
 
     def moved_without(self, rows: np.ndarray) -> np.ndarray:
         """Change (k,) of the numbers when some readings, by their positions among the used ones, are left out."""
-        out = self.white[rows]
-        return -np.linalg.solve(self.information - out.T @ out, self.gradient - out.T @ self.residual[rows])
+        return moved_without(self.white[rows], self.residual[rows], self.information, self.gradient)
 
 
 class DiagnosisProblem:

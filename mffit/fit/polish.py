@@ -17,7 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
-from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, solve
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
@@ -55,8 +55,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
     problem, scale = near.with_noise_of_misfit().reweighted()
-    problem, solution = _solved(problem, plan.numbers(problem))
-    return _fitted(problem, solution, plan.numbers(problem), plan, scale)
+    return _fitted(problem, plan.numbers(problem), plan, scale)
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
@@ -64,21 +63,19 @@ def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
     for _ in range(2):
         here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
         problem, scale = here.with_noise_of_misfit().reweighted()
-        problem, solution = _solved(problem, fitted.numbers)
-        fitted = _fitted(problem, solution, fitted.numbers, fitted, scale)
+        fitted = _fitted(problem, fitted.numbers, fitted, scale)
     return fitted
 
 
 def _fitted(
-    problem: FitProblem,
-    solution: Solution,
-    numbers: Sequence[FreeNumber],
-    given: FitPlan | Fitted,
-    scale: Mapping[str, float],
+    problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted, scale: Mapping[str, float]
 ) -> Fitted:
-    """The record of a solution, at which ``problem`` is; ``given`` says what was held."""
+    """The fit of some numbers, begun at the values of ``problem``; ``given`` says what is held."""
+    numbers = problem.starting_here(numbers)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
+    problem = problem.with_values(solution.values)
     posterior = joint(problem, solution, {**given.held, **given.held_rig}).without(given.held_rig)
-    stderr = posterior.stderr
+    stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
@@ -90,7 +87,11 @@ def _fitted(
         held_rig=given.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
         at_limit=solution.at_limit - solution.at_bound,
-        regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
+        regularised=frozenset(
+            n.name
+            for n in numbers
+            if math.isfinite(n.spread) and error_of(n.name) is None and stderr[n.name] >= share * n.spread
+        ),
         scale=scale,
         left=solution.left,
         cost=solution.cost,
@@ -117,23 +118,6 @@ def _strides(n: int) -> Iterator[int]:
     while stride > constants.STRIDE_DIVISOR**2:
         stride //= constants.STRIDE_DIVISOR
         yield stride
-
-
-def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProblem, Solution]:
-    numbers = problem.starting_here(numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers)
-    return problem.with_values(solution.values), solution
-
-
-def _with_prior(numbers: Sequence[FreeNumber]) -> dict[str, float]:
-    """Standard deviation of the prior of every coefficient that has one."""
-    return {n.name: n.spread for n in numbers if error_of(n.name) is None and math.isfinite(n.spread)}
-
-
-def _within_their_priors(errors: Mapping[str, float], numbers: Sequence[FreeNumber]) -> frozenset[str]:
-    """Coefficients that the points determine better than their priors do."""
-    share = constants.FITTED_SHARE_OF_PRIOR
-    return frozenset(name for name, spread in _with_prior(numbers).items() if errors[name] < share * spread)
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:

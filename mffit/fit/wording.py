@@ -47,12 +47,7 @@ def explanations(
     out = file_sentences(files, names)
     if hand.names:
         out.append(by_hand_sentence(hand, names["normal"] if files.lacking else ""))
-    if measured.epsilon_gamma is not None and "PECP1" in hand.held:
-        out.append(
-            f"PECP1 = {hand.held['PECP1']:.4f} is held by hand. The directly measured eps_gamma is "
-            f"{measured.epsilon_gamma.value:.4f}."
-        )
-    elif measured.epsilon_gamma is not None:
+    if measured.epsilon_gamma is not None and "PECP1" not in hand.held:
         said = PECP1_IS[config.spin.pecp1].format(measured=measured.epsilon_gamma.value)
         out.append(f"PECP1 = {float(values['PECP1']):.4f} is {said}.")
     return out

@@ -1,7 +1,6 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
 from mffit.measured.alignment import align
-from mffit.measured.axis import alignment_verdict
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
@@ -28,7 +27,6 @@ __all__ = [
     "SideslipZeros",
     "adding_to_camber",
     "align",
-    "alignment_verdict",
     "at_the_axis",
     "measure",
     "measured_path_radius",

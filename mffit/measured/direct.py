@@ -12,10 +12,8 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.measured import wording
 from mffit.measured.axis import (
-    AlignmentVerdict,
     SetupAngle,
     ZeroAngle,
-    alignment_verdict,
     angles_of_setups,
     at_true_zero,
     camber_at_true_zero,
@@ -234,21 +232,22 @@ def _assembled(
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
     nominal = known[at][0]
-    axis = alignment_verdict(evidence.config, nominal.row)
+    left = evidence.config.rig.u("alpha_0_deg")
+    said, off = wording.alignment(nominal.row, left), nominal.row.axis_off(left)
+    notes = _notes(evidence, nominal.row, skew, law.note)
     measured = replace(
         measured,
         nominal=nominal.row,
-        epsilon_gamma_debiased=nominal.row.epsilon_debiased,
         pecp1=law.pecp1,
         pecp2=law.pecp2,
         u_pecp2=law.u_pecp2,
-        misaligned=axis.beyond,
+        misaligned=nominal.row.slips_beyond(left),
         misaligned_setups=_misaligned_setups(evidence, nominal.row),
-        axis_off=axis.misaligned,
-        notes=_notes(evidence, nominal.row, skew, axis, law.note),
+        axis_off=off,
+        notes=notes if off or not said else (said, *notes),
         load_note=law.note,
     )
-    return measured, [*([axis.sentence] if axis.misaligned else []), *_skew_warning(evidence, skew)]
+    return measured, [*([said] if off else []), *_skew_warning(evidence, skew)]
 
 
 def _with_measured_skew(
@@ -297,14 +296,13 @@ def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
 
 
 def _notes(
-    evidence: DirectEvidence, row: LoadResult, skew: Quantity | None, axis: AlignmentVerdict, load_note: str
+    evidence: DirectEvidence, row: LoadResult, skew: Quantity | None, load_note: str
 ) -> tuple[str, ...]:
     """What the numbers and the budget of the nominal load do not say themselves."""
     used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
     nominal = 1e3 * evidence.config.tyre.nominal_pressure
     near = abs(used - nominal) < levels.PRESSURE.tolerance
     return (
-        *([axis.sentence] if axis.sentence and not axis.misaligned else []),
         *([wording.camber_skew(skew)] if skew else []),
         *([] if row.conicity is None else [wording.conicity_measured(row.conicity)]),
         load_note,

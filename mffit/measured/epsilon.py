@@ -18,8 +18,7 @@ from mffit.constants import (
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
-from mffit.measured.slopes import slope_at_zero
-from mffit.measured.stiffnesses import sweep
+from mffit.measured.stiffnesses import slope_at_zero, sweep
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.uncertain import Contribution, Expanded, expanded
@@ -82,6 +82,11 @@ class SetupScatter(NamedTuple):
     excess: float  #: force by which a set-up scatters beyond what is declared [N]
 
 
+def is_clear(misalignment: Quantity | None) -> bool:
+    """Whether a misalignment differs clearly from zero."""
+    return misalignment is not None and abs(misalignment.value) > COVERAGE_FACTOR_95 * misalignment.u
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
@@ -115,6 +120,14 @@ class LoadResult(Brief):
         """Side force [N] of a small sideslip angle [rad], by the usual stiffness if none was measured."""
         C_alpha = -USUAL_CORNERING_STIFFNESS * self.load if self.C_alpha is None else self.C_alpha.value
         return C_alpha * angle
+
+    def slips_beyond(self, u_force: float) -> bool:
+        """Whether the side force of alpha_M exceeds what the alignment of the axis is declared to leave [N]."""
+        return self.alpha_M is not None and abs(self.slip_force(self.alpha_M.value)) > u_force
+
+    def axis_off(self, u_force: float) -> bool:
+        """Whether it does, and the axis, not the tyre, clearly causes it."""
+        return self.slips_beyond(u_force) and is_clear(self.misalignment)
 
     def shift_by(self, force: float) -> float:
         """Change of eps_gamma by a force [N] that is taken for turn slip."""
@@ -167,7 +180,6 @@ class Measured(Brief):
     axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
-    epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     made: Made | None = None  #: set by ``mffit spin``
     reasons: tuple[str, ...] = ()  #: against trusting it, set by ``mffit spin``; a build judges the whole
 
@@ -203,6 +215,11 @@ class Measured(Brief):
         return self.nominal.C_gamma if self.nominal else None
 
     @property
+    def epsilon_gamma_debiased(self) -> Quantity | None:
+        """Corrected for the finite spin of the disc."""
+        return self.nominal.epsilon_debiased if self.nominal else None
+
+    @property
     def C_alpha(self) -> Quantity | None:
         return self.nominal.C_alpha if self.nominal else None
 
@@ -223,9 +240,7 @@ class Measured(Brief):
         return self.nominal.budget if self.nominal else ()
 
     def by_load(self, key: str) -> dict[float, float]:
-        """One quantity by load [N]: "C_alpha", "C_gamma" or "r_e_measured"."""
-        if key == "r_e_measured":
-            return dict(self.r_e_loads)
+        """One quantity by load [N], such as "C_alpha"."""
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
@@ -255,9 +270,7 @@ class Measured(Brief):
     def with_nominal(self, row: LoadResult) -> Measured:
         """The record with another row at the nominal load."""
         rows = tuple(row if other is self.nominal else other for other in self.per_load)
-        return dataclasses.replace(
-            self, nominal=row, per_load=rows, epsilon_gamma_debiased=row.epsilon_debiased
-        )
+        return dataclasses.replace(self, nominal=row, per_load=rows)
 
     def quantities(self) -> dict[str, Quantity]:
         """What goes into the property file's structured comments."""
@@ -300,11 +313,6 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-
-    @property
-    def secant(self) -> bool:
-        """Whether C_alpha is from two iterations."""
-        return self.source == "secant"
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -15,7 +15,7 @@ from mffit.measured import wording
 from mffit.measured.axis import slip_stiffness, split_of_zero
 from mffit.measured.camber_reduction import camber_reduction
 from mffit.measured.evidence import DirectEvidence
-from mffit.measured.result import LoadResult, SetupResult, SetupScatter
+from mffit.measured.result import LoadResult, SetupResult, SetupScatter, is_clear
 from mffit.measured.stiffnesses import LoadSlopes
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import named, quantity, quantity_if
@@ -59,7 +59,7 @@ def results_of_setups(
                 quantity(camber_reduction(C_phit, C_gamma, r_e), "-"),
                 quantity_if(alpha_M, "rad"),
                 beyond,
-                beyond and split is not None and split.axis_is_clear,
+                beyond and split is not None and is_clear(quantity(split.misalignment, "rad")),
             )
         )
     return tuple(out)

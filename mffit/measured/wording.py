@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mffit.measured.result import Alignment, Measured, SetupScatter, usual_ply_steer
+from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, usual_ply_steer
 from mffit.rounding import to_uncertainty
 from tir import Quantity
 
@@ -39,15 +39,45 @@ def slope_too_steep(largest: float) -> str:
     return f"PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
 
 
-def not_separable(force: float, angle_deg: float | None, u: float) -> str:
-    """Without backward runs; ``angle_deg`` is None without a sideslip sweep, which gives the angle of a force [N]."""
+def alignment(row: LoadResult, u: float) -> str:
+    """What the zeros say of the sideslip axis, declared to leave ``u`` [N]; empty if both sides of the disc cancel it."""
+    assert row.F_phit is not None
+    if row.alpha_M is None:
+        return "" if min(row.paths) < 0.0 < max(row.paths) else _not_separable(row, row.F_phit.value, u)
+    slip = row.slip_force(row.alpha_M.value)
+    whole, of_axis, of_tyre = (_angle(x) for x in (row.alpha_M, row.misalignment, row.ply_steer))
+    said = (
+        f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by "
+        f"{row.shift_by(slip):.2f}. By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
+    )
+    if row.axis_off(u):
+        return (
+            f"the sideslip axis is misaligned: {said}; forward and backward forces differ by {abs(2 * slip):.0f} N. The angles "
+            "are corrected for the sum"
+        )
+    end = (
+        "exceeds what the alignment is declared to leave, but usual ply-steer can explain it"
+        if row.slips_beyond(u)
+        else "is within what the alignment leaves"
+    )
+    return f"Forward and backward runs: {said}. The sum {end}."
+
+
+def _not_separable(row: LoadResult, force: float, u: float) -> str:
+    """Without backward runs; a sideslip sweep gives the angle of a force."""
     angle = (
-        "an unknown angle (no sideslip sweep gives C_alpha)" if angle_deg is None else f"{angle_deg:.2f} deg"
+        "an unknown angle (no sideslip sweep gives C_alpha)"
+        if row.C_alpha is None
+        else f"{math.degrees(abs(force / row.C_alpha.value)):.2f} deg"
     )
     return (
         f"Sideslip misalignment, turn slip and ply-steer cannot be separated here. If the force {force:.0f} N at (0, 0) were "
         f"not turn slip, it would take {angle} of misalignment or ply-steer. The alignment is assumed to leave {u:.0f} N (k = 1)."
     )
+
+
+def _angle(x: Quantity | None) -> str:
+    return "unknown" if x is None else f"{math.degrees(x.value):.3f} +- {math.degrees(x.u):.3f}"
 
 
 def off_nominal_pressure(used: float, nominal: float) -> str:
@@ -73,17 +103,6 @@ def camber_skew_beyond(skew: Quantity, declared: float) -> str:
     )
 
 
-def aligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
-
-
-def slip_beyond(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return (
-        f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum exceeds what the alignment is declared "
-        "to leave, but usual ply-steer can explain it."
-    )
-
-
 def conicity_measured(found: Quantity) -> str:
     return (
         f"Zeros on both mounts: the conicity force is {to_uncertainty(found.value, found.u)} +- "
@@ -100,13 +119,6 @@ def slope_not_possible(load: float, angle_deg: float) -> str:
 
 def secant_not_possible(load: float, angle_deg: float) -> str:
     return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
-
-
-def misaligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return (
-        f"the sideslip axis is misaligned: {_sum(alpha_M, axis, tyre, slip, shift)}; forward and backward forces differ by "
-        f"{abs(2 * slip):.0f} N. The angles are corrected for the sum"
-    )
 
 
 def axis_off(load: float, difference: float, limit: float, correction_deg: float) -> str:
@@ -140,19 +152,6 @@ def _centre(R: float) -> str:
     return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
 
 
-def _sum(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    whole, of_axis, of_tyre = (_angle(x) for x in (alpha_M, axis, tyre))
-    return (
-        f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}. "
-        f"By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
-    )
-
-
-def _angle(x: Quantity) -> str:
-    value, u = math.degrees(x.value), math.degrees(x.u)
-    return f"{value:.3f} +- {u:.3f}"
-
-
 def setup_without_zeros(name: str) -> str:
     return (
         f"set-up {name} has no points at zero sideslip and camber: its zeros are known only as declared in [rig], and it adds "
@@ -172,9 +171,8 @@ def last_is_aligned(name: str) -> str:
 
 
 def setup_misaligned(name: str, alpha_M: Quantity) -> str:
-    angle, u = math.degrees(alpha_M.value), math.degrees(alpha_M.u)
     return (
-        f"set-up {name}: the sideslip axis is misaligned, alpha_M = {angle:.3f} +- {u:.3f} deg; the fit corrects the angles of "
+        f"set-up {name}: the sideslip axis is misaligned, alpha_M = {_angle(alpha_M)} deg; the fit corrects the angles of "
         "this set-up for it"
     )
 

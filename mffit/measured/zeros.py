@@ -19,8 +19,7 @@ from mffit.constants import (
     USUAL_U_MOMENT,
 )
 from mffit.measured import constants, wording
-from mffit.measured.slopes import polynomial
-from mffit.measured.uncertain import combined, named
+from mffit.measured.uncertain import combined, named, polynomial
 from mffit.points import Points, levels, main_pressure
 
 USUAL_U = {"Fy": USUAL_U_FORCE, "Mz": USUAL_U_MOMENT}

@@ -9,11 +9,10 @@ from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.quantities import CHANNELS
 from mffit.report import page, words
 from mffit.report.catalogue import Picture
-from mffit.report.diagnosis_view import DiagnosisView, view_of
 from mffit.report.figures import gap
 from tir.parameters import BY_NAME
 
-DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
+DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
     Picture(
         name="curves",
         title="The worst and the typical sweep: measured, simulated as given and with what was found",
@@ -43,13 +42,13 @@ DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """Write ``plots/*.png`` and ``diagnosis.html`` of a diagnosis to an existing folder."""
-    view = view_of(diagnosis)
     page.write(
         "diagnosis.html.j2",
         folder / "diagnosis.html",
         DIAGNOSIS,
-        view,
+        diagnosis,
         d=diagnosis,
+        measured=[channel.name for channel in gap.gap_channels(diagnosis)],
         say=wording,
         channels=CHANNELS,
         coefficients=BY_NAME,

@@ -16,7 +16,7 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtr, chdtrc, ndtr
+from scipy.special import chdtr, chdtrc, fdtrc, ndtr
 
 from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
@@ -27,7 +27,7 @@ from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
 from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig import Readings
-from mffit.scatter import finite_median, rms
+from mffit.scatter import EFFICIENCY, finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, When, rule
@@ -125,6 +125,7 @@ class FinishedFit(JudgedMeasurement):
         Readings that miss the model by far less than their stated noise are in another unit.
         """
         stated, seen = self.misfit(channel), self.over_scatter(channel)
+        seen = seen._replace(of_noise=EFFICIENCY * seen.n)  # what neighbours show is uncertain itself
         if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
         return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
@@ -150,8 +151,12 @@ class FinishedFit(JudgedMeasurement):
 
 def far(found: OverNoise, limit: float, sigma: float) -> bool:
     """Whether a misfit over the noise exceeds a limit, by more than chance explains."""
-    ratio, n = found
-    return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
+    if not found.n or not found.ratio > limit:
+        return False
+    square = found.ratio**2
+    if np.isinf(found.of_noise):
+        return bool(chdtrc(found.n, found.n * square) < ndtr(-sigma))
+    return bool(fdtrc(found.n, found.of_noise, square) < ndtr(-sigma))
 
 
 @dataclass(frozen=True, slots=True)
@@ -384,7 +389,7 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, where it is smaller than chance and the numbers of the fit explain."""
     numbers = 0 if fit.linear is None else len(fit.linear.numbers)
     for name in fit.used:
-        ratio, n = fit.misfit(name)
+        ratio, n, _ = fit.misfit(name)
         few = n <= numbers or chdtr(n - numbers, n * ratio**2) > FALSE_ALARM
         if not few and ratio < constants.MISFIT_OF_ANOTHER_UNIT:
             yield {"channel": name, "ratio": ratio, "column": column(name)}

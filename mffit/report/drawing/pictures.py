@@ -15,10 +15,8 @@ from typing import Any, NamedTuple
 
 import matplotlib.style
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -134,19 +132,12 @@ def _sample(look: Look) -> Line2D | Patch:
 
 
 def _draw_scale(axes: Axes, scale: ColourScale) -> None:
-    edges, colours = _shades(scale)
-    axes.bar(edges[:-1], 1.0, np.diff(edges), align="edge", color=colours)
-    axes.set(xlim=(-scale.limit, scale.limit), ylim=(0.0, 1.0), yticks=[])
+    shades = np.linspace(-scale.limit, scale.limit, 256)[None]
+    axes.imshow(shades, cmap=style.DIVERGING, extent=(-scale.limit, scale.limit, 0.0, 1.0), aspect="auto")
+    axes.set(yticks=[])
     axes.spines[:].set_visible(False)
     axes.grid(False)
     axes.text(1.04, 0.5, _text(scale.label), transform=axes.transAxes, va="center", size=8)
-
-
-def _shades(scale: ColourScale) -> tuple[np.ndarray, list[str]]:
-    """Edges (n + 1,) of the steps of a scale, and their n colours."""
-    n = int(constants.COLOURS_OF_MAP)
-    colours = [to_hex(shade) for shade in colormaps[style.DIVERGING].resampled(n)(np.arange(n))]
-    return np.linspace(-scale.limit, scale.limit, n + 1), colours
 
 
 def _text(text: str) -> str:
@@ -231,15 +222,19 @@ def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | Non
     if series.shade is None or scale is None:
         axes.plot(series.x, series.y, **_line(look), **place)
         return
-    edges, colours = _shades(scale)
-    step = np.searchsorted(edges[1:-1], series.shade)
-    for k in np.unique(step):
-        drawn = {
-            **_line(replace(look, colour=colours[k])),
-            "markeredgewidth": 0.4,
-            "markeredgecolor": style.FAINT,
-        }
-        axes.plot(series.x[step == k], series.y[step == k], **drawn, **place)
+    axes.scatter(
+        series.x,
+        series.y,
+        look.size**2,
+        series.shade,
+        marker=look.marker,
+        cmap=style.DIVERGING,
+        vmin=-scale.limit,
+        vmax=scale.limit,
+        edgecolors=style.FAINT,
+        linewidths=0.4,
+        **place,
+    )
 
 
 def _draw_uncertainty(axes: Axes, series: Trace) -> None:

@@ -22,9 +22,9 @@ from mffit.planning.goals import Goal
 from mffit.points.stretch import stretch_table
 from mffit.quantities import column
 from mffit.recordings import Sniffed
-from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import SniffedRecording
 from mffit.recordings.summary import BadRun
+from mffit.recordings.unstated import Guess
 from mffit.results.as_json.of_build import estimates, of_rig
 from mffit.results.values import document, keys
 

@@ -15,13 +15,24 @@ ANGLE, AXIS, TYRE = (
     Quantity(math.radians(x), math.radians(u), "rad") for x, u in ((0.25, 0.02), (0.07, 0.06), (0.18, 0.06))
 )
 
+
+def at_zero(**more):
+    """The zeros of one load both ways."""
+    known = {"alpha_M": ANGLE, "misalignment": AXIS, "ply_steer": TYRE, "paths": (-1.0 / 1.3,)}
+    known |= {"F_phit": Quantity(-331.4, 5.0, "N"), "C_alpha": Quantity(-19575.0, 90.0, "N/rad")}
+    return LoadResult(load=1500.0, epsilon_gamma=Quantity(-0.1, 0.05, "-"), **known | more)
+
+
 NOTES = [
     (wording.STRAIGHT_PATH, "it has no turn slip to measure"),
     (
-        wording.not_separable(-331.4, 0.97, 25.0),
+        wording.alignment(at_zero(alpha_M=None), 25.0),
         "If the force -331 N at (0, 0) were not turn slip, it would take 0.97 deg of misalignment",
     ),
-    (wording.not_separable(-331.4, None, 25.0), "an unknown angle (no sideslip sweep gives C_alpha) of"),
+    (
+        wording.alignment(at_zero(alpha_M=None, C_alpha=None), 25.0),
+        "an unknown angle (no sideslip sweep gives C_alpha) of",
+    ),
     (
         wording.off_nominal_pressure(250.2e3, 290e3),
         "holds at 250 kPa, that of most sweeps; the nominal pressure is 290 kPa",
@@ -31,11 +42,11 @@ NOTES = [
         "steers the wheel by -0.138 +- 0.055 deg times the sine",
     ),
     (
-        wording.aligned(ANGLE, AXIS, TYRE, 12.0, 0.04),
-        "misalignment plus ply-steer alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move eps_gamma by 0.04. By usual "
+        wording.alignment(at_zero(), 100.0),
+        "misalignment plus ply-steer alpha_M = 0.250 +- 0.020 deg (-85 N); uncorrected it would move eps_gamma by 0.28. By usual "
         "sizes of both, misalignment is 0.070 +- 0.060 deg and ply-steer 0.180 +- 0.060 deg",
     ),
-    (wording.slip_beyond(ANGLE, AXIS, TYRE, 12.0, 0.04), "exceeds what the alignment is declared to leave"),
+    (wording.alignment(at_zero(), 25.0), "exceeds what the alignment is declared to leave"),
     (wording.conicity_measured(Quantity(12.31, 2.04, "N")), "the conicity force is 12.3 +- 2.0 N"),
     (wording.load_slope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
     (wording.ONE_LOAD, "one load was measured"),
@@ -69,7 +80,7 @@ WARNINGS = [
         wording.zeros_disagree(900.0, "backward", ("a", "b"), (-120.0, 310.0)),
         "at 900 N the backward zeros of a and b are -120 N and 310 N; these zeros cannot come from one path",
     ),
-    (wording.misaligned(ANGLE, AXIS, TYRE, -60.0, 0.2), "differ by 120 N"),
+    (wording.alignment(at_zero(misalignment=ANGLE), 25.0), "differ by 171 N"),
 ]
 
 
@@ -98,8 +109,8 @@ def test_every_remark_is_tested():
     remarks = {x.__name__ for x in functions} - OF_RESULTS - OF_SETUPS
     assert set(sentences) <= {text for text, _ in (*NOTES, *WARNINGS)}
     assert (
-        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(remarks) + 2
-    )  # two in two forms
+        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(remarks) + 5
+    )  # one in five forms, one in two
 
 
 def at_one_load(budget=(), **more):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.measured.slopes import secant_at, slope_at_zero
+from mffit.measured.stiffnesses import secant_at, slope_at_zero
 
 X = np.radians([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0])
 ONE = np.ones(len(X))

@@ -115,7 +115,8 @@ def test_a_map_is_blue_below_white_at_and_red_above_the_model(view):
     def colour(value):
         sheet = residuals.residual_maps(missing_by(view, value))
         _, axes, *_ = axes_of(*sheet.panels, scale=sheet.scale)
-        (fill,) = {line.get_markerfacecolor() for line in axes.lines if line.get_marker() == "s"}
+        (marks,) = axes.collections
+        (fill,) = {tuple(rgba) for rgba in marks.get_facecolor()}
         return to_rgb(fill)
 
     red, _, blue = colour(-4.0)
