@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 import tir
-from mffit.effects import CATALOG, NEEDS
+from mffit.effects import NEEDS
 from mffit.effects.effect import Effect
 from mffit.errors import InputError
 from mffit.report import page
@@ -56,7 +56,6 @@ def test_the_records_are_complete(examples):
     assert set(effect.parameters) <= set(BY_NAME)
     seen = (effect, *error.seen_as)
     assert {word for one in seen for word in one.needs} <= set(NEEDS)
-    assert {word for one in seen for word in one.confusable_with} <= {effect.id for effect in CATALOG}
 
 
 def test_both_formulae_of_the_rig_error_agree(examples):

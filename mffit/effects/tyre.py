@@ -23,7 +23,6 @@ TYRE_EFFECTS = (
         "differently.",
         free=(Free(name="PECP1", spread=0.3, scan=(0.0, 0.2, -0.2), upper=0.95),),
         needs=("curved",),
-        confusable_with=("path-radius", "camber-misalignment"),
     ),
     _effect(
         id="camber-reduction-load",
@@ -38,7 +37,6 @@ TYRE_EFFECTS = (
         physics="The belt's outer plies steer the tyre, which shifts the side-force curve and turns with the direction of "
         "rolling.",
         free=(Free(name="PHY1", spread=0.001),),
-        confusable_with=("sideslip-misalignment",),
         prior=-0.5,
     ),
     _effect(
@@ -46,7 +44,6 @@ TYRE_EFFECTS = (
         name="conicity",
         physics="A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
         free=(Free(name="PVY1", spread=0.005),),
-        confusable_with=("crosstalk-fz-fy", "loadcell-offset-fy"),
         prior=-0.3,
     ),
     _effect(
@@ -131,7 +128,6 @@ TYRE_EFFECTS = (
         physics="A moment remains at zero slip, from plies and tread pattern.",
         free=(Free(name="QDZ6", spread=0.003),),
         needs=("moment",),
-        confusable_with=("loadcell-offset-mz",),
         prior=-0.3,
     ),
     _effect(
@@ -176,7 +172,6 @@ TYRE_EFFECTS = (
         physics="The peak of the longitudinal force is higher, or lower, than the model's.",
         free=(Free(name="PDX1", spread=0.1, relative=True),),
         needs=("drive",),
-        confusable_with=("loadcell-gain-fx",),
     ),
     _effect(
         id="longitudinal-grip-load",
@@ -191,7 +186,6 @@ TYRE_EFFECTS = (
         physics="The longitudinal force per unit of slip near free rolling differs from the model's.",
         free=(Free(name="PKX1", spread=0.15, relative=True),),
         needs=("drive",),
-        confusable_with=("loadcell-gain-fx",),
     ),
     _effect(
         id="slip-shift",
@@ -199,7 +193,6 @@ TYRE_EFFECTS = (
         physics="The longitudinal force is zero at another slip than that of free rolling, at which slip is counted from zero.",
         free=(Free(name="PHX1", spread=0.002),),
         needs=("drive",),
-        confusable_with=("slip-zero",),
         prior=-2.0,
     ),
     _effect(
@@ -208,7 +201,6 @@ TYRE_EFFECTS = (
         physics="A share of the load that the slip does not change acts along the tyre, as rolling resistance does.",
         free=(Free(name="PVX1", spread=0.005),),
         needs=("drive",),
-        confusable_with=("loadcell-offset-fx", "longitudinal-drag"),
         prior=-0.3,
     ),
     _effect(
@@ -242,7 +234,6 @@ TYRE_EFFECTS = (
         "turned on its rim.",
         free=(Free(name="SSZ1", spread=0.006),),
         needs=("drive", "moment"),
-        confusable_with=("crosstalk-fx-mz",),
         prior=-2.0,
     ),
     # Overturning moment
@@ -252,7 +243,6 @@ TYRE_EFFECTS = (
         physics="The load acts a little off the middle of the wheel, from conicity and plies.",
         free=(Free(name="QSX1", spread=0.01),),
         needs=("overturning",),
-        confusable_with=("loadcell-offset-mx",),
         prior=-0.3,
     ),
     _effect(
@@ -268,7 +258,6 @@ TYRE_EFFECTS = (
         physics="Side force bends the carcass, and the load acts off the middle of the wheel.",
         free=(Free(name="QSX3", spread=0.02),),
         needs=("overturning", "slip"),
-        confusable_with=("crosstalk-fy-mx", "overturning-arm"),
     ),
     _effect(
         id="overturning-arm",
@@ -276,7 +265,6 @@ TYRE_EFFECTS = (
         physics="The side force acts a little above or below the plane of the road, at the same height under every load.",
         free=(Free(name="QSX13", spread=0.01),),
         needs=("overturning", "slip"),
-        confusable_with=("crosstalk-fy-mx", "overturning-side-force"),
         prior=-2.0,
     ),
 )

@@ -37,7 +37,6 @@ class FaultRule:
 
     id: str
     looks_at: str
-    limits: tuple[float, ...] = ()
     reason: str  #: with {channel}
     channels: tuple[str, ...] = ("",)
     ends_stretch: bool = True
@@ -168,21 +167,18 @@ FAULTS = (
     FaultRule(
         id="no-load",
         looks_at="Load over the usual load of the recording",
-        limits=(constants.UNLOADED,),
         reason="no load on the tyre",
         find=lambda sweep, _: np.asarray(sweep.Fz < constants.UNLOADED * _usual_load(sweep)),
     ),
     FaultRule(
         id=DRIVEN_RULE,
         looks_at="Longitudinal slip, where Fx was not measured",
-        limits=(constants.SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),
     ),
     FaultRule(
         id="spike",
         looks_at="Distance of a reading from the median of its neighbours",
-        limits=(FALSE_ALARM, constants.SPIKE, constants.ARM),
         reason="spikes of {channel}",
         channels=SENSORS,
         ends_stretch=False,
@@ -191,7 +187,6 @@ FAULTS = (
     FaultRule(
         id="clipped-channel",
         looks_at="Readings in a row at the end of the channel's range, against the chance of them",
-        limits=(FALSE_ALARM,),
         reason="{channel} clipped",
         channels=SENSORS,
         find=_clipped,
@@ -199,7 +194,6 @@ FAULTS = (
     FaultRule(
         id="stuck-channel",
         looks_at="Readings in a row of one value, against the chance of them",
-        limits=(constants.COMPARED_APART, FALSE_ALARM),
         reason="{channel} stuck",
         channels=SENSORS,
         find=_stuck,
@@ -207,7 +201,6 @@ FAULTS = (
     FaultRule(
         id="stuck-angle",
         looks_at="Sideslip readings in a row of one value while the side force moves",
-        limits=(constants.COMPARED_APART, FALSE_ALARM),
         reason="{channel} stuck while Fy moves",
         channels=("alpha",),
         find=_stuck_while_moving,

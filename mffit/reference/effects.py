@@ -19,13 +19,8 @@ RESULT = {
 KINDS = {"tyre": "The tyre", "rig": "The rig", "environment": "The environment"}
 
 
-def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
-    """The page of one effect in Markdown.
-
-    Effects that it can be confused with are links if they are in ``catalog``.
-    """
-    names = {other.id: other.name for other in catalog}
-    alike = [f"[{names[i]}]({i}.md)" if i in names else f"`{i}`" for i in effect.confusable_with]
+def page(effect: Effect) -> str:
+    """The page of one effect in Markdown."""
     facts = [f"`{effect.id}`", effect.kind]
     facts += [f"needs {listed([NEEDS[need] for need in effect.needs])}"] if effect.needs else []
     lines = [f"# {effect.name[:1].upper()}{effect.name[1:]}", "", " · ".join(facts), "", effect.physics, ""]
@@ -34,8 +29,6 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
         number = f"`{effect.free[0].name}`"
         remedy = effect.remedy.format(value=number, opposite=f"-{number}")
         lines += ["", f"At the rig: {remedy}."]
-    if alike:
-        lines += ["", f"Can be confused with {listed(alike)}."]
     return "\n".join(lines) + "\n"
 
 
@@ -45,7 +38,7 @@ def index(catalog: Sequence[Effect] = CATALOG) -> str:
         "# The effects",
         "",
         "What [a diagnosis](../diagnosis.md) can name. These pages are written from the records in `mffit/effects`. "
-        "Each states what an effect frees, with its usual size, and with what it can be confused in a full programme. "
+        "Each states what an effect frees, with its usual size. A diagnosis says which effects your readings cannot tell apart. "
         "Limits are those of [the table of parameters](../parameters.md) and of [the rig errors](../rig-errors.md).",
     ]
     for kind, title in KINDS.items():
@@ -60,7 +53,7 @@ def index(catalog: Sequence[Effect] = CATALOG) -> str:
 
 def pages(catalog: Sequence[Effect] = CATALOG) -> dict[str, str]:
     """All pages by file name."""
-    return {"index.md": index(catalog)} | {f"{effect.id}.md": page(effect, catalog) for effect in catalog}
+    return {"index.md": index(catalog)} | {f"{effect.id}.md": page(effect) for effect in catalog}
 
 
 def _item(free: Free) -> str:

@@ -44,7 +44,6 @@ SIDESLIP_ZERO = _of_angle(
             id="sideslip-misalignment",
             name="sideslip axis misaligned",
             physics="The steering axis reads zero while the wheel runs at a small sideslip angle.",
-            confusable_with=("ply-steer",),
             remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
             "to all readings of the sideslip angle",
             axes=("alpha",),
@@ -54,7 +53,6 @@ SIDESLIP_ZERO = _of_angle(
             name="sideslip zero that differs from run to run",
             physics="The steering axis is set up again before every run, each time at a slightly different angle.",
             needs=("runs",),
-            confusable_with=("sideslip-misalignment",),
             remedy="set the steering axis up against a stop before every run; or add the values of the table to the "
             "readings of each run",
             per_run=True,
@@ -83,7 +81,6 @@ HYSTERESIS = _of_angle(
             name="hysteresis of sideslip sweeps",
             physics="The force lags behind the angle as read, by a fixed angle in either sense of the sweep.",
             needs=("senses",),
-            confusable_with=("relaxation",),
             remedy="free the sideslip drive; or subtract {value} deg from its readings where they rise and add it where "
             "they fall",
         ),
@@ -102,7 +99,6 @@ COMPLIANCE = _of_angle(
             name="compliance of the steering axis",
             physics="The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
             needs=("moment", "slip"),
-            confusable_with=("backlash", "pressure"),
             remedy="stiffen the steering; or add {value} deg for every Nm of the reported moment to its readings",
             axes=("alpha", "Mz"),
         ),
@@ -148,7 +144,6 @@ CAMBER_SKEW = _of_angle(
             name="camber axis not square to the steering axis",
             physics="Leaning the wheel also steers it a little, as the camber axis is not square to the steering axis.",
             needs=("camber",),
-            confusable_with=("camber-stiffness",),
             remedy="square the camber axis to the steering axis; or add {value} deg times the sine of the camber angle to all "
             "readings of the sideslip angle",
             axes=("alpha", "gamma"),

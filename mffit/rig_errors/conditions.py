@@ -25,7 +25,6 @@ CAMBER_ZERO = RigError(
             id="camber-misalignment",
             name="camber axis misaligned",
             physics="The camber axis reads zero while the wheel leans a little.",
-            confusable_with=("camber-reduction", "path-radius"),
             remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
             "to all readings of the camber angle",
             axes=("gamma",),
@@ -57,7 +56,6 @@ LOAD_CAMBER = RigError(
             physics="The load on the tyre falls, or rises, as the wheel leans, because its cell leans with it or is no longer "
             "above the contact point.",
             needs=("camber",),
-            confusable_with=("camber-grip", "camber-thrust-curvature"),
             remedy="hold the load constant over camber by a cell under the disc; or multiply the reported load by 1 + {value} "
             "times the square of the sine of the camber angle",
         ),
@@ -82,7 +80,6 @@ PATH_RADIUS = RigError(
             name="path radius",
             physics="The contact point runs on another radius than declared.",
             needs=("curved",),
-            confusable_with=("camber-reduction",),
             remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
         ),
     ),
@@ -112,7 +109,6 @@ SLIP_ZERO = RigError(
             physics="The slip reads zero while the wheel is driven or braked a little, because its rolling radius or a speed is "
             "not exactly known.",
             needs=("drive",),
-            confusable_with=("slip-shift",),
             remedy="count slip from the speed of the freely rolling wheel; or add {value} to all readings of the slip, "
             "which is positive when driven",
         ),

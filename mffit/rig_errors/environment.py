@@ -45,7 +45,6 @@ TEMPERATURE_GRIP = _of_temperature(
             physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
             "stays.",
             needs=("temperatures",),
-            confusable_with=("temperature",),
         ),
     ),
 )
@@ -75,7 +74,6 @@ TEMPERATURE_STIFFNESS = _of_temperature(
             name="cornering stiffness with tyre temperature",
             physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
             needs=("temperatures",),
-            confusable_with=("temperature",),
         ),
     ),
 )
@@ -115,7 +113,6 @@ TEMPERATURE = _of_temperature(
             name="tyre temperature",
             physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
             needs=("temperatures",),
-            confusable_with=("drift", "temperature-grip", "temperature-stiffness"),
             together_with=("T_ref_degC",),
         ),
     ),
@@ -172,7 +169,6 @@ DRIFT = _of_forces(
             name="drift over the test",
             physics="Wear and ageing change the forces with time.",
             needs=("times",),
-            confusable_with=("temperature",),
         ),
     ),
 )
@@ -190,7 +186,6 @@ WEAR = _of_forces(
             name="wear over the distance rolled",
             physics="The tread wears with every kilometre, which changes the forces.",
             needs=("distances",),
-            confusable_with=("drift",),
         ),
     ),
 )
@@ -208,7 +203,6 @@ WARM_UP = _of_forces(
             name="warm-up at the start",
             physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",
             needs=("times",),
-            confusable_with=("temperature",),
         ),
     ),
 )

@@ -67,7 +67,6 @@ NONLINEARITY = _of_reading(
             name="nonlinearity of the Fy load cell",
             physics="The side-force channel reads large forces a little larger, or smaller, than in proportion.",
             needs=("slip",),
-            confusable_with=("loadcell-gain",),
             remedy="calibrate the side-force channel at large forces: its readings grow by {value} per kN too much",
         ),
     ),
@@ -87,7 +86,6 @@ CROSSTALK = _of_reading(
             name="crosstalk of Fz into Fy",
             physics="Part of the vertical load appears in the side-force channel.",
             needs=("loads",),
-            confusable_with=("conicity", "loadcell-offset-fy"),
             remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
             axes=("Fy",),
         ),
@@ -105,7 +103,6 @@ FORCE_ZERO = _zero_of(
             id="loadcell-offset-fy",
             name="load-cell zero of Fy",
             physics="The side-force load cell was zeroed while the tyre was still deformed.",
-            confusable_with=("conicity", "crosstalk-fz-fy"),
             remedy="zero the side-force channel with the tyre off the ground; or subtract {value} N from its readings",
             axes=("Fy",),
         ),
@@ -114,7 +111,6 @@ FORCE_ZERO = _zero_of(
             name="load-cell zero of Fy that differs from run to run",
             physics="The side-force load cell is zeroed before every run, each time a little differently.",
             needs=("runs",),
-            confusable_with=("loadcell-offset-fy",),
             remedy="zero the side-force channel in the same state before every run; or subtract the value of the table from "
             "each run",
             per_run=True,
@@ -142,7 +138,6 @@ MOMENT_ZERO = _zero_of(
             name="load-cell zero of Mz",
             physics="The moment load cell was zeroed while the tyre was still twisted.",
             needs=("moment",),
-            confusable_with=("residual-torque",),
             remedy="zero the moment channel with the tyre off the ground; or subtract {value} Nm from its readings",
             axes=("Mz",),
         ),
@@ -151,7 +146,6 @@ MOMENT_ZERO = _zero_of(
             name="load-cell zero of Mz that differs from run to run",
             physics="The moment load cell is zeroed before every run, each time a little differently.",
             needs=("runs", "moment"),
-            confusable_with=("loadcell-offset-mz",),
             remedy="zero the moment channel in the same state before every run; or subtract the value of the table from "
             "each run",
             per_run=True,
@@ -172,7 +166,6 @@ LONGITUDINAL_ZERO = _zero_of(
             name="load-cell zero of Fx",
             physics="The longitudinal load cell was zeroed while a force acted on it.",
             needs=("drive",),
-            confusable_with=("longitudinal-drag", "rolling-force"),
             remedy="zero the longitudinal channel with the tyre off the ground; or subtract {value} N from its readings",
             axes=("Fx",),
         ),
@@ -195,7 +188,6 @@ OVERTURNING_ZERO = _zero_of(
             physics="The reading of the overturning moment has a constant offset: its load cell has a wrong zero, or the wheel "
             "is not centred in the rig.",
             needs=("overturning",),
-            confusable_with=("overturning-offset",),
             remedy="zero the channel of the overturning moment with the tyre off the ground; or subtract {value} Nm from its "
             "readings",
             axes=("Mx",),
@@ -229,7 +221,6 @@ LONGITUDINAL_GAIN = _of_reading(
             name="calibration of Fx",
             physics="The longitudinal channel reads a few per cent too much or too little.",
             needs=("drive",),
-            confusable_with=("longitudinal-grip", "slip-stiffness"),
             remedy="calibrate the longitudinal channel; or divide its readings by {value}",
         ),
     ),
@@ -250,7 +241,6 @@ LONGITUDINAL_DRAG = _of_reading(
             physics="A dragging brake, bearings or seals between wheel and load cell add a force against the rolling, which "
             "turns with the direction.",
             needs=("drive",),
-            confusable_with=("loadcell-offset-fx", "rolling-force"),
             remedy="free the brake and warm up the bearings, or measure Fx between them and the wheel; or add {value} N to the "
             "readings of forward runs",
             axes=("Fx",),
@@ -266,7 +256,6 @@ FX_INTO_MZ = _crosstalk(
         name="crosstalk of Fx into Mz",
         physics="Part of the longitudinal force appears in the moment channel, as if it had an arm.",
         needs=("drive", "moment"),
-        confusable_with=("longitudinal-arm",),
         remedy="calibrate the cross terms of the load cell or move its origin to the middle of the wheel; or subtract "
         "{value} m times Fx from Mz",
         axes=("Fx", "Mz"),
@@ -297,7 +286,6 @@ FY_INTO_MX = _crosstalk(
         physics="Part of the side force appears in the overturning moment, as if the origin of the load cell were above or "
         "below the road.",
         needs=("overturning", "slip"),
-        confusable_with=("overturning-arm", "overturning-side-force"),
         remedy="calibrate the cross terms of the load cell or correct the height of its origin; or subtract {value} m times "
         "Fy from Mx",
         axes=("Fy", "Mx"),

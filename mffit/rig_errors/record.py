@@ -69,7 +69,6 @@ class Appearance:
     name: str
     physics: str  #: one sentence
     needs: tuple[str, ...] = ()  #: what the data must vary; keys of effects.needs
-    confusable_with: tuple[str, ...] = ()  #: ids of effects
     remedy: str = ""  #: at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
     axes: tuple[str, ...] = ()  #: channels whose signs in the rig's axes apply to the number
     per_run: bool = False

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import FALSE_ALARM, HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
+from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, rule
@@ -17,7 +17,6 @@ from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning
 
 @rule(
     id="copied-sweep",
-    limits=(constants.FEWEST,),
     sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
 )
 def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
@@ -40,7 +39,6 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="reversed-file",
-    limits=(FALSE_ALARM,),
     sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
     'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
 )
@@ -75,7 +73,6 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
 
 @rule(
     id="overturning-moment-reversed",
-    limits=(FALSE_ALARM,),
     outcome=Outcome.WARNED,
     sentence="Mx_Nm has the wrong sign: it rises with gamma_deg in ISO axes, and falls with it on every tyre, whose load moves "
     "to the side to which it leans; write scale = -1 for Mx_Nm under [columns], if its axis points the other way",
@@ -88,7 +85,6 @@ def moment_reversed(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="weak-turn-slip-force",
-    limits=(constants.WEAK_TURN_SLIP_FORCE,),
     outcome=Outcome.WARNED,
     sentence="the force at alpha = gamma = 0 is {percent:.1f} % of the load along the turn slip, too little to measure turn "
     "slip; check the alignment of the sideslip axis",
@@ -102,12 +98,6 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="moments-about-another-point",
-    limits=(
-        constants.LEVER_OF_OTHER_MOMENT_POINT,
-        UPRIGHT,
-        FALSE_ALARM,
-        constants.FEWEST,
-    ),
     sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
     'the contact point it hardly changes; the data agree with moments = "{other}"',
 )
@@ -130,7 +120,6 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="one-sided-on-a-disc",
-    limits=(STRAIGHT, UPRIGHT),
     sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
     "turn slip; add the mirrored points",
 )
@@ -150,7 +139,6 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="no-zero-on-a-disc",
-    limits=(STRAIGHT, UPRIGHT),
     sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
 )
 def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
@@ -179,7 +167,6 @@ class LevelsOfLoad(NamedTuple):
 
 @rule(
     id="nominal-load-of-other-loads",
-    limits=(constants.BEYOND_NOMINAL,),
     sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
     "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
 )
@@ -194,7 +181,6 @@ def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="nominal-load-above-all",
-    limits=(NOMINAL_OVER_HIGHEST_LOAD,),
     outcome=Outcome.WARNED,
     sentence="the nominal load of {nominal:g} N is above the highest measured load of {highest:.0f} N, so that nothing was "
     "measured where the file is centred: check nominal_load, and the unit of Fz_N",
@@ -208,7 +194,6 @@ def nominal_load_above_all(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="hot-tread",
-    limits=(HOTTEST_TREAD,),
     outcome=Outcome.WARNED,
     sentence="T_degC is {degrees:.0f} degC in the middle{where}, and no tread stays as hot: if the readings are in degF, write "
     'T_degC = {{ column = "...", unit = "degF" }} under [columns]',

@@ -31,7 +31,6 @@ class Alternative(NamedTuple):
 
 @rule(
     id="declaration-contradicted",
-    limits=(constants.SMALLEST_CAMBER_THRUST,),
     sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
 )
 def contradicted(points: Points, config: Config) -> Iterator[Finding]:

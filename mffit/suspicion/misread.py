@@ -11,7 +11,6 @@ from functools import partial
 
 import numpy as np
 
-from mffit.constants import EXPLAINED_SHARE
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
@@ -53,12 +52,6 @@ def misread(
 @rule(
     id="misread-sweep",
     when=When.DIAGNOSIS,
-    limits=(
-        constants.GROSS_SHARE,
-        constants.MISREAD_OVER_WORST,
-        EXPLAINED_SHARE,
-        constants.DISTRUSTED_MISFIT,
-    ),
     outcome=Outcome.LEFT_OUT,
     sentence=(
         "{file}: {sweep} misses the simulation by {percent:.0f} % of what sweeps usually read, as no other does; it looks "

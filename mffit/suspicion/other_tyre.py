@@ -35,7 +35,6 @@ RADII = (
 
 @rule(
     id="two-tyres",
-    limits=(constants.RADIUS_OF_ANOTHER_TYRE,),
     sentence="{first} and {second} are of two tyres: the {words} at {load}, upright, is {a:.0f} against {b:.0f} mm; "
     "make a project of each",
 )
@@ -66,7 +65,6 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 
 @rule(
     id="other-radius",
-    limits=(constants.SMALLEST_RADIUS, constants.RADIUS_OF_ANOTHER_TYRE),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import chdtrc, ndtr
 
-from mffit.constants import EXPLAINED_SHARE, PREDICTION_FALSE_ALARM
+from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
 from mffit.linearised import LinearisedFit
 from mffit.linearised.mixed import LeftOutReadings
@@ -148,12 +148,6 @@ def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
 @rule(
     id="contradicting-sweep",
     when=When.AFTER,
-    limits=(
-        PREDICTION_FALSE_ALARM,
-        constants.GROSS_SHARE,
-        EXPLAINED_SHARE,
-        constants.IMPLAUSIBLE_SHARE,
-    ),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
     "of its usual size{condition}{looks}",
 )
@@ -187,7 +181,6 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
 @rule(
     id="doubtful-sweep",
     when=When.AFTER,
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, EXPLAINED_SHARE),
     outcome=Outcome.WARNED,
     sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
     "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "

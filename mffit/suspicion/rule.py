@@ -58,7 +58,6 @@ class Rule:
     id: str
     when: When = When.BEFORE
     looks_at: str  #: what is compared, in words
-    limits: tuple[float, ...] = ()  #: records of ``constants.py``
     outcome: Outcome = Outcome.REFUSED
     sentence: str  #: filled with the facts of a finding
     find: Find

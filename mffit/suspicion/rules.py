@@ -30,7 +30,6 @@ SAMPLES = tuple(
         id=fault.id,
         when=When.READING,
         looks_at=fault.looks_at,
-        limits=fault.limits,
         outcome=Outcome.LEFT_OUT,
         sentence=fault.reason,
         find=fault.find,

@@ -28,7 +28,6 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 
 @rule_of_files(
     id="dead-channel",
-    limits=(constants.FEWEST,),
     sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
 )
 def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
@@ -45,7 +44,6 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 
 @rule_of_files(
     id="lone-load",
-    limits=(constants.BEYOND_NOMINAL, constants.FEWEST),
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
 )
 def lone_load(part: Points, config: Config) -> Iterator[Finding]:
@@ -60,7 +58,6 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
 
 @rule_of_files(
     id="wild-force",
-    limits=(CREDIBLE_FRICTION, constants.FEWEST),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
 def wild_force(part: Points, config: Config) -> Iterator[Finding]:
@@ -140,16 +137,6 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
 
 @rule_of_files(
     id="impossible-file",
-    limits=(
-        constants.BEYOND_NOMINAL,
-        constants.STEEPEST_OVER_SIDESLIP,
-        constants.SMALLEST_CAMBER_THRUST,
-        constants.SIDESLIP_OF_SLOPES,
-        constants.SMALLEST_FRICTION,
-        CREDIBLE_FRICTION,
-        constants.LARGEST_MOMENT_ARM,
-        constants.FEWEST,
-    ),
     sentence="{said}; {looks}",
 )
 def impossible_file(part: Points, config: Config) -> Iterator[Finding]:

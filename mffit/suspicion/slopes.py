@@ -158,7 +158,6 @@ def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str)
     return Rule(
         id=id,
         looks_at=looks_at,
-        limits=(FALSE_ALARM,),
         outcome=Outcome.CONTRADICTION,
         sentence=told,
         find=find,
@@ -175,7 +174,6 @@ _size = partial(rule, outcome=Outcome.CONTRADICTION)
 
 @_size(
     id="camber-force-too-steep",
-    limits=(constants.STEEPEST_CAMBER_STIFFNESS,),
     sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg",
 )
 def camber_too_steep(found: Signatures) -> Iterator[Finding]:
@@ -186,7 +184,6 @@ def camber_too_steep(found: Signatures) -> Iterator[Finding]:
 
 @_size(
     id="camber-thrust",
-    limits=(constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST),
     sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)",
 )
 def camber_thrust(found: Signatures) -> Iterator[Finding]:
@@ -197,7 +194,6 @@ def camber_thrust(found: Signatures) -> Iterator[Finding]:
 
 @_size(
     id="turn-slip-force-inwards",
-    limits=(constants.WEAK_TURN_SLIP_FORCE,),
     sentence="Fy_N at alpha = gamma = 0 points towards the declared centre of the path",
 )
 def turn_slip_inwards(found: Signatures) -> Iterator[Finding]:

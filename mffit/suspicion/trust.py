@@ -184,7 +184,6 @@ of_measurement = partial(rule, when=When.MEASURED)
 
 @of_model(
     id="search-not-ended",
-    limits=(constants.LARGEST_FALL_LEFT,),
     outcome=Outcome.DISTRUSTED,
     sentence="the search for the best fit is stuck: one more step promises to lower the sum of squares by {left:.3g}, where 1 is "
     "a standard uncertainty, and does not; the numbers are not those of the best fit; hold one of the coefficients at a limit "
@@ -199,12 +198,6 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-above-noise",
-    limits=(
-        constants.DISTRUSTED_MISFIT,
-        constants.CERTAIN_SIGMA,
-        constants.MISFIT_IN_DOUBT,
-        constants.DOUBTFUL_SIGMA,
-    ),
     outcome=Outcome.GRADED,
     sentence="the model misses {channel} by {ratio:.3g} times its stated uncertainty, most in {carriers}; {cause}; check these "
     "sweeps and the stated uncertainty, or run mffit diagnose",
@@ -221,7 +214,6 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="sweep-above-noise",
-    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, ODD_SWEEP_RATIO),
     outcome=Outcome.DISTRUSTED,
     sentence="the model misses {channel} of {sweep} by {ratio:.1f} times {noise}, which chance does not explain{others}{cause}; "
     "check this sweep or repeat it",
@@ -264,39 +256,24 @@ def _odd(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
 
 @of_model(
     id="unexplained-variance",
-    limits=(constants.EXPLAINED_VARIANCE,),
     outcome=Outcome.DISTRUSTED,
-    sentence="the model explains {percent:.0f} % of the variance of {channel}; are these readings of free rolling at steady "
-    "state, and their units and axes right?",
+    sentence="the model explains {percent:.0f} % of the variance of {channel}{where}; are these readings of free rolling at "
+    "steady state, of one tyre and one rig, and their units and axes right?",
 )
 def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Share of a channel's variance that the model explains, unless noise is all that is left."""
-    for name in fit.used:
-        if fit.r2[name] < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
-            yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
-
-
-@of_model(
-    id="unpredicted-sweeps",
-    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST),
-    outcome=Outcome.DISTRUSTED,
-    sentence="a sweep that is left out is predicted from the others to {typical:.3g} {unit} (median) where the fit misses "
-    "{fitted:.3g} {unit}: the model explains less than half of {channel} where it was not fitted; check that all sweeps are of "
-    "one tyre and one rig",
-)
-def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Share of a channel's variance that is predicted in left-out sweeps, where no noise is stated."""
-    for name, seen in fit.left_out.items():
-        spread = float(np.nanstd(getattr(fit.points, name)))
-        poor = seen.typical**2 > (1.0 - constants.EXPLAINED_VARIANCE) * spread**2
-        if poor and seen.sweeps >= constants.FEWEST and not fit.misfit(name).n:
-            unit = CHANNELS[name].unit
-            yield {"channel": name, "typical": seen.typical, "fitted": seen.fitted, "unit": unit}
+    """Share of a channel's variance that the model explains, unless it is noise; without a stated one also of left-out sweeps."""
+    for name, seen in fit.r2.items():
+        share, where, out = seen, "", fit.left_out.get(name)
+        if out is not None and out.sweeps >= constants.FEWEST and not fit.misfit(name).n:
+            predicted = 1.0 - (out.typical / float(np.nanstd(fit.points.channel(name)))) ** 2
+            if predicted < share:
+                share, where = predicted, " in a sweep to which it is not fitted (median)"
+        if share < constants.EXPLAINED_VARIANCE and (where or not fit.at_the_noise(name)):
+            yield {"channel": name, "percent": 100.0 * max(share, 0.0), "where": where}
 
 
 @of_model(
     id="bound-against-the-data",
-    limits=(constants.CERTAIN_SIGMA, LEAST_PREDICTED_SHARE),
     outcome=Outcome.DISTRUSTED,
     sentence="a limit holds {name} against the readings ({sigma:.0f} standard deviations, {percent:.0f} % of the misfit): no "
     "plausible tyre fits these sweeps; check what determines {name}",
@@ -311,7 +288,6 @@ def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="hand-against-the-data",
-    limits=(constants.DOUBTFUL_SIGMA,),
     outcome=Outcome.WARNED,
     sentence="the readings contradict what [coefficients] sets for {name} ({sigma:.1f} standard deviations, {percent:.0f} % of "
     "the misfit): the other coefficients take up the difference; check {name}, or free it",
@@ -335,7 +311,6 @@ def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_measurement(
     id="contradictory-sideslip-zeros",
-    limits=(constants.CERTAIN_SIGMA, constants.DOUBTFUL_SIGMA),
     outcome=Outcome.GRADED,
     sentence="the sideslip zeros of {setup} contradict each other: alpha_M = {one} and {other}, as one axis and the ply-steer of "
     "one tyre cannot be; if the rig was set up anew in between, give these sweeps setups of different names; if not, the axis "
@@ -359,11 +334,6 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
 
 @of_measurement(
     id="unpublished-camber-reduction",
-    limits=(
-        constants.USUAL_PUBLISHED_EPSILON,
-        constants.SPREAD_OF_PUBLISHED_EPSILON,
-        constants.CERTAIN_SIGMA,
-    ),
     outcome=Outcome.DISTRUSTED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
     "likeliest causes: {causes}",
@@ -380,7 +350,6 @@ def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="misfit-far-below-noise",
-    limits=(constants.MISFIT_OF_ANOTHER_UNIT, FALSE_ALARM),
     outcome=Outcome.WARNED,
     sentence="the model misses {channel} by {ratio:.2g} times its stated uncertainty only, so that the readings and their "
     "uncertainty cannot be in the same unit: check the units of {column} and u_{column}",
@@ -397,7 +366,6 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="effect-in-the-residuals",
-    limits=(constants.MISFIT_IN_DOUBT,),
     outcome=Outcome.WARNED,
     sentence="the readings show more than was declared and fitted: {cause}; run mffit diagnose",
 )
@@ -410,7 +378,6 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="structure-in-the-residuals",
-    limits=(constants.CERTAIN_SIGMA,),
     outcome=Outcome.WARNED,
     sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
 )
@@ -462,7 +429,7 @@ def judge(found: JudgedMeasurement) -> Trust:
     return Trust(reasons, doubts, () if reasons else tuple(_remarks(found)), found.over_noise)
 
 
-OF_READINGS = (above_noise, sweep_above_noise, unexplained, unpredicted)
+OF_READINGS = (above_noise, sweep_above_noise, unexplained)
 """Rules that blame readings."""
 OF_TRUST = (
     of_another_tyre,
