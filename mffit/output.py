@@ -11,19 +11,16 @@ import re
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from mffit.errors import InputError
 
 RECORD = ".mffit.json"
-"""Usual name of the record: the files that mffit wrote to a folder, each with its SHA-256 and the command."""
+"""The record: the files that mffit wrote to a folder, each with its SHA-256 and the command."""
 
 ABOUT = "Written by mffit: it replaces the files listed here, while they are unchanged, and no others."
-
-READY = ".ready.json"
-"""In a temporary folder as soon as its files begin to move; from it the next run completes what a killed run began."""
 
 DISK_FULL = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
 """Errors of a full or read-only disk."""
@@ -35,17 +32,7 @@ class OutputEntry(NamedTuple):
     """A written file in the record; ``by:sha256`` in JSON."""
 
     by: str  #: the command that wrote it
-    sha256: str
-
-
-class _Target(NamedTuple):
-    """A folder that a run writes to; see :func:`output_folder`."""
-
-    out: Path
-    by: str
-    protected: tuple[Path, ...]
-    outdated: frozenset[str]
-    record: str
+    sha256: tuple[str, ...]  #: two while a run replaces the file: that of the old one and that of the new one
 
 
 @contextmanager
@@ -54,8 +41,7 @@ def output_folder(
     *,
     by: str = "mffit",
     protected: Iterable[Path] = (),
-    outdated: Iterable[str] = (),
-    record: str = RECORD,
+    outdated: Collection[str] = (),
 ) -> Iterator[Path]:
     """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
 
@@ -65,8 +51,6 @@ def output_folder(
     by : the command that writes; only files of the same command are ever removed
     protected : files that the run reads
     outdated : names of files that would be mistaken for this run's output if an earlier run left them
-    record : JSON file of ``out`` that lists the written files under ``files``; it may be a JSON file of the run
-        itself, which then gets that key
 
     Raises
     ------
@@ -82,13 +66,12 @@ def output_folder(
 
     An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine
     and process; the next run to the same place removes it. If the run was killed while its finished files were moving, the
-    next run moves the others first.
+    record knows the old and the new files, and the next run may replace both.
     """
-    target = _Target(out, by, tuple(protected), frozenset(outdated), record)
     temporary = _temporary_folder(out)
     try:
         yield temporary
-        _publish(temporary, target)
+        _publish(temporary, out, by, protected, outdated)
     except OSError as error:
         if error.errno not in DISK_FULL:
             raise
@@ -111,20 +94,41 @@ def _temporary_folder(out: Path) -> Path:
         raise InputError(f"cannot be written to ({error.strerror}); {ELSEWHERE}", file=parent) from error
 
 
-def _publish(temporary: Path, target: _Target) -> None:
+def _publish(
+    temporary: Path, out: Path, by: str, protected: Iterable[Path], outdated: Collection[str]
+) -> None:
     """Move the finished files to their places, or raise and leave the output as it was."""
-    written = _digests(temporary)
-    recorded = _recorded(target.out, target.record)
-    # The record does not list itself, but its presence shows who wrote it.
-    itself = {target.record: OutputEntry(target.by, digest(target.out / target.record))} if recorded else {}
-    _refuse(target.out, written, recorded | itself, target.protected)
+    written, recorded = _digests(temporary), _recorded(out)
+    _refuse(out, written, recorded, protected)
+    stale = _stale(out, by, written, recorded, outdated)
+    kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
+    new = {name: OutputEntry(by, (sha256,)) for name, sha256 in written.items()}
+    both = {
+        name: OutputEntry(by, (*entry.sha256, *(kept[name].sha256 if name in kept else ())))
+        for name, entry in new.items()
+    }
     try:
-        _move(temporary, target, written, recorded)
+        out.mkdir(exist_ok=True)
+        _record(temporary, out, recorded | both)
+        for name in written:
+            (out / name).parent.mkdir(exist_ok=True)
+            os.replace(temporary / name, out / name)
+        for name in stale:
+            (out / name).unlink(missing_ok=True)
+        _record(temporary, out, kept | new)
     except OSError as error:
         raise InputError(
             f"cannot be written to ({error.strerror}: {error.filename}); close the program that uses it or {ELSEWHERE}",
-            file=target.out,
+            file=out,
         ) from error
+
+
+def _record(temporary: Path, out: Path, entries: Mapping[str, OutputEntry]) -> None:
+    """Replace the record of a folder."""
+    files = {name: ":".join((entry.by, *entry.sha256)) for name, entry in sorted(entries.items())}
+    text = json.dumps({"about": ABOUT, "files": files}, indent=2, ensure_ascii=False) + "\n"
+    (temporary / RECORD).write_text(text, encoding="utf-8")
+    os.replace(temporary / RECORD, out / RECORD)
 
 
 def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
@@ -160,13 +164,13 @@ def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = 
     """
     refuse_unusable(out)
     if out.is_dir():
-        _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
+        _refuse(out, dict.fromkeys(names, ""), _recorded(out), protected)
 
 
-def written_by(out: Path, by: str, record: str = RECORD) -> frozenset[str]:
+def written_by(out: Path, by: str) -> frozenset[str]:
     """Files of ``out`` that the command ``by`` wrote and that are unchanged; empty without a record."""
     try:
-        recorded = _recorded(out, record)
+        recorded = _recorded(out)
         return frozenset(
             name for name, entry in recorded.items() if entry.by == by and _is_unchanged(out, name, entry)
         )
@@ -186,7 +190,7 @@ def _digests(folder: Path) -> dict[str, str]:
 
 
 def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:
-    return (out / name).is_file() and digest(out / name) == entry.sha256
+    return (out / name).is_file() and digest(out / name) in entry.sha256
 
 
 def _refuse(
@@ -228,52 +232,18 @@ def _reason_to_keep(target: Path, new: str, entry: OutputEntry | None, inputs: I
         return (
             f"would be replaced, but no run of mffit is known to have written it; move it away or {ELSEWHERE}"
         )
-    if entry.sha256 != old:
+    if old not in entry.sha256:
         return f"would be replaced, but it was changed since mffit wrote it; move it away or {ELSEWHERE}"
     return ""
 
 
-def _move(
-    temporary: Path, target: _Target, written: Mapping[str, str], recorded: Mapping[str, OutputEntry]
-) -> None:
-    """Move the files to their places, remove outdated ones, and write the record."""
-    out, record = target.out, target.record
-    stale = _stale(target, written, recorded)
-    kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
-    entries = kept | {name: OutputEntry(target.by, new) for name, new in written.items() if name != record}
-    file = temporary / record
-    content = json.loads(file.read_text(encoding="utf-8")) if record in written else {"about": ABOUT}
-    content["files"] = {name: ":".join(entry) for name, entry in sorted(entries.items())}
-    file.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    out.mkdir(exist_ok=True)
-    (temporary / READY).write_text(json.dumps({"record": record, "stale": stale}), encoding="utf-8")
-    _carry(temporary, out, [name for name in written if name != record], stale, record)
-
-
-def _carry(temporary: Path, out: Path, names: Iterable[str], stale: Iterable[str], record: str) -> None:
-    """Move the files and remove the stale ones; the record is last, so that it describes a complete folder."""
-    for name in names:
-        (out / name).parent.mkdir(exist_ok=True)
-        os.replace(temporary / name, out / name)
-    for name in stale:
-        (out / name).unlink(missing_ok=True)
-    os.replace(temporary / record, out / record)
-
-
-def _complete(dead: Path, out: Path) -> None:
-    """Move the files that a killed run had finished but not moved; none if somebody changed a file since."""
-    ready = json.loads((dead / READY).read_text(encoding="utf-8"))
-    record = ready["record"]
-    if not (dead / record).is_file():
-        return
-    recorded = _recorded(out, record)
-    moving = {name: new for name, new in _digests(dead).items() if name not in (READY, record)}
-    _refuse(out, moving, recorded, ())
-    stale = [name for name in ready["stale"] if name in recorded and _is_unchanged(out, name, recorded[name])]
-    _carry(dead, out, moving, stale, record)
-
-
-def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, OutputEntry]) -> list[str]:
+def _stale(
+    out: Path,
+    by: str,
+    written: Mapping[str, str],
+    recorded: Mapping[str, OutputEntry],
+    outdated: Collection[str],
+) -> list[str]:
     """Unchanged files of an earlier run of this command that this run did not write again.
 
     All in the folders that this run wrote to; outside them only those called ``outdated``.
@@ -283,23 +253,22 @@ def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, O
         name
         for name, entry in recorded.items()
         if name not in written
-        and (PurePosixPath(name).parent in folders or name in target.outdated)
-        and entry.by == target.by
-        and _is_unchanged(target.out, name, entry)
+        and (PurePosixPath(name).parent in folders or name in outdated)
+        and entry.by == by
+        and _is_unchanged(out, name, entry)
     ]
 
 
-def _recorded(out: Path, record: str) -> dict[str, OutputEntry]:
+def _recorded(out: Path) -> dict[str, OutputEntry]:
     """Files that earlier runs wrote, by name relative to ``out``; a file called RECORD that is not a record is refused."""
-    path = out / record
+    path = out / RECORD
     try:
         files = json.loads(path.read_text(encoding="utf-8"))["files"]
-        return {name: OutputEntry(*text.split(":")) for name, text in files.items()}
+        parts = {name: text.split(":") for name, text in files.items()}
+        return {name: OutputEntry(by, tuple(sha256)) for name, (by, *sha256) in parts.items()}
     except FileNotFoundError:
         return {}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
-        if record != RECORD:
-            return {}
         raise InputError(
             "is not the record of written files that mffit keeps under this name; move it away", file=path
         ) from None
@@ -311,14 +280,11 @@ def _prefix(name: str) -> str:
 
 
 def _remove_litter(out: Path) -> None:
-    """Remove temporary folders of ended processes of this machine; files that these had finished are moved first."""
+    """Remove temporary folders of ended processes of this machine."""
     prefix = _prefix(out.name)
     for path in out.parent.iterdir():
         found = re.fullmatch(r"(\d+)-\w{8}", path.name.removeprefix(prefix))
         if path.name.startswith(prefix) and found and path.is_dir() and not _alive(int(found[1])):
-            if (path / READY).is_file():
-                with suppress(InputError, OSError, ValueError, LookupError, TypeError):
-                    _complete(path, out)
             shutil.rmtree(path, ignore_errors=True)
 
 

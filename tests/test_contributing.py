@@ -110,13 +110,12 @@ def test_the_exporter_writes_the_forces_of_the_tyre(examples, tmp_path):
 
 def test_the_picture_is_drawn_where_it_appears_and_its_numbers_are_the_readings(examples, tmp_path):
     view = view_of(made_result())
-    (planned,) = examples["LOAD_ORDER"].planned(view)
-    picture = page.draw(tmp_path, planned)
+    picture = page.draw(tmp_path, examples["LOAD_ORDER"], view)
     assert (tmp_path / "plots" / "loads.png").stat().st_size > 1000
     rows = list(csv.DictReader(io.StringIO(picture.table)))
     assert [float(row["y"]) for row in rows] == pytest.approx(view.points.Fz)
     alike = view.points.replace(Fz=np.full(len(view.points), 900.0))
-    assert list(examples["LOAD_ORDER"].planned(dataclasses.replace(view, points=alike))) == []
+    assert page.draw(tmp_path, examples["LOAD_ORDER"], dataclasses.replace(view, points=alike)) is None
 
 
 def test_the_command_prints_text_or_json(examples):

@@ -46,7 +46,7 @@ def _overview(view: BuildView, over: str) -> Panel:
     return Panel(
         title=curve.condition,
         x=labels.angle_axis(over),
-        y=Axis(label=channel.label),
+        y=Axis(label=channel.known.short_axis),
         series=[
             Trace(name=name, x=x, y=y, look=look)
             for (name, look), (x, y) in zip(LOOKS.items(), data, strict=True)
@@ -62,7 +62,7 @@ def main() -> None:
         "camber_reduction": partial(spin.camber_reduction, view),
         "alignment": partial(spin.alignment, view),
         "fit": partial(fit.model_against_points, view, view.channels[0]),
-        "residuals": partial(residuals.of_rolling, view),
+        "residuals": partial(residuals.residual_maps, view),
     }
     for name, sheet in sheets.items():
         pictures.save(sheet(), HERE / f"{name}.png")

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -28,9 +26,6 @@ class ComparedSubject:
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
     names: tuple[str, ...] = ()  #: coefficients whose uncertainty is known
     covariance: np.ndarray | None = None  #: (k, k) of these; None if it is unknown
-    covariance_of: str = ""  #: another file, if the result.json beside this one holds the covariance of that
-    rig: Mapping[str, Any] | None = None  #: the table [rig] of its build
-    setups: tuple[str, ...] = ()  #: names of the set-ups that the sweeps of its build declare
 
 
 @dataclass(frozen=True, slots=True)

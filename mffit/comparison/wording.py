@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
 from mffit.constants import COVERAGE_FACTOR_95
@@ -80,43 +79,22 @@ def on_nominal(first: ComparedSubject, second: ComparedSubject) -> str:
 
 def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str, ...]:
     """Remarks on a comparison of two files: their use, and what is known of their uncertainty."""
-    return (*_on_use(first, second), *_on_uncertainty(first, second))
-
-
-def _on_use(first: ComparedSubject, second: ComparedSubject) -> Iterator[str]:
+    notes = []
     if first.turn_slip != second.turn_slip:
         on, off = (first, second) if first.turn_slip else (second, first)
-        yield (
+        notes.append(
             f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated for its own use."
         )
-
-
-def _on_uncertainty(first: ComparedSubject, second: ComparedSubject) -> Iterator[str]:
-    unknown = [side for side in (first, second) if side.covariance is None]
-    bare = [side.name for side in unknown if not side.covariance_of]
+    bare = [side.name for side in (first, second) if side.covariance is None]
     if bare:
-        yield f"The uncertainty of {' and '.join(bare)} is unknown, because no result.json of a build is in its folder."
-    for side in unknown:
-        if side.covariance_of:
-            yield (
-                f"The uncertainty of {side.name} is unknown: the covariance in the result.json of its folder belongs to "
-                f"{side.covariance_of}."
-            )
-    if unknown or first.name == second.name:
-        return
-    rig = (first.rig or {}).get("name")
-    if rig and rig == (second.rig or {}).get("name"):
-        shared = sorted(set(first.setups) & set(second.setups))
-        what = (
-            "its errors are counted twice" if shared else "its path radius and its geometry are counted twice"
-        )
-        setup = f", and share its set-up {', '.join(shared)}" if shared else ", in set-ups of their own"
-        yield (
-            f"Both sides are treated as independent. As both builds are of one rig, {rig}{setup}, {what}: differences are more "
-            "significant than stated."
+        notes.append(
+            f"The uncertainty of {' and '.join(bare)} is unknown: no result.json beside it states one for this file."
         )
     else:
-        yield "Both sides are treated as independent."
+        notes.append(
+            "Both sides are treated as independent: if one rig measured both, differences are more significant than stated."
+        )
+    return tuple(notes)
 
 
 def note_on_temperature(name: str, T_ref: float) -> str:

@@ -17,6 +17,7 @@ from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, s
 from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
+from mffit.left_out import moved_without
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
@@ -35,8 +36,7 @@ class LinearisedNumbers:
 
     def moved_without(self, rows: np.ndarray) -> np.ndarray:
         """Change (k,) of the numbers when some readings, by their positions among the used ones, are left out."""
-        out = self.white[rows]
-        return -np.linalg.solve(self.information - out.T @ out, self.gradient - out.T @ self.residual[rows])
+        return moved_without(self.white[rows], self.residual[rows], self.information, self.gradient)
 
 
 class DiagnosisProblem:
@@ -298,7 +298,8 @@ class DiagnosisProblem:
         away = np.array([fitted.numbers[n.name] - n.expected for n in numbers])
         at_centre = fitted.residual - fitted.jacobian @ away
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        return self.noise.with_shared(columns), self.noise.with_shared(at_centre)
+        found = self.noise.unshared(np.column_stack([at_centre, columns]))
+        return found[:, 1:], found[:, 0]
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
@@ -312,9 +313,9 @@ class DiagnosisProblem:
 
         def linear(x: np.ndarray) -> Linear:
             out, slope = at(x).sensitivities(self.points, names, self.channels)
-            data = self.noise.whiten(np.nan_to_num(out.stacked - self.measured))
-            rows = np.where(np.isfinite(self.measured)[:, None], slope.stacked, 0.0)
-            return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
+            rows = np.column_stack([out.stacked - self.measured, slope.stacked])
+            white = self.noise.whiten(np.nan_to_num(np.where(np.isfinite(self.measured)[:, None], rows, 0.0)))
+            return Linear(white[:, 0], white[:, 1:], nothing, np.zeros((0, len(names))))
 
         return LeastSquaresProblem(residual, linear)
 

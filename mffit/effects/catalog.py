@@ -16,7 +16,6 @@ def _effect(error: RigError, seen: Appearance) -> Effect:
         physics=seen.physics,
         free=(_free(error, seen), *(_free(BY_NAME[name]) for name in seen.together_with)),
         needs=seen.needs,
-        parity=seen.parity,
         confusable_with=seen.confusable_with,
         remedy=seen.remedy,
         axes=seen.axes,

@@ -45,7 +45,6 @@ class Effect:
     physics: str  #: one sentence
     free: tuple[Free, ...]
     needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see effects.needs
-    parity: str = ""  #: under alpha, gamma, phi_t -> reversed
     confusable_with: tuple[str, ...] = ()
     remedy: str = ""  #: what to do at the rig; {value}, {opposite}: the first number in the rig's own axes, with its sign
     axes: tuple[str, ...] = ()  #: channels in whose axes that number counts

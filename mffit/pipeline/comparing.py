@@ -23,7 +23,6 @@ from mffit.progress import Progress, silent
 from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
-from tir.errors import TirError
 
 
 def compare(
@@ -83,25 +82,21 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
     from mffit import report
 
     with output_folder(out, by="compare", protected=[path for path in read if path.is_file()]) as folder:
-        as_json.write(folder / "compare.json", as_json.comparison(found))
+        as_json.write(folder / "compare.json", found)
         report.write_comparison(found, folder)
 
 
 def _subject(path: Path) -> ComparedSubject:
     """A property file, or that of a build's folder, with its covariance if its build is beside it."""
-    built = _build_in(path) if path.is_dir() else _build_beside(path)
-    path = path / built.file if built is not None and path.is_dir() else path
+    if path.is_dir():
+        path = path / _build_in(path).file
     tyre = tir.read(path)
     use = use_of(tyre)
     subject = ComparedSubject(path.name, tyre, tyre.turn_slip if use is None else use == "turn-slip")
-    if built is not None:
-        subject = replace(subject, rig=built.rig, setups=built.setups)
     posterior = posterior_of(tyre, path)
-    if posterior is not None:
-        return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
-    if built is None or built.file == path.name:
+    if posterior is None:
         return subject
-    return replace(subject, covariance_of=built.file)
+    return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
 
 
 def _build_in(folder: Path) -> Specimen:
@@ -112,14 +107,6 @@ def _build_in(folder: Path) -> Specimen:
         raise InputError(
             f"{folder} is not the folder of a build: it has no result.json that names a property file; give the .tir itself"
         ) from None
-
-
-def _build_beside(path: Path) -> Specimen | None:
-    """The build in the same folder; None without one."""
-    try:
-        return fleet.read(path.parent)
-    except (InputError, TirError):
-        return None
 
 
 def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +12,8 @@ from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
-from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
-from mffit.report.catalogue import ChannelPicture, Picture, Planned
+from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, CoefficientRow, view_of
+from mffit.report.catalogue import Picture
 from mffit.report.figures import (
     bands,
     decomposition,
@@ -23,7 +22,6 @@ from mffit.report.figures import (
     residuals,
     slip,
     spin,
-    structure,
 )
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
@@ -40,7 +38,7 @@ PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on t
 """Uses for which a file that serves both is judged, beside the straight path without turn slip."""
 
 
-BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = (
+BUILD: tuple[Picture[BuildView], ...] = (
     Picture(
         name="overview",
         title="Readings and fitted model of every channel at nominal load and pressure",
@@ -48,7 +46,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "is the angle that is held, dark to light from its smallest to its largest value.",
         section="top",
         draw=fit.overview,
-        when=lambda view: bool(view.curves),
     ),
     Picture(
         name="files",
@@ -58,7 +55,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "off: without spin the formula cannot reproduce exactly how camber reduces grip.",
         section="files",
         draw=bands.files_on_a_straight_path,
-        when=lambda view: view.several_files,
     ),
     Picture(
         name="camber_reduction",
@@ -68,7 +64,6 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         "and the line that the file carries.",
         section="spin",
         draw=spin.camber_reduction,
-        when=lambda view: view.on_disc,
     ),
     Picture(
         name="alignment",
@@ -76,29 +71,18 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         shows="The slip force vanishes where both lines cross; with an aligned axis they cross on the vertical line. The height "
         "of the crossing is the turn-slip force. The points are raw readings. The table is corrected for the play of the axis "
         "and, if five angles were run near zero, evaluates a parabola through them at zero; so its forces differ slightly.",
-        section="alignment",
         draw=spin.alignment,
-        when=lambda view: view.on_disc and bool(spin.both_directions(view)),
     ),
     Picture(
         name="parts",
-        title="Raw, odd and even curves of every channel at nominal load",
-        shows="Raw readings, odd and even part of the forward sweeps over one angle with the other at zero, at the load and the "
-        "pressure nearest to the nominal ones.",
+        title="Raw, odd and even curves of every channel at nominal load, and the even part at every load with the model",
+        shows="Forward sweeps over one angle with the other at zero, at nominal pressure. First the readings with their odd and "
+        "even part at nominal load, then the even part at every load, with one standard uncertainty, and that of the fitted "
+        "model. In MF-6.2 turn slip shifts the Fy curve sideways, so its even part has the shape of the local cornering "
+        "stiffness and is not flat. A misaligned sideslip axis and ply-steer have nearly the same shape: a vertical gap that "
+        "follows the curve suggests one of them, a constant gap a load-cell offset or conicity. A step near zero is backlash: "
+        "the moment changes its sign there. The model of the rig includes what is declared.",
         draw=decomposition.parts,
-        when=lambda view: view.on_disc and bool(decomposition.pure_curves(view)),
-    ),
-    Picture(
-        name="even_parts",
-        title="Even part at nominal pressure, measured and of the model",
-        shows="The even part of the same sweeps, measured and of the fitted model. In MF-6.2 turn slip shifts the Fy curve "
-        "sideways, so its even part has the shape of the local cornering stiffness and is not flat. A misaligned sideslip axis "
-        "and ply-steer have nearly the same shape: a vertical gap here that follows the curve suggests one of them, a constant "
-        "gap a load-cell offset or conicity. A step near zero is backlash: the moment changes its sign there, and with it the "
-        "side on which the play is taken up. The model of the rig includes what is declared.",
-        section="parts",
-        draw=decomposition.even_parts,
-        when=lambda view: view.on_disc and bool(decomposition.pure_curves(view)),
     ),
     *fit.OF_CHANNELS,
     Picture(
@@ -106,20 +90,17 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         title="Longitudinal over lateral force at every load, with the friction limit of the model",
         shows="Friction ellipse of the upright wheel at the pressure nearest to the nominal one. Each colour is a sideslip, "
         "along which slip goes from full braking to full drive. Points are readings less the fitted errors of the rig. The dark "
-        "line is the largest force of the model in every direction within the tested sideslip and slip; it is dotted where no "
-        "sweep combined as much sideslip with slip. Bands (95 %) are narrow where they cannot be seen.",
+        "line is the largest force of the model in every direction within the slip and sideslip that were run together.",
         section="slip",
         draw=slip.friction_ellipse,
-        when=slip.combined,
     ),
     Picture(
         name="radii",
         title="Loaded radius and rolling radius over load at every pressure",
-        shows="Radii of the freely rolling wheel: means over the sweeps, and the file with 95 % bands from the scatter of these "
-        "means. Points include camber and speeds that the lines leave out.",
+        shows="Radii of the freely rolling wheel: means over the sweeps, and the file. "
+        "Points include camber and speeds that the lines leave out.",
         section="slip",
         draw=radii.radii,
-        when=lambda view: bool(view.build.fit.radii.rms),
     ),
     Picture(
         name="bands",
@@ -127,57 +108,27 @@ BUILD: tuple[Picture[BuildView] | ChannelPicture[BuildView, ChannelRow], ...] = 
         shows="Uncertainty of the curves: the fitted model on a straight path, at the smallest, the nominal and the largest load "
         "of the file. The bands contain the tyre's own curve with a probability of 95 %, if noise, errors of the rig and "
         "unconstrained coefficients are the only errors. Dotted lines are the ends of the tested range. Beyond them a band "
-        "covers what the formula allows, not what a tyre may do.",
-        section="bands",
+        "covers what the formula allows, not what a tyre may do. The force of a sister tyre has the uncertainty of both ratios "
+        "and the scatter of the shapes among similar tyres.",
         draw=bands.bands,
-        when=lambda view: view.build.fit.files is not None,
-    ),
-    Picture(
-        name="borrowed_Fx",
-        title="Longitudinal force of the sister tyre, scaled, over longitudinal slip at three loads, with 95 % bands",
-        shows="Longitudinal force of the file over longitudinal slip, without and with sideslip, at the smallest, the nominal "
-        "and the largest load of the file. The bands contain the uncertainty of both ratios and the scatter of the shapes among "
-        "similar tyres.",
-        section="sister",
-        draw=bands.borrowed_force,
-        when=lambda view: view.build.fit.files is not None and view.build.fit.lent is not None,
     ),
     Picture(
         name="residuals",
-        title="Residuals over sideslip and camber, one map per load and pressure",
-        shows="Measured minus model of the freely rolling wheel. A good fit shows pale colours without order. A patch of one "
-        "colour is structure that the model misses; mffit diagnose looks for its cause. Points with equal angles are drawn side "
-        "by side; a small dot marks a point that was run backwards.",
-        section="residuals",
-        draw=residuals.of_rolling,
-    ),
-    Picture(
-        name="residuals_slip",
-        title="Residuals over longitudinal slip and sideslip, one map per load and pressure",
-        shows="The same of the driven and braked wheel, over longitudinal slip and sideslip. Cambers lie side by side.",
-        section="residuals",
-        draw=residuals.of_driven,
-        when=lambda view: bool(residuals.driven(view.points, view.conditions)),
-    ),
-    Picture(
-        name="structure",
-        title="Mean residuals over the conditions over which they are not random",
-        shows="Mean of measured minus model over bins of each condition, in units of the point's uncertainty; bars show one "
-        "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
-        "Only what chance does not explain is drawn, the number of comparisons accounted for.",
-        section="structure",
-        draw=lambda view: structure.residual_means(view.build.remains.structure),
-        when=lambda view: bool(view.build.remains.structure.found),
+        title="Residuals over sideslip and camber, or over slip and sideslip, one map per load and pressure",
+        shows="Measured minus model, of the freely rolling wheel over sideslip and camber, of the driven and braked wheel over "
+        "longitudinal slip and sideslip. A good fit shows pale colours without order. A patch of one colour is structure that "
+        "the model misses; mffit diagnose looks for its cause. Points with equal angles are drawn side by side; a small dot "
+        "marks a point that was run backwards.",
+        draw=residuals.residual_maps,
     ),
 )
 """Every picture of the report, in its order."""
 
 
-def planned(view: BuildView) -> Iterator[Planned]:
-    """The pictures that the report of a build shows."""
+def pictures_of(view: BuildView) -> list[Picture[BuildView]]:
+    """The pictures of a build, two of them at the top of the page."""
     opening = "camber_reduction" if view.on_disc else "bands"
-    for one in (one for picture in BUILD for one in picture.planned(view)):
-        yield replace(one, section="top") if one.name == opening else one
+    return [replace(one, section="top") if one.name == opening else one for one in BUILD]
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -186,8 +137,8 @@ def write_build(result: BuildResult, folder: Path) -> None:
     page.write(
         "build.html.j2",
         folder / "report.html",
-        planned(view),
-        view=view,
+        pictures_of(view),
+        view,
         build=result,
         fit=result.fit,
         paired={

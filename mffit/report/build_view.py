@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.fit import Coefficient
 from mffit.points import Points
-from mffit.report.catalogue import NamedChannel
+from mffit.quantities import CHANNELS, QuantityName
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
@@ -36,9 +36,10 @@ NOT_DECIDED = ("base", "converted", "default", "given", "range")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChannelRow(NamedChannel):
-    """One measured channel and what is drawn with it; arrays (n,) in ``unit``, NaN where unknown."""
+class ChannelRow:
+    """One measured channel and what is drawn with it; arrays (n,) in its unit, NaN where unknown."""
 
+    name: str
     measured: np.ndarray
     u: np.ndarray
     model: np.ndarray
@@ -51,6 +52,10 @@ class ChannelRow(NamedChannel):
         """A channel of which only the readings are known."""
         none = np.full(len(measured), np.nan)
         return cls(name=name, measured=measured, u=u, model=none, odd=none, even=none, u_odd=none)
+
+    @property
+    def known(self) -> QuantityName:
+        return CHANNELS[self.name]
 
     @property
     def noise(self) -> float:
@@ -130,7 +135,7 @@ class BuildView(Overlay):
         for c in self.channels:
             u = np.where(np.isfinite(c.u), c.u, c.noise)
             scale = u if self.residual_unit == "u" else self.build.fit.channels[c.name].rmse
-            found.append((c.symbol, (c.measured - c.model) / scale))
+            found.append((c.known.mathtext, (c.measured - c.model) / scale))
         return found
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +12,21 @@ from mffit.fit.plan import channels_of
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, page, style
 from mffit.report.build_view import ChannelRow, Overlay
-from mffit.report.catalogue import ChannelPicture, NamedChannel, Picture
+from mffit.report.catalogue import Picture, of_channels
 from mffit.report.curves import curves, model_lines
-from mffit.report.drawing.records import ZERO, Axis, Bars, Guide, Look, Panel, Sheet, Trace, in_rows, listed
+from mffit.report.drawing.records import (
+    NOTHING,
+    ZERO,
+    Axis,
+    Bars,
+    Guide,
+    Look,
+    Panel,
+    Sheet,
+    Trace,
+    in_rows,
+    listed,
+)
 from mffit.report.figures import fit
 
 FIRST, SECOND = (
@@ -27,9 +38,8 @@ FIRST, SECOND = (
 def curves_of_both(found: Comparison, channel: str) -> Sheet:
     """Both curves with their 95 % bands over sideslip and camber, or over slip, a panel per load."""
     gaps = sorted((gap for gap in found.curves if gap.channel == channel), key=lambda gap: gap.load)
-    groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in (*labels.ANGLES, "kappa")]
-    rows = in_rows(*groups)
-    return Sheet(rows=rows, height=1.9, key={found.first: FIRST, found.second: SECOND})
+    groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in labels.OTHER]
+    return Sheet(rows=in_rows(*groups), height=1.9, key={found.first: FIRST, found.second: SECOND})
 
 
 def _panel(found: Comparison, gap: CurveGap) -> Panel:
@@ -50,6 +60,8 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
 def differences(found: Comparison) -> Sheet:
     """The largest differences of numbers over their standard uncertainties."""
     rows = [row for row in found.numbers if row.z is not None][: constants.MOST_ROWS]
+    if not rows:
+        return NOTHING
     z = np.array([float(row.z or 0.0) for row in rows])
     edge = Look(colour=style.MUTED, line="--", width=0.8)
     bars = Bars(
@@ -67,23 +79,19 @@ def differences(found: Comparison) -> Sheet:
     return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)
 
 
-COMPARISON: tuple[ChannelPicture[Comparison, NamedChannel] | Picture[Comparison], ...] = (
-    ChannelPicture(
-        name="curves_{channel}",
+COMPARISON: tuple[Picture[Comparison], ...] = (
+    *of_channels(
+        "curves",
         title="{word} of both over sideslip and camber, or over slip",
         shows="{word} on a straight path, with the other angle zero. Shaded areas are 95 % bands, if a build states them.",
         section="curves",
-        channels=lambda found: [
-            NamedChannel(name=name) for name in dict.fromkeys(gap.channel for gap in found.curves)
-        ],
-        draw=lambda found, channel: curves_of_both(found, channel.name),
+        draw=curves_of_both,
     ),
     Picture(
         name="differences",
         title="Ranked differences in units of their uncertainty",
         shows="Differences over their standard uncertainties, the largest first. Those beyond the dashed lines are significant.",
         draw=differences,
-        when=lambda found: any(row.z is not None for row in found.numbers),
     ),
 )
 """Pictures of two files."""
@@ -91,19 +99,25 @@ COMPARISON: tuple[ChannelPicture[Comparison, NamedChannel] | Picture[Comparison]
 
 def write_comparison(found: Comparison, folder: Path) -> None:
     """Write the pictures and ``compare.html`` of a comparison to an existing folder."""
-    planned = [one for picture in COMPARISON for one in picture.planned(found)]
+    pictures: tuple[Picture[Comparison], ...] = COMPARISON
     view = _overlay(found)
     if view is not None:
-        over = (one for picture in fit.OF_CHANNELS for one in picture.planned(view))
-        planned += [replace(one, section="curves") for one in over]
+        pictures += tuple(_of_overlay(view, one) for one in fit.OF_CHANNELS)
     page.write(
         "compare.html.j2",
         folder / "compare.html",
-        planned,
+        pictures,
+        found,
         found=found,
         say=wording,
         channels=CHANNELS,
         most=constants.MOST_ROWS,
+    )
+
+
+def _of_overlay(view: Overlay, one: Picture[Overlay]) -> Picture[Comparison]:
+    return Picture(
+        name=one.name, title=one.title, shows=one.shows, section="curves", draw=lambda _: one.draw(view)
     )
 
 

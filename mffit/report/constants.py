@@ -5,12 +5,9 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 POINTS_PER_SERIES = Count(
-    4000, "-", "Most points of a series in a picture and its table: more lie on top of each other."
+    4000, "-", "Most points of a series in the table behind a picture; points.csv has all."
 )
 MOST_MARKS = Count(150, "-", "Panels with more marks show them small, so that they cover each other less.")
-COLOURS_OF_MAP = Count(
-    17, "-", "The eye tells no more apart, and marks of one colour are one element of a page."
-)
 MOST_PANELS = Count(60, "-", "Most panels of a picture: three pages. The caption says what is left out.")
 MOST_ROWS = Count(
     12, "-", "Most bars of a picture, and rows of a table in a terminal where a file or page has all."

@@ -9,18 +9,16 @@ from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.quantities import CHANNELS
 from mffit.report import page, words
 from mffit.report.catalogue import Picture
-from mffit.report.diagnosis_view import DiagnosisView, view_of
 from mffit.report.figures import gap
 from tir.parameters import BY_NAME
 
-DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
+DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
     Picture(
         name="curves",
         title="The worst and the typical sweep: measured, simulated as given and with what was found",
         shows="The sweeps with the largest and with the median misfit of the simulation, in units of the noise. Dashed lines are "
         "the simulation as given, blue lines include the effects below, errors of the rig among them.",
         draw=gap.curves_before_after,
-        when=lambda view: bool(view.shown),
     ),
     Picture(
         name="evidence",
@@ -29,7 +27,6 @@ DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
         "its bar passes the dashed line, which allows for the number of effects tried. The number at a bar is its distance to "
         f"the best in log evidence: within {TIED_EVIDENCE:g} the data do not tell them apart. The scale is logarithmic.",
         draw=gap.evidence,
-        when=lambda view: bool(view.steps),
     ),
     Picture(
         name="gap_maps",
@@ -38,7 +35,6 @@ DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
         "regions of the list below. Noise alone is pale and without order, and so should be the maps afterwards. A small dot "
         "marks a point that was run backwards. Maps of the driven and braked wheel are over slip and sideslip.",
         draw=gap.residuals_before_after,
-        when=lambda view: bool(view.channels),
     ),
 )
 """Every picture of the page."""
@@ -46,13 +42,13 @@ DIAGNOSIS: tuple[Picture[DiagnosisView], ...] = (
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """Write ``plots/*.png`` and ``diagnosis.html`` of a diagnosis to an existing folder."""
-    view = view_of(diagnosis)
     page.write(
         "diagnosis.html.j2",
         folder / "diagnosis.html",
-        (one for picture in DIAGNOSIS for one in picture.planned(view)),
-        view=view,
+        DIAGNOSIS,
+        diagnosis,
         d=diagnosis,
+        measured=[channel.name for channel in gap.gap_channels(diagnosis)],
         say=wording,
         channels=CHANNELS,
         coefficients=BY_NAME,

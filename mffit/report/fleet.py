@@ -13,7 +13,7 @@ from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import COMPARED, DIRECT
 from mffit.report import constants, labels, page, style
 from mffit.report.catalogue import Picture
-from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.text.many import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
 
@@ -32,6 +32,8 @@ APART = 0.22
 
 def epsilon_of_all(found: Fleet) -> Sheet:
     """Camber reduction factor of every specimen by each estimate; every bar is one standard uncertainty."""
+    if not any(any(found.numbers(key)) for key in EPSILON):
+        return NOTHING
     series = [
         _bars(found.numbers(key), APART * (k - 1), LOOKS[key], words)
         for k, (key, words) in enumerate(EPSILON.items())
@@ -83,7 +85,6 @@ FLEET: tuple[Picture[Fleet], ...] = (
         "alike. The joint estimate uses all points of a tyre and fits the errors of the rig, too. All tyres together determine "
         "the rig best.",
         draw=epsilon_of_all,
-        when=lambda found: any(any(found.numbers(key)) for key in EPSILON),
     ),
     Picture(
         name="numbers",
@@ -108,7 +109,8 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
     page.write(
         "fleet.html.j2",
         folder / "fleet.html",
-        (one for picture in FLEET for one in picture.planned(found)),
+        FLEET,
+        found,
         fleet=found,
         epsilon=DIRECT["epsilon_gamma"],
         estimates=estimates,

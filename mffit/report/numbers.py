@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 
+from mffit.report import constants
 from mffit.report.drawing.records import Axis, Sheet
 from mffit.report.labels import plain
 
@@ -15,9 +18,9 @@ NUMBERS = ("x", "y", "lower", "upper", "x of lower", "x of upper", "value")
 def table(sheet: Sheet) -> str:
     """Everything that the sheet draws in its axes' units, as CSV: a row per point, bar or end of a band.
 
-    Guides across a whole panel are left out, and columns that are empty.
+    Guides across a whole panel are left out, and columns that are empty. Of a long series every so many points are listed.
     """
-    found = [(panel, series, series.columns()) for panel in sheet.panels for series in panel.series]
+    found = [(panel, series, _thinned(series.columns())) for panel in sheet.panels for series in panel.series]
     lengths = [len(columns["x"]) for *_, columns in found]
     words = [(panel.title, one.name, panel.x.label, panel.y.label) for panel, one, _ in found]
     table: dict[str, np.ndarray] = {}
@@ -34,6 +37,11 @@ def table(sheet: Sheet) -> str:
         at = zip(np.repeat(np.arange(len(found)), lengths), table["y"], strict=True)
         table["y"] = np.array([plain(_word(found[k][0].y, y)) or f"{y:.6g}" for k, y in at])
     return pd.DataFrame(table).to_csv(index=False, float_format="%.6g", lineterminator="\n")
+
+
+def _thinned(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    every = max(1, -(-len(columns["x"]) // int(constants.POINTS_PER_SERIES)))
+    return {name: values[::every] for name, values in columns.items()}
 
 
 def _word(axis: Axis, y: float) -> str:

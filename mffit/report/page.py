@@ -17,8 +17,8 @@ from mffit.errors import shortened
 from mffit.made import COMPUTING, libraries, made
 from mffit.points.left_out import together
 from mffit.report import constants, numbers, typeset
-from mffit.report.catalogue import Planned
-from mffit.report.drawing.records import with_fewer_rows, with_shorter_series
+from mffit.report.catalogue import Picture, View
+from mffit.report.drawing.records import with_fewer_rows
 from mffit.templates import environment
 
 if TYPE_CHECKING:
@@ -45,9 +45,11 @@ class PagePicture:
         return f"data:application/zip;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"
 
 
-def write(template: str, path: Path, planned: Iterable[Planned], **content: object) -> None:
-    """Draw the pictures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
-    drawn = {one.name: draw(path.parent, one) for one in planned}
+def write(
+    template: str, path: Path, catalogue: Iterable[Picture[View]], view: View, **content: object
+) -> None:
+    """Draw the pictures of a view, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
+    drawn = {one.name: draw(path.parent, one, view) for one in catalogue}
     pictures = {name: picture for name, picture in drawn.items() if picture is not None}
     filled = _environment().get_template(template)
     known = made()
@@ -59,27 +61,27 @@ def write(template: str, path: Path, planned: Iterable[Planned], **content: obje
             f"{name} {number}" for name, number in libraries((*COMPUTING, "matplotlib")).items()
         ),
     }
-    html = filled.render(made=foot, pictures=pictures, **content)
+    html = filled.render(made=foot, pictures=pictures, view=view, **content)
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(folder: Path, planned: Planned) -> PagePicture | None:
+def draw(folder: Path, picture: Picture[View], view: View) -> PagePicture | None:
     """Draw a picture into ``folder/plots/<name>.png``, and as it stands in the page; None if these data give it no panel."""
     from mffit.report.drawing import pictures
 
-    whole = with_shorter_series(planned.make(), int(constants.POINTS_PER_SERIES))
+    whole = picture.draw(view)
     if not whole.panels:
         return None
     (folder / "plots").mkdir(parents=True, exist_ok=True)
     sheet = with_fewer_rows(whole, int(constants.MOST_PANELS))
-    picture = pictures.draw(sheet, planned.name)
-    (folder / "plots" / f"{planned.name}.png").write_bytes(picture.png)
+    drawing = pictures.draw(sheet)
+    (folder / "plots" / f"{picture.name}.png").write_bytes(drawing.png)
     return PagePicture(
-        name=planned.name,
-        title=planned.title,
-        caption=f"{planned.shows} {sheet.remark}".strip(),
-        section=planned.section,
-        drawing=picture.markup,
+        name=picture.name,
+        title=picture.title,
+        caption=f"{picture.shows} {sheet.remark}".strip(),
+        section=picture.section or picture.name,
+        drawing=drawing.markup,
         table=numbers.table(whole),
     )
 

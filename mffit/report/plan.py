@@ -11,11 +11,13 @@ from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import constants, page, style
 from mffit.report.catalogue import Picture
-from mffit.report.drawing.records import Axis, Bars, Note, Panel, Sheet, listed
+from mffit.report.drawing.records import NOTHING, Axis, Bars, Note, Panel, Sheet, listed
 
 
 def u_against_runs(plan: Plan) -> Sheet:
     """A bar from zero for the uncertainty now and after every run of the list, with what was added."""
+    if not plan.steps:
+        return NOTHING
     values = [plan.now, *(step.after for step in plan.steps)]
     names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
     known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
@@ -47,7 +49,6 @@ PLAN: Picture[Plan] = Picture(
     title="Uncertainty of the goal now and after every run of the list",
     shows="What the plan makes smaller, now and after each added run; an uncertainty is one standard deviation.",
     draw=u_against_runs,
-    when=lambda plan: bool(plan.steps),
 )
 
 
@@ -56,7 +57,8 @@ def write_plan(plan: Plan, folder: Path) -> None:
     page.write(
         "plan.html.j2",
         folder / "plan.html",
-        PLAN.planned(plan),
+        (PLAN,),
+        plan,
         plan=plan,
         say=wording,
         epsilon=DIRECT["epsilon_gamma"].html,

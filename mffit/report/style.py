@@ -23,7 +23,7 @@ LEFT, RIGHT, BOTTOM, TOP = 50.0, 10.0, 31.0, 18.0
 LETTER = 5.0
 """Width of a letter of a title or key [pt], wide ones among them."""
 SETTINGS: dict[str, Any] = {
-    "figure.dpi": 110,
+    "figure.dpi": 144,
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that pictures are the same on every machine
     "font.size": 7.8,
     "mathtext.default": "regular",

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
 
-VERBATIM = frozenset({"code", "svg", "title"})
+VERBATIM = frozenset({"code", "title"})
 """Elements whose text is not changed, nor that of class ``mono``."""
 VOID = frozenset({"meta", "img", "br", "col", "input", "link", "hr"})
 TAG = re.compile(r"(<script\b.*?</script>|<style\b.*?</style>|<[^>]*>)", re.DOTALL)

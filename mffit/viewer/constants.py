@@ -14,7 +14,6 @@ SLIDER_LEAST = Real(
     "-",
     "Least reach of a coefficient's slider, over 1 plus the size of its value: a change that the eye sees.",
 )
-LEAST_MOVER = Real(0.1, "-", "Share of the information on a coefficient below which a sweep is not named.")
 MOST_CHIPS = Count(
     24, "-", "Most levels of a condition with a button each: three lines; above it, the filter is a range."
 )

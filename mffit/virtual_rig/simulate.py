@@ -47,7 +47,7 @@ def simulate(
     plan = plan if isinstance(plan, RigPlan) else load_plan(plan)
     read += [path for path in (plan.tyre_path, plan.declared.base_path) if path is not None]
     campaign = run(plan, tir.read(plan.tyre_path), seed)
-    with output_folder(Path(out), by="simulate", protected=read, record=TRUTH) as folder:
+    with output_folder(Path(out), by="simulate", protected=read) as folder:
         write(campaign, plan, folder)
     return campaign.truth
 

@@ -16,61 +16,36 @@ from mffit.errors import InputError
 LONE_NEWLINE = re.compile(r"(?<!\r)\n")
 
 
-def hold(text: str, *, name: str, value: float) -> str:
-    """The text with the coefficient held at a value."""
-    return _edited(text, lambda document: _table(document, "coefficients").update({name: value}))
-
-
-def start(text: str, *, name: str, value: float) -> str:
-    """The text with the search of the coefficient starting at a value; its bounds and its prior stay."""
-
-    def change(document: Any) -> None:
-        table = _table(document, "coefficients")
-        own = table.get(name)
-        if isinstance(own, Mapping):
-            own["start"] = value  # type: ignore[index]
-        else:
-            entry = tomlkit.inline_table()
-            entry["start"] = value
-            table[name] = entry
-
-    return _edited(text, change)
-
-
-def limit(text: str, *, name: str, entry: Mapping[str, Any]) -> str:
-    """The text with bounds, start and prior of the coefficient; without any of them, the text without its entry.
+def coefficient(text: str, *, name: str, entry: float | Mapping[str, Any] | None) -> str:
+    """The text with what the engineer says of a coefficient.
 
     Parameters
     ----------
     text : of the file
     name : of the coefficient
-    entry : numbers by key of :data:`mffit.config.by_hand.KEYS`; what the file gave for the coefficient goes
+    entry : the number at which it is held, or numbers by key of :data:`mffit.config.by_hand.KEYS`, which replace what the file
+        gave; None or no key removes it
     """
-    if unknown := [key for key in entry if key not in KEYS]:
+    keys = entry if isinstance(entry, Mapping) else {}
+    if unknown := [key for key in keys if key not in KEYS]:
         raise InputError(f'"{unknown[0]}" is not a key of a coefficient; known are {", ".join(KEYS)}')
-    if not entry:
-        return free(text, name=name)
 
     def change(document: Any) -> None:
+        if entry is None or entry == {}:
+            document.get("coefficients", {}).pop(name, None)
+            return
         table = _table(document, "coefficients")
+        if not keys:
+            table[name] = entry
+            return
         own = table.get(name)
         if not isinstance(own, Table):
             table[name] = own = tomlkit.inline_table()
         for key in KEYS:
-            if key not in entry:
+            if key not in keys:
                 own.pop(key, None)
-            elif own.get(key) != entry[key]:
-                own[key] = entry[key]
-
-    return _edited(text, change)
-
-
-def free(text: str, *, name: str) -> str:
-    """The text without the entry of the coefficient; unchanged if there is none."""
-
-    def change(document: Any) -> None:
-        if name in document.get("coefficients", {}):
-            del document["coefficients"][name]
+            elif own.get(key) != keys[key]:
+                own[key] = keys[key]
 
     return _edited(text, change)
 
@@ -121,7 +96,7 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
 
 
 EDITS: Mapping[str, Callable[..., str]] = {
-    edit.__name__: edit for edit in (hold, start, limit, free, leave_out, take_back)
+    edit.__name__: edit for edit in (coefficient, leave_out, take_back)
 }
 """The changes by name."""
 

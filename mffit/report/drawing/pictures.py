@@ -1,29 +1,28 @@
-"""A sheet drawn once by matplotlib, as a PNG and as SVG that a page arranges panel by panel."""
+"""A sheet drawn once by matplotlib: the whole as a PNG, and its panels cut out of it for a page to arrange."""
 
 from __future__ import annotations
 
-import gc
+import base64
+import io
 import re
 import textwrap
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
-from xml.sax.saxutils import escape
+from typing import Any, NamedTuple
 
 import matplotlib.style
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from PIL import Image
 
 from mffit.report import constants, style
-from mffit.report.drawing.ink import FINE, Ink
 from mffit.report.drawing.records import (
     Axis,
     Bars,
@@ -41,87 +40,77 @@ SCALE = (14.0, 17.0, 180.0, 7.0)
 """Left, bottom, width and height of the scale of maps, in what is above the panels [pt]."""
 NO_FORMULA = re.compile(r"\$(?!_\{\w+\}\$)(?<!\}\$)")
 """A dollar sign that does not belong to a subscript such as that of ``QuantityName.mathtext``."""
+COLOURS = 128
+"""Of a PNG: a third of the bytes, and nobody sees a difference."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Drawing:
+class Drawing(NamedTuple):
     """A sheet as PNG, and as HTML whose panels a page arranges to its width."""
 
     png: bytes
     markup: str
 
 
-def draw(sheet: Sheet, name: str) -> Drawing:
-    """Draw the sheet; the same sheet and name give the same bytes. Names of the page's other pictures must differ."""
+def draw(sheet: Sheet) -> Drawing:
+    """Draw the sheet; the same sheet gives the same bytes."""
     with _settings():
-        figure = figure_of(sheet)
-        ink = Ink(figure.bbox.width, figure.bbox.height, figure.dpi, name)
-        figure.draw(ink)
-        return Drawing(png=ink.png(), markup=_markup(ink, figure, sheet))
+        canvas = FigureCanvasAgg(figure_of(sheet))
+        canvas.draw()  # type: ignore[no-untyped-call]
+        pixels = np.asarray(canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+    return Drawing(png=_png(pixels), markup=_markup(pixels, sheet))
 
 
 def save(sheet: Sheet, path: Path) -> None:
     """Draw the sheet as a PNG alone."""
-    path.write_bytes(draw(sheet, path.stem).png)
+    path.write_bytes(draw(sheet).png)
 
 
 @contextmanager
 def _settings() -> Iterator[None]:
     """Drawing in our style, whatever a user's matplotlibrc says; letters that the font lacks become boxes."""
-    collected = gc.isenabled()
-    gc.disable()  # a figure is thousands of small objects that all live; to look for dead ones takes a sixth of the time
-    try:
-        with matplotlib.style.context(style.SETTINGS, after_reset=True), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "Glyph")
-            yield
-    finally:
-        if collected:
-            gc.enable()
+    with matplotlib.style.context(style.SETTINGS, after_reset=True), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")
+        yield
 
 
 def figure_of(sheet: Sheet) -> Figure:
     """The sheet as a figure: a key, and below it panels of one size in rows, each with its axes."""
     entries = _columns_of_key(sheet)
-    above = KEY_LINE * -(-len(sheet.key) // entries) + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
+    above = _above(sheet)
     width, height = _size_of_panel(sheet)
     whole = above + height * len(sheet.rows)
     figure = Figure(figsize=(style.WIDTH / INCH, whole / INCH))
+
+    def added(left: float, bottom: float, wide: float, high: float) -> Axes:
+        """Axes at a place [pt]."""
+        return figure.add_axes((left / style.WIDTH, bottom / whole, wide / style.WIDTH, high / whole))
+
     if sheet.key:
         handles = [_sample(look) for look in sheet.key.values()]
-        key = figure.legend(handles, [_text(label) for label in sheet.key], loc="upper left", ncols=entries)
-        key.set_gid("key")
+        figure.legend(handles, [_text(label) for label in sheet.key], loc="upper left", ncols=entries)
     if sheet.scale:
-        left, bottom, wide, high = SCALE
-        place = left / style.WIDTH, (whole - above + bottom) / whole, wide / style.WIDTH, high / whole
-        _draw_scale(figure.add_axes(place, gid="scale"), sheet.scale)
+        left, bottom, *size = SCALE
+        _draw_scale(added(left, whole - above + bottom, *size), sheet.scale)
     longest = int((width - style.RIGHT) / style.LETTER)
     for row, panels in enumerate(sheet.rows):
         for column, panel in enumerate(panels):
             lines = "\n".join(_words_of(panel.y, width)).split("\n")
             left = max(style.LEFT, style.LETTER * max(map(len, lines)) + 6.0)
-            bottom = whole - above - height * (row + 1) + style.BOTTOM
-            size = width - left - style.RIGHT, height - style.BOTTOM - style.TOP
-            place = (
-                (width * column + left) / style.WIDTH,
-                bottom / whole,
-                size[0] / style.WIDTH,
-                size[1] / whole,
-            )
-            axes = figure.add_axes(place, gid=f"panel-{len(figure.axes)}")
-            axes.patch.set_visible(False)
-            axes.xaxis.set_label_coords(
-                0.5, -19.0 / size[1]
-            )  # a place that depends on the numbers costs a third
-            axes.yaxis.set_label_coords((12.0 - left) / size[0], 0.5)
-            title = panel.title
-            if len(title) > longest + 4:
-                title = textwrap.shorten(title, longest, placeholder="…")
-            start = max(
-                4.0, min(style.LEFT, width - style.LETTER * len(title))
-            )  # a long one begins further left
-            axes.set_title(_text(title), x=(start - left) / size[0])
+            wide, high = width - left - style.RIGHT, height - style.BOTTOM - style.TOP
+            axes = added(width * column + left, whole - above - height * (row + 1) + style.BOTTOM, wide, high)
+            # places that depend on the numbers at the axes cost a third of the time
+            axes.xaxis.set_label_coords(0.5, -19.0 / high)
+            axes.yaxis.set_label_coords((12.0 - left) / wide, 0.5)
+            title = textwrap.shorten(panel.title, longest, placeholder="…")
+            axes.set_title(_text(title), x=(4.0 - left) / wide)
             _draw_panel(axes, panel, width, sheet.scale)
     return figure
+
+
+def _above(sheet: Sheet) -> float:
+    """Height of key and scale above the panels [pt]."""
+    lines = -(-len(sheet.key) // _columns_of_key(sheet))
+    return KEY_LINE * lines + (2.5 * KEY_LINE if sheet.scale else 0.0) + 3.0
 
 
 def _size_of_panel(sheet: Sheet) -> tuple[float, float]:
@@ -143,19 +132,12 @@ def _sample(look: Look) -> Line2D | Patch:
 
 
 def _draw_scale(axes: Axes, scale: ColourScale) -> None:
-    edges, colours = _shades(scale)
-    axes.bar(edges[:-1], 1.0, np.diff(edges), align="edge", color=colours)
-    axes.set(xlim=(-scale.limit, scale.limit), ylim=(0.0, 1.0), yticks=[])
+    shades = np.linspace(-scale.limit, scale.limit, 256)[None]
+    axes.imshow(shades, cmap=style.DIVERGING, extent=(-scale.limit, scale.limit, 0.0, 1.0), aspect="auto")
+    axes.set(yticks=[])
     axes.spines[:].set_visible(False)
     axes.grid(False)
     axes.text(1.04, 0.5, _text(scale.label), transform=axes.transAxes, va="center", size=8)
-
-
-def _shades(scale: ColourScale) -> tuple[np.ndarray, list[str]]:
-    """Edges (n + 1,) of the steps of a scale, and their n colours."""
-    n = int(constants.COLOURS_OF_MAP)
-    colours = [to_hex(shade) for shade in colormaps[style.DIVERGING].resampled(n)(np.arange(n))]
-    return np.linspace(-scale.limit, scale.limit, n + 1), colours
 
 
 def _text(text: str) -> str:
@@ -240,15 +222,19 @@ def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | Non
     if series.shade is None or scale is None:
         axes.plot(series.x, series.y, **_line(look), **place)
         return
-    edges, colours = _shades(scale)
-    step = np.searchsorted(edges[1:-1], series.shade)
-    for k in np.unique(step):
-        drawn = {
-            **_line(replace(look, colour=colours[k])),
-            "markeredgewidth": 0.4,
-            "markeredgecolor": style.FAINT,
-        }
-        axes.plot(series.x[step == k], series.y[step == k], **drawn, **place)
+    axes.scatter(
+        series.x,
+        series.y,
+        look.size**2,
+        series.shade,
+        marker=look.marker,
+        cmap=style.DIVERGING,
+        vmin=-scale.limit,
+        vmax=scale.limit,
+        edgecolors=style.FAINT,
+        linewidths=0.4,
+        **place,
+    )
 
 
 def _draw_uncertainty(axes: Axes, series: Trace) -> None:
@@ -280,35 +266,32 @@ def _draw_uncertainty(axes: Axes, series: Trace) -> None:
         )
 
 
-def _markup(ink: Ink, figure: Figure, sheet: Sheet) -> str:
-    """The key and rows of panels, each a drawing of its own with the part of the figure that it shows."""
-    scale, high = figure.dpi / INCH, figure.bbox.height
+def _png(pixels: np.ndarray) -> bytes:
+    """Pixels (n, m, 3) as PNG."""
+    stream = io.BytesIO()
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    dpi = style.SETTINGS["figure.dpi"]
+    image.quantize(COLOURS, Image.Quantize.FASTOCTREE).save(stream, "png", dpi=(dpi, dpi))
+    return stream.getvalue()
+
+
+def _markup(pixels: np.ndarray, sheet: Sheet) -> str:
+    """The key and rows of panels, each an image of its own."""
     width, height = _size_of_panel(sheet)
-    above = high / scale - height * len(sheet.rows)
+    above, point = _above(sheet), style.SETTINGS["figure.dpi"] / INCH
 
-    def drawing(name: str, left: float, top: float, width: float, height: float, title: str = "") -> str:
-        box = " ".join(str(round(FINE * scale * x)) for x in (left, top, width, height))
-        said = f"<title>{escape(title)}</title>" if title else ""
-        return f'<svg viewBox="{box}" style="--w:{width:.5g}">{said}{ink.parts[name]}</svg>'
+    def image(left: float, top: float, wide: float, high: float) -> str:
+        first, last = round(point * top), round(point * (top + high))
+        cut = pixels[first:last, round(point * left) : round(point * (left + wide))]
+        data = base64.b64encode(_png(cut)).decode("ascii")
+        return f'<img alt="" style="--w:{wide:.5g}" src="data:image/png;base64,{data}">'
 
-    keys = [*figure.legends, *(axes for axes in figure.axes if axes.get_gid() == "scale")]
-    boxes = {key.get_gid(): key.get_tightbbox(ink) for key in keys}
-    shown = [
-        drawing(
-            name or "", 0.0, (high - box.y1) / scale - 2.0, box.x1 / scale + 9.0, box.height / scale + 4.0
-        )
-        for name, box in boxes.items()
-        if box is not None
-    ]
-    names = (axes.get_gid() for axes in figure.axes if axes.get_gid() != "scale")
     out = [f'<div class="panels" style="--widest:{width:.5g};--abreast:{sheet.columns}">']
-    if shown:
-        out.append(f'<div class="key">{"".join(shown)}</div>')
+    inked = np.flatnonzero((pixels[: int(point * above)] < 255).any(axis=(0, 2)))
+    if inked.size:
+        out.append(f'<div class="key">{image(0.0, 0.0, inked[-1] / point + 3.0, above)}</div>')
     for row, panels in enumerate(sheet.rows):
-        places = ((width * column, above + height * row, width, height) for column in range(len(panels)))
-        alone = (
-            drawing(str(name), *place, panel.title)
-            for place, panel, name in zip(places, panels, names, strict=False)
-        )
+        top = above + height * row
+        alone = (image(width * column, top, width, height) for column in range(len(panels)))
         out.append(f'<div class="row">{"".join(alone)}</div>')
     return "\n".join([*out, "</div>"])

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -160,6 +159,10 @@ class Sheet:
         return max([1 if self.wide else 2, *map(len, self.rows)])
 
 
+NOTHING = Sheet(rows=(), height=1.0)
+"""What the data give no panel."""
+
+
 def in_rows(*groups: Sequence[Panel], columns: int = 5) -> list[list[Panel]]:
     """Rows of at most ``columns`` panels; every group starts a new row."""
     return [
@@ -186,19 +189,3 @@ def with_fewer_rows(sheet: Sheet, most: int) -> Sheet:
     rows = [sheet.rows[k] for k in chosen]
     said = f"{len(sheet.panels) - sum(map(len, rows))} more panels are not drawn, for lack of room; the numbers have them."
     return replace(sheet, rows=rows, remark=" ".join(filter(None, (sheet.remark, said))))
-
-
-def with_shorter_series(sheet: Sheet, most: int) -> Sheet:
-    """The sheet with every so many of its points of each longer series, so that they are at most ``most``."""
-    if all(len(series) <= most for panel in sheet.panels for series in panel.series):
-        return sheet
-    rows = [[replace(p, series=[_shorter(s, most) for s in p.series]) for p in row] for row in sheet.rows]
-    said = f"Of longer series at most {most} points, evenly spaced, are drawn and listed."
-    return replace(sheet, rows=rows, remark=" ".join(filter(None, (sheet.remark, said))))
-
-
-def _shorter(series: DataSeries, most: int) -> DataSeries:
-    every = -(-len(series) // most)
-    arrays = ((f.name, getattr(series, f.name)) for f in fields(series))
-    kept: dict[str, Any] = {name: x[::every] for name, x in arrays if isinstance(x, np.ndarray)}
-    return replace(series, **kept)

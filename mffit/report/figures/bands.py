@@ -9,10 +9,10 @@ import numpy as np
 from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
 from mffit.fit.written.files import Files
 from mffit.points import make_points
-from mffit.quantities import CHANNELS, CONDITIONS, SIDEWAYS
+from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Guide, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace
 from mffit.rig import Simulation
 from mffit.rounding import number
 
@@ -28,9 +28,10 @@ def tested_edges(tested: float) -> list[Guide]:
 
 
 def bands(view: BuildView) -> Sheet:
-    """The channels with 95 % bands over camber, over sideslip and over slip if it was run, at three loads on a straight path."""
+    """The channels with 95 % bands over camber, over sideslip and over slip if it was run or lent, at three loads."""
     files = view.build.fit.files
-    assert files is not None
+    if files is None:
+        return NOTHING
     colours = three_loads(view)
     sideways = [
         name for name in CHANNELS if name in SIDEWAYS or (name == "Mx" and name in view.points.measured)
@@ -41,7 +42,25 @@ def bands(view: BuildView) -> Sheet:
     if "KPUMAX" in files.tested and "Fx" in view.points.measured:
         driven = [name for name in ("Fx", "Mz") if name in view.points.measured]
         rows.append([_panel(view, "kappa", name, colours) for name in driven])
-    return Sheet(rows=rows, height=2.1, key=key_of_loads(colours))
+    elif view.build.fit.lent is not None:
+        rows.append(
+            [_lent(view, share * files.tested["ALPMAX"], colours) for share in constants.HELD_SHARES[:2]]
+        )
+    key = {labels.LOAD.of(load): Look(colour=colour, line="-") for load, colour in colours.items()}
+    return Sheet(rows=rows, height=2.1, key=key)
+
+
+def _lent(view: BuildView, alpha: float, colours: Mapping[float, str]) -> Panel:
+    """Fx of a sister tyre over longitudinal slip at a sideslip [rad]."""
+    kappa = np.linspace(-1.0, 1.0, STEPS_OF_LINE) * SLIP_BEYOND_THE_PEAK
+    return Panel(
+        title=f"{CHANNELS['Fx'].short_axis} of the sister tyre, {labels.ANGLES['alpha'].symbol} = {np.degrees(alpha):.0f}°",
+        x=labels.angle_axis("kappa"),
+        series=[
+            model_curve(view, "Fx", kappa, load, colour, alpha=alpha, kappa=kappa)
+            for load, colour in colours.items()
+        ],
+    )
 
 
 def three_loads(view: BuildView) -> dict[float, str]:
@@ -49,11 +68,6 @@ def three_loads(view: BuildView) -> dict[float, str]:
     assert view.build.fit.files is not None
     written = view.build.fit.files.written
     return style.ramp([written["FZMIN"], float(view.build.fit.tyre["FNOMIN"]), written["FZMAX"]])
-
-
-def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
-    """The key of these colours."""
-    return {labels.LOAD.of(load): Look(colour=colour, line="-") for load, colour in colours.items()}
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
@@ -107,7 +121,8 @@ MODEL = Look(colour=style.INK, marker=".", size=2.0)
 
 def files_on_a_straight_path(view: BuildView) -> Sheet:
     """Fy and Mz of the files over camber and over sideslip at nominal load, the model as dots, with the ends of the tests."""
-    assert view.build.fit.files is not None
+    if not view.several_files or view.build.fit.files is None:
+        return NOTHING
     panels = [_panel_of_files(view, channel, over) for channel in SIDEWAYS for over in LIMITS]
     key = {"fitted model": MODEL, **{view.file_names[use]: LOOKS[use] for use in view.build.fit.files.by_use}}
     return Sheet(rows=[panels], height=2.1, key=key)
@@ -136,24 +151,3 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
         series=series,
         guides=tested_edges(files.tested[end]),
     )
-
-
-def borrowed_force(view: BuildView) -> Sheet:
-    """Fx over longitudinal slip with 95 % bands at three loads, with and without sideslip, on a straight path."""
-    assert view.build.fit.files is not None
-    colours = three_loads(view)
-    kappa = np.linspace(-1.0, 1.0, STEPS_OF_LINE) * SLIP_BEYOND_THE_PEAK
-    panels = [
-        Panel(
-            title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {sideslip:.0f}°",
-            x=labels.angle_axis("kappa"),
-            series=[
-                model_curve(view, "Fx", kappa, load, colour, alpha=np.radians(sideslip), kappa=kappa)
-                for load, colour in colours.items()
-            ],
-        )
-        for sideslip in (
-            share * np.degrees(view.build.fit.files.tested["ALPMAX"]) for share in constants.HELD_SHARES[:2]
-        )
-    ]
-    return Sheet(rows=[panels], height=2.1, key=key_of_loads(colours))

@@ -1,82 +1,67 @@
-"""Raw readings with their odd and even parts, and the even part beside the model's, of the pure sweeps."""
+"""Raw readings with their odd and even parts, and the even part with the model's, of the pure sweeps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from mffit.constants import UPRIGHT
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows, of_one_range
+from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Panel, Sheet, Trace, of_one_range
 
-RAW = Look(colour=style.MUTED, line=":", marker="o", size=3.0)
-ODD = Look(colour=style.ACCENT, line="-")
-EVEN = Look(colour=style.CONTRAST, line="--")
-MEASURED = Look(colour=style.CONTRAST, marker="o", size=3.0, width=0.8)
-MODEL = Look(colour=style.INK, line="-")
-PARTS = {
-    "raw reading": RAW,
-    "odd part: response to sideslip and camber": ODD,
-    "even part: turn slip, offsets, misalignment": EVEN,
+RAW = "raw reading"
+ODD = "odd part: response to sideslip and camber"
+EVEN = "even part: turn slip, offsets, misalignment"
+MODEL = "even part of the model"
+LOOKS = {
+    RAW: Look(colour=style.MUTED, line=":", marker="o", size=3.0),
+    ODD: Look(colour=style.ACCENT, line="-"),
+    EVEN: Look(colour=style.CONTRAST, marker="o", size=3.0, width=0.8),
+    MODEL: Look(colour=style.INK, line="-"),
 }
 
 
 def parts(view: BuildView) -> Sheet:
-    """Raw, odd and even curve of every channel over each angle, at the load nearest to the nominal one."""
-    nominal = view.build.config.tyre.nominal_load
+    """A row per channel and angle: raw, odd and even part at nominal load, then even parts at every load."""
     pure = pure_curves(view)
-    load = min((c.load for c in pure), key=lambda value: abs(value - nominal))
-    panels = []
+    if not view.on_disc or not pure:
+        return NOTHING
+    rows = []
     for channel in view.channels:
-
-        def series(curve: Curve, channel: ChannelRow = channel) -> list[Trace]:
-            x, values = curve.varied(view.points), (channel.measured, channel.odd, channel.even)
-            return [
-                Trace(name=name, x=x, y=part[curve.index], look=look)
-                for (name, look), part in zip(PARTS.items(), values, strict=True)
-            ]
-
-        rows = _by_load([c for c in pure if c.load == load], channel, series, channel.label)
-        panels += [panel for row in rows for panel in row]
-    return Sheet(rows=in_rows(panels, columns=4), height=1.6, key=PARTS)
+        for over in labels.ANGLES:
+            curves = [c for c in pure if c.over == over]
+            if curves:
+                rows.append(_row(view, channel, curves))
+    return Sheet(rows=rows, height=1.3, key=LOOKS)
 
 
-def even_parts(view: BuildView) -> Sheet:
-    """Even part of the same sweeps, measured and of the model."""
-    rows: list[list[Panel]] = []
-    for channel in view.channels:
+def _row(view: BuildView, channel: ChannelRow, curves: Sequence[Curve]) -> list[Panel]:
+    nominal, over = view.build.config.tyre.nominal_load, curves[0].over
+    loads = sorted({c.load for c in curves})
+    nearest = min(loads, key=lambda load: abs(load - nominal))
 
-        def series(curve: Curve, channel: ChannelRow = channel) -> list[Trace]:
-            line, index, x = view.lines[curve], curve.index, curve.varied(view.points)
-            even, u = channel.even[index], channel.u_odd[index]
-            return [
-                Trace(name="measured, ± 1 u", x=x, y=even, half=u, look=MEASURED),
-                Trace(name="model", x=line.x, y=line.even[channel.name], look=MODEL),
-            ]
+    def panel(load: float, label: str, names: Sequence[str]) -> Panel:
+        return Panel(
+            title=f"{label}, {labels.LOAD.of(load)}",
+            x=labels.angle_axis(over),
+            y=Axis(label=channel.known.short_axis),
+            series=[_trace(view, channel, c, name) for c in curves if c.load == load for name in names],
+            guides=[ZERO],
+        )
 
-        rows += map(of_one_range, _by_load(pure_curves(view), channel, series, f"even {channel.label}"))
-    return Sheet(rows=rows, height=1.25, key={"measured, ± 1 u": MEASURED, "model": MODEL})
+    symbol = channel.known.mathtext
+    even = [panel(load, f"{symbol}, even", (EVEN, MODEL)) for load in loads]
+    return [panel(nearest, symbol, (RAW, ODD, EVEN)), *of_one_range(even)]
 
 
-def _by_load(
-    pure: Sequence[Curve], channel: ChannelRow, series: Callable[[Curve], list[Trace]], label: str
-) -> list[list[Panel]]:
-    """A row of panels per varied angle, a column per load."""
-    rows = [
-        [
-            Panel(
-                title=f"{channel.symbol}, {labels.LOAD.of(load)}",
-                x=labels.angle_axis(over),
-                y=Axis(label=label),
-                series=[s for c in pure if c.over == over and c.load == load for s in series(c)],
-                guides=[ZERO],
-            )
-            for load in sorted({c.load for c in pure if c.over == over})
-        ]
-        for over in labels.ANGLES
-    ]
-    return [row for row in rows if row]
+def _trace(view: BuildView, channel: ChannelRow, curve: Curve, name: str) -> Trace:
+    if name == MODEL:
+        line = view.lines[curve]
+        return Trace(name=name, x=line.x, y=line.even[channel.name], look=LOOKS[name])
+    values = {RAW: channel.measured, ODD: channel.odd, EVEN: channel.even}[name][curve.index]
+    half = channel.u_odd[curve.index] if name == EVEN else None
+    return Trace(name=name, x=curve.varied(view.points), y=values, half=half, look=LOOKS[name])
 
 
 def pure_curves(view: BuildView) -> list[Curve]:

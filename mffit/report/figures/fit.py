@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow, Overlay
-from mffit.report.catalogue import ChannelPicture
+from mffit.report.catalogue import Picture, of_channels
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
 
 MARKS = {
@@ -21,59 +21,49 @@ MARKS = {
 READINGS = Look(colour=style.MUTED, marker="o", size=3.2)
 BACKWARD = Look(colour=style.MUTED, marker="v", size=3.6, hollow=True)
 MODEL = Look(colour=style.MUTED, line="-", width=1.0)
-ANGLES, SLIP = tuple(labels.ANGLES), ("kappa",)
-"""What is varied in the two pictures of a channel."""
 
 
-def varied(curves: Iterable[Curve], over: Collection[str]) -> list[Curve]:
-    """The curves over these angles, or over longitudinal slip."""
-    return [curve for curve in curves if curve.over in over]
-
-
-def model_against_points(view: Overlay, channel: ChannelRow, over: Sequence[str] = ANGLES) -> Sheet:
-    """One panel per load, pressure and varied angle (over slip also per camber), coloured by the angle that is held."""
+def model_against_points(view: Overlay, channel: ChannelRow) -> Sheet:
+    """One panel per load, pressure and what is varied (over slip also per camber), coloured by the angle that is held."""
     conditions: dict[tuple[str, float, float, float], list[Curve]] = {}
-    for curve in varied(view.curves, over):
+    for curve in view.curves:
         if np.isfinite(channel.measured[curve.index]).any():
             conditions.setdefault((curve.over, curve.load, curve.pressure, curve.camber), []).append(curve)
     drawn = [curve for members in conditions.values() for curve in members]
-    colours = {name: style.ramp({c.held for c in drawn if c.over == name}) for name in over}
-    cambers = len({camber for *_, camber in conditions}) > 1
+    colours = {
+        name: style.ramp({c.held for c in drawn if labels.OTHER[c.over] == name}) for name in labels.ANGLES
+    }
+    cambers = {over: len({key[3] for key in conditions if key[0] == over}) > 1 for over in labels.OTHER}
     groups = [
-        [_panel(view, channel, members, colours[name], cambers) for key, members in sorted(conditions.items()) if key[0] == name]
-        for name in over
-    ]  # fmt: skip
+        [
+            _panel(view, channel, members, colours[labels.OTHER[over]], cambers[over])
+            for key, members in sorted(conditions.items())
+            if key[0] == over
+        ]
+        for over in labels.OTHER
+    ]
     key = {"measured": READINGS, "model": MODEL}
     if any(not curve.forward for curve in drawn):
         key["backward"] = replace(BACKWARD, line="--", width=1.0)
     marked = zip(view.marked(channel.name), MARKS.items(), strict=True)
     key |= {name: mark for rows, (name, mark) in marked if len(rows)}
-    for name in over:
-        if len(colours[name]) > 1:
-            key |= held_key(labels.OTHER[name], colours[name])
+    for held, ramp in colours.items():
+        if len(ramp) > 1:
+            key |= held_key(held, ramp)
     remark = "Hollow triangles and dashed lines are runs backwards." if "backward" in key else ""
     return Sheet(rows=in_rows(*groups), height=1.6, key=key, remark=remark)
 
 
-OF_CHANNELS: tuple[ChannelPicture[Overlay, ChannelRow], ...] = (
-    ChannelPicture(
-        name="fit_{channel}",
-        title="Model and points of {word} at every load, pressure and camber",
-        shows="{channel}: points, and the model as lines. The colour is the angle that is held.",
-        section="fit",
-        channels=lambda view: view.channels,
-        draw=model_against_points,
-        when=lambda view, channel: bool(varied(view.curves, ANGLES)),
-    ),
-    ChannelPicture(
-        name="slip_{channel}",
-        title="Model and points of {word} over longitudinal slip at every load, pressure and camber",
-        shows="{channel} over longitudinal slip: points, and the model as lines. The colour is the sideslip.",
-        section="slip",
-        channels=lambda view: view.channels,
-        draw=lambda view, channel: model_against_points(view, channel, SLIP),
-        when=lambda view, channel: bool(varied(view.curves, SLIP)),
-    ),
+def _of_channel(view: Overlay, name: str) -> Sheet:
+    return next((model_against_points(view, c) for c in view.channels if c.name == name), NOTHING)
+
+
+OF_CHANNELS: tuple[Picture[Overlay], ...] = of_channels(
+    "fit",
+    title="Model and points of {word} at every load, pressure and camber",
+    shows="{channel}: points, and the model as lines. The colour is the angle that is held, over longitudinal slip the sideslip.",
+    section="fit",
+    draw=_of_channel,
 )
 """Pictures of a fit, and of a file over readings."""
 
@@ -94,7 +84,7 @@ def _panel(
     return Panel(
         title=f"{members[0].condition}{at}",
         x=labels.angle_axis(members[0].over),
-        y=Axis(label=channel.label),
+        y=Axis(label=channel.known.short_axis),
         series=[s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])],
         guides=[ZERO],
     )
@@ -116,7 +106,7 @@ def curve_traces(view: Overlay, channel: ChannelRow, curve: Curve, colour: str) 
 
 def overview(view: BuildView) -> Sheet:
     """Readings and model of each channel over what was varied most, coloured by the angle that is held."""
-    chosen = {over: _nearest(view, over) for over in (*labels.ANGLES, "kappa")}
+    chosen = {over: _nearest(view, over) for over in labels.OTHER}
     panels = []
     for channel in view.channels:
         first = ("kappa", "alpha", "gamma") if channel.name == "Fx" else ("alpha", "gamma", "kappa")

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import COVERAGE_FACTOR_95, NAMED_IN_SENTENCE
+from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
+from mffit.quantities import CHANNELS, QuantityName
 from mffit.report import constants, labels, style
-from mffit.report.diagnosis_view import DiagnosisView, GapChannel, Shown
+from mffit.report.curves import Curve, CurveLine, conditions, curves, model_lines
 from mffit.report.drawing.records import (
+    NOTHING,
     ZERO,
     Axis,
     Bars,
@@ -40,56 +44,121 @@ LEAST_GAIN = 1.0
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
 
 
-def curves_before_after(view: DiagnosisView) -> Sheet:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GapChannel:
+    """One channel before and after: measured minus simulated in units of the noise of each point, (n,)."""
+
+    name: str
+    before: np.ndarray
+    after: np.ndarray
+
+    @property
+    def known(self) -> QuantityName:
+        return CHANNELS[self.name]
+
+
+def gap_channels(diagnosis: Diagnosis) -> list[GapChannel]:
+    """The channels that were measured."""
+    points, noise = diagnosis.points, diagnosis.noise
+    found = []
+    for name, u in noise.by_channel(noise.u).items():
+        u = np.where(np.isfinite(u), u, np.nan)
+        before, after = (
+            (points.channel(name) - noise.of_channel(model, name)) / u
+            for model in (diagnosis.before, diagnosis.after)
+        )
+        if np.isfinite(before).any():
+            found.append(GapChannel(name=name, before=before, after=after))
+    return found
+
+
+def curves_before_after(diagnosis: Diagnosis) -> Sheet:
     """The worst and the typical sweep: readings, the simulation as given and with what was added, a panel per channel."""
-    panels = [_sweep(view, shown, channel) for shown in view.shown for channel in view.channels]
-    key = {"measured": MEASURED, "simulated as given": GIVEN}
-    if view.changed:
-        key["with what was found"] = FOUND
+    channels = gap_channels(diagnosis)
+    shown = _worst_and_typical(diagnosis, channels)
+    lines = {"simulated as given": (diagnosis.given, GIVEN), "with what was found": (diagnosis.state, FOUND)}
+    if not diagnosis.repaired:
+        lines.pop("with what was found")
+    drawn = {
+        name: (
+            model_lines(simulation, diagnosis.points, list(shown.values()), diagnosis.noise.channels),
+            look,
+        )
+        for name, (simulation, look) in lines.items()
+    }
+    panels = [
+        _sweep(
+            diagnosis, word, curve, channel, {name: (of[curve], look) for name, (of, look) in drawn.items()}
+        )
+        for word, curve in shown.items()
+        for channel in channels
+    ]
+    key = {"measured": MEASURED, **{name: look for name, (_, look) in lines.items()}}
     return Sheet(rows=in_rows(panels, columns=4), height=1.9, key=key)
 
 
-def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
-    curve, name = shown.curve, channel.name
-    lines = [("simulated as given", shown.before, GIVEN)]
-    if view.changed:
-        lines.append(("with what was found", shown.after, FOUND))
+def _worst_and_typical(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> dict[str, Curve]:
+    """The sweep with the largest and the one with the median misfit of the given model, in units of the noise."""
+    found = curves(diagnosis.points)
+    if not found or not channels:
+        return {}
+    squares = np.nanmean([c.before**2 for c in channels], axis=0)
+    order = sorted(found, key=lambda curve: float(np.nanmean(squares[curve.index])))
+    typical = {"Typical": order[(len(order) - 1) // 2]} if len(order) > 1 else {}
+    return {"Worst": order[-1], **typical}
+
+
+def _sweep(
+    diagnosis: Diagnosis,
+    word: str,
+    curve: Curve,
+    channel: GapChannel,
+    lines: Mapping[str, tuple[CurveLine, Look]],
+) -> Panel:
+    name, points = channel.name, diagnosis.points
     backward = "" if curve.forward else ", backward"
+    read = points.channel(name)[curve.index]
     return Panel(
-        title=f"{shown.word}: {labels.LOAD.of(curve.load)}{labels.held_unless_zero(curve)}{backward}",
+        title=f"{word}: {labels.LOAD.of(curve.load)}{labels.held_unless_zero(curve)}{backward}",
         x=labels.angle_axis(curve.over),
-        y=Axis(label=f"{channel.symbol} [{channel.unit}]"),
+        y=Axis(label=channel.known.short_axis),
         series=[
-            Trace(
-                name="measured",
-                x=curve.varied(view.points),
-                y=getattr(view.points, name)[curve.index],
-                look=MEASURED,
+            Trace(name="measured", x=curve.varied(points), y=read, look=MEASURED),
+            *(
+                Trace(name=said, x=line.x, y=line.raw[name], look=look)
+                for said, (line, look) in lines.items()
             ),
-            *(Trace(name=said, x=line.x, y=line.raw[name], look=look) for said, line, look in lines),
         ],
         guides=[ZERO],
     )
 
 
-def residuals_before_after(view: DiagnosisView) -> Sheet:
+def residuals_before_after(diagnosis: Diagnosis) -> Sheet:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
-    limit = colour_limit(view.channels)
+    channels, points = gap_channels(diagnosis), diagnosis.points
+    if not channels:
+        return NOTHING
+    whens = ("before", "after") if diagnosis.repaired else ("before",)
     rows = []
     for which, over in ((rolling, ANGLES), (driven, SLIPS)):
-        for condition in which(view.points, view.conditions):
+        for condition in which(points, conditions(points)):
             maps = []
-            for channel in view.channels:
-                frames = _frames(view.frames(channel.name), condition.load) if over == ANGLES else []
-                for when in ("before", "after") if view.changed else ("before",):
-                    title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
-                    framed = frames if when == "before" else ()
+            for channel in channels:
+                frames = _frames(framed(diagnosis, channel.name), condition.load) if over == ANGLES else []
+                for when in whens:
+                    title = f"{channel.known.mathtext}{' ' + when if diagnosis.repaired else ''}, {condition.title}"
                     values = getattr(channel, when)
-                    maps.append(residual_map(view.points, values, condition, title, framed, over=over))
+                    shown = frames if when == "before" else ()
+                    maps.append(residual_map(points, values, condition, title, shown, over=over))
             rows.append(maps)
-    label = "measured − simulated [noise of a point]"
-    scale = ColourScale(limit=limit, label=label)
+    scale = ColourScale(limit=colour_limit(channels), label="measured − simulated [noise of a point]")
     return Sheet(rows=rows, height=1.40, scale=scale)
+
+
+def framed(diagnosis: Diagnosis, channel: str) -> list[Region]:
+    """Regions of a channel to be framed in the maps, unexplained ones first."""
+    found = diagnosis.unexplained_where or diagnosis.where
+    return [region for region in found if region.channel == channel][:NAMED_IN_SENTENCE]
 
 
 def colour_limit(channels: Sequence[GapChannel]) -> float:
@@ -99,11 +168,12 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
     return float(np.clip(wanted, constants.RESIDUAL_SCALE, constants.LARGEST_GAP_SCALE))
 
 
-def evidence(view: DiagnosisView) -> Sheet:
+def evidence(diagnosis: Diagnosis) -> Sheet:
     """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
-    panels = [_candidates(step, number_of) for number_of, step in enumerate(view.steps, 1)]
-    most = max(len(panel.y.words or {}) for panel in panels)
-    present = {trial.effects[-1].kind for step in view.steps for trial in step.trials}
+    steps = [step for step in diagnosis.steps if step.trials]
+    panels = [_candidates(step, number_of) for number_of, step in enumerate(steps, 1)]
+    most = max((len(panel.y.words or {}) for panel in panels), default=1)
+    present = {trial.effects[-1].kind for step in steps for trial in step.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
     return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from mffit.constants import STEPS_OF_LINE
-from mffit.fit import Posterior
 from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
-from mffit.report.with_band import with_band
+from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace
 from mffit.scatter import finite_median
 
 MILLIMETRES = 1e3
@@ -31,7 +28,8 @@ LINE = Look(colour=style.MUTED, line="-", width=1.0)
 def radii(view: BuildView) -> Sheet:
     """A panel per radius that was fitted."""
     rolling = view.build.fit.radii.rolling
-    assert rolling is not None
+    if rolling is None or not view.build.fit.radii.rms:
+        return NOTHING
     pressure = np.round(levels.level_values(rolling.p, levels.PRESSURE), -3)
     colours = style.ramp(np.unique(pressure).tolist())
     panels = [_panel(view, rolling, channel, pressure, colours) for channel in view.build.fit.radii.rms]
@@ -43,7 +41,6 @@ def radii(view: BuildView) -> Sheet:
 def _panel(
     view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
 ) -> Panel:
-    known = Posterior(tuple(view.build.fit.radii.numbers), view.build.fit.radii.covariance)
     series = []
     read, steps = rolling.radius(channel), STEPS_OF_LINE
     speed = float(np.median(rolling.V))
@@ -53,7 +50,6 @@ def _panel(
             continue
         load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
         usual = {
-            "gamma": 0.0,
             "p": p,
             "V": speed,
             "loaded": np.nan,
@@ -61,14 +57,11 @@ def _panel(
         }
         at = RollingParts(Fz=load, **{name: np.full(steps, value) for name, value in usual.items()})
 
-        def of(tyre: Any, at: RollingParts = at) -> Any:
-            return radius(vars(tyre), at, channel)
-
-        line, half = with_band(view.build.fit.tyre.values, known, of)
+        line = np.asarray(radius(view.build.fit.tyre.values, at, channel))
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
         lined, dotted = replace(LINE, colour=colour), replace(READ, colour=colour)
         series += [
-            Trace(name=f"file, {name}", x=load, y=mm * line, half=mm * half, look=lined),
+            Trace(name=f"file, {name}", x=load, y=mm * line, look=lined),
             Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=dotted),
         ]
     return Panel(title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series)

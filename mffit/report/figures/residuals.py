@@ -37,39 +37,20 @@ def _kept(conditions: Sequence[CurveCondition], which: np.ndarray) -> list[Curve
     return [c for c in found if len(c.index)]
 
 
-def of_rolling(view: BuildView) -> Sheet:
-    """Maps of every channel over sideslip and camber, of the freely rolling wheel."""
-    return residual_maps(view.points, view.scaled, rolling(view.points, view.conditions), view.residual_unit)
-
-
-def of_driven(view: BuildView) -> Sheet:
-    """Maps of every channel over slip and sideslip, of the driven and braked wheel."""
-    found = driven(view.points, view.conditions)
-    return residual_maps(view.points, view.scaled, found, view.residual_unit, over=SLIPS)
-
-
-def residual_maps(
-    points: Points,
-    residuals: Sequence[tuple[str, np.ndarray]],
-    conditions: Sequence[CurveCondition],
-    unit: str,
-    over: tuple[str, str] = ANGLES,
-) -> Sheet:
-    """Maps of each residual (title, (n,) array), one per condition; one colour scale for all.
-
-    ``over`` names what lies at the axes, ``("alpha", "gamma")`` or ``("kappa", "alpha")``.
-    """
+def residual_maps(view: BuildView) -> Sheet:
+    """A map of every channel and condition, of the freely rolling and of the driven wheel; one colour scale for all."""
     groups = [
         [
-            residual_map(points, values, condition, f"{name}: {condition.title}", over=over)
-            for condition in conditions
+            residual_map(view.points, values, condition, f"{name}: {condition.title}", over=over)
+            for condition in which(view.points, view.conditions)
         ]
-        for name, values in residuals
+        for which, over in ((rolling, ANGLES), (driven, SLIPS))
+        for name, values in view.scaled
     ]
     return Sheet(
         rows=in_rows(*groups),
         height=1.45,
-        scale=ColourScale(limit=constants.RESIDUAL_SCALE, label=f"measured − model [{unit}]"),
+        scale=ColourScale(limit=constants.RESIDUAL_SCALE, label=f"measured − model [{view.residual_unit}]"),
     )
 
 

@@ -17,6 +17,7 @@ from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
+    NOTHING,
     ZERO,
     Axis,
     Bars,
@@ -61,6 +62,8 @@ BACKWARDS = Look(colour=style.CONTRAST, line="--", marker="v", size=4.2, hollow=
 
 def camber_reduction(view: BuildView) -> Sheet:
     """Three panels: eps_gamma among published tyres, the budget of its uncertainty, eps_gamma over load."""
+    if not view.on_disc:
+        return NOTHING
     panels = [
         _among_published(view.build.config.tyre.name, view.build.measured),
         _budget(view.build.measured),
@@ -148,7 +151,7 @@ def alignment(view: BuildView) -> Sheet:
             series=[_near_zero(view, curve) for curve in members],
             guides=[Guide(axis="x", at=0.0)],
         )
-        for load, members in both_directions(view)
+        for load, members in (both_directions(view) if view.on_disc else ())
     ]
     key = {"rolling forwards": FORWARDS, "rolling backwards": BACKWARDS}
     return Sheet(rows=in_rows(panels), height=1.7, key=key)

@@ -85,7 +85,6 @@ function showRow(row) {
   const parts = [row.about];
   if (before !== null && Math.abs(before - row.value) > 1e-9 * Math.abs(row.value)) parts.push(`before ${trimmed(written(before))}`);
   if (moved) parts.push(`fit ${trimmed(written(row.value))}`);
-  if (row.moved_by.length) parts.push(`moved by ${row.moved_by.join(", ")}`);
   if (row.partner) parts.push(`goes with ${row.partner[0]} (correlation ${row.partner[1].toFixed(3)})`);
   cell.about.textContent = parts.join("; ");
 }

@@ -48,10 +48,11 @@ extendRow = (row, keys, box) => {
     problem.textContent = found.key ? `${field || row.name}: ${found.sentence}` : found.error;
     for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid", input.name === field);
   };
-  const change = (name, given) => { problem.textContent = ""; return edit(name, {name: row.name, ...given}, refused); };
-  const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => change("hold", {value: now()}));
-  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => change("start", {value: now()}));
-  const free = key("free", "remove the entry of this coefficient from tyre.toml", () => change("free", {}));
+  const change = entry => { problem.textContent = ""; return edit("coefficient", {name: row.name, entry}, refused); };
+  const given = () => { const own = entryOf(row.name); return own !== null && typeof own === "object" ? own : {}; };
+  const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => change(now()));
+  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => change({...given(), start: now()}));
+  const free = key("free", "remove the entry of this coefficient from tyre.toml", () => change(null));
   const limits = key("limits", "bounds, start and what is known beforehand, written into tyre.toml", () => {
     if (row.name in drafts) delete drafts[row.name]; else drafts[row.name] = typeof entryOf(row.name) === "object" ? {...entryOf(row.name)} : {};
     form();
@@ -95,7 +96,7 @@ function limitsForm(row, change, refused, close) {
     event.preventDefault();
     const wrong = [...form.querySelectorAll("input")].find(input => input.validity.badInput);
     if (wrong) return refused({key: `coefficients.${row.name}.${wrong.name}`, sentence: "this is not a number; write one, with a decimal point"});
-    if (await change("limit", {entry: {...draft}})) close();
+    if (await change({...draft})) close();
   });
   form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
   return form;

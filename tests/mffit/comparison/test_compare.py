@@ -75,45 +75,14 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
     assert {row.key for row in found.coefficients} == {"PKY1", "PDY1"}
     (worst, *_) = sorted((g for g in found.curves if g.channel == "Fy"), key=lambda g: -g.rms)
     assert worst.over == "alpha"
-    change, at = worst.largest
-    where = int(np.argmin(np.abs(worst.x - at)))
-    assert change == pytest.approx(worst.second[where] - worst.first[where])
-
-
-def test_the_covariance_of_another_file_is_not_used():
-    plain = ComparedSubject("a-normal.tir", truth(), False, covariance_of="a.tir")
-    (note,) = between(ComparedSubject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
-    assert "a-normal.tir" in note
-    assert "belongs to a.tir" in note
-    assert "would" not in note
 
 
 @pytest.mark.parametrize(
-    ("rigs", "shared"),
-    [
-        (({"name": "disc", "radius": 1.0}, {"name": "disc", "radius": 1.1}), True),
-        (({"name": "disc"}, {"name": "drum"}), False),
-        (({"radius": 1.0}, {"radius": 1.0}), False),  # equal tables are no declaration
-    ],
+    ("covariance", "words"), [(None, "is unknown"), (np.eye(1), "if one rig measured both")]
 )
-def test_only_builds_that_declare_one_rig_share_its_errors(rigs, shared):
-    a, b = (
-        ComparedSubject(n, truth(), True, ("PKY1",), np.eye(1), rig=rig)
-        for n, rig in zip("ab", rigs, strict=True)
-    )
-    (note,) = between(a, b).notes
-    assert "independent" in note
-    assert ("of one rig" in note) == shared
-
-
-@pytest.mark.parametrize(
-    ("setups", "words"), [(("may", "june"), "share its set-up june"), (("may",), "set-ups of their own")]
-)
-def test_builds_of_one_rig_share_the_set_ups_that_both_name(setups, words):
-    rig = {"name": "disc"}
-    a = ComparedSubject("a", truth(), True, ("PKY1",), np.eye(1), rig=rig, setups=("june",))
-    b = ComparedSubject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig, setups=setups)
-    (note,) = between(a, b).notes
+def test_a_note_says_what_is_known_of_the_uncertainty(covariance, words):
+    known = ComparedSubject("a.tir", truth(), False, ("PKY1",), np.eye(1))
+    (note,) = between(known, ComparedSubject("b.tir", truth(), False, ("PKY1",), covariance)).notes
     assert words in note
 
 
@@ -181,7 +150,6 @@ def test_two_builds_of_one_name_are_called_by_their_folders(folder):
     found = mffit.compare(folder / "out", later)
     assert (found.first, found.second) == ("out/small.tir", "later/small.tir")
     assert all(row.z == 0.0 for row in found.numbers if row.z is not None)
-    assert "of one rig" not in " ".join(found.notes)  # nothing declares it
 
 
 def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,12 +12,10 @@ from small_rigs import FY, MZ, SAMPLE, disc, simulated, truth
 
 import mffit
 import tir
-from mffit import config
 from mffit.diagnosis import wording
 from mffit.effects import CATALOG
 from mffit.fit.rig.rig_numbers import rig_numbers
 from mffit.pipeline.build_output import points_table
-from mffit.pipeline.inputs import read_points
 from mffit.pipeline.measuring import finite_spin_bias
 from mffit.pipeline.provenance import rig_of_build
 from mffit.quantities import SIDEWAYS
@@ -117,18 +114,6 @@ def test_a_right_file_is_not_blamed_for_the_zeros(project):
     zeros = {n: v for n, (v, _) in found.coefficients.items()}
     assert zeros["F0_N@left"] == pytest.approx(8.0, abs=2.0)
     assert zeros["M0_Nm@right"] == pytest.approx(0.8, abs=0.1)
-
-
-def test_corrected_points_keep_their_path_and_set_up(project):
-    path = project / "diagnosis" / "corrected.toml"
-    if not path.is_file():
-        mffit.diagnose(project / "tyre.toml", SAMPLE / "true.tir", out=project / "diagnosis")
-    sweeps = tomllib.loads(path.read_text())["sweep"]
-    assert sorted(sweep["setup"] for sweep in sweeps) == ["left", "right"]
-    points = read_points(config.load(path)).points
-    assert set(points.used_setups) == set(FAULTS)
-    for setup, side in (("left", -1.0), ("right", 1.0)):
-        assert np.all(np.sign(points.phi_t[points.setup == points.setups.index(setup)]) == side)
 
 
 def test_a_zero_far_beyond_its_declaration_is_named_in_its_set_up(tmp_path):

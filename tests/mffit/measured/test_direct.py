@@ -438,7 +438,7 @@ def test_the_note_on_load_is_one_of_the_notes():
 
 def test_the_json_holds_value_and_uncertainty_of_every_quantity():
     result = measured(Plain())
-    content = as_json.spin(result)
+    content = as_json.document(result)
     for key, found in (
         ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
         ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.R), ("F_phit_N", result.F_phit),
@@ -447,7 +447,7 @@ def test_the_json_holds_value_and_uncertainty_of_every_quantity():
     row = content["per_load"][0]
     assert row["alpha_M_deg"] == pytest.approx(math.degrees(result.alpha_M.value))
     assert (row["F_forward_N"], row["load_N"]) == (result.nominal.F_forward, 1500.0)
-    forwards = as_json.spin(measured(Plain(), points=Plain().campaign(backward=False)))
+    forwards = as_json.document(measured(Plain(), points=Plain().campaign(backward=False)))
     assert forwards["alpha_M_deg"] is forwards["u_alpha_M_deg"] is None
 
 

@@ -194,7 +194,7 @@ class PageReader(HTMLParser):
         self._apart(tag)
 
     def handle_data(self, data):
-        if "style" not in self.open and "svg" not in self.open:
+        if "style" not in self.open:
             self.text += data
 
     def _apart(self, tag):

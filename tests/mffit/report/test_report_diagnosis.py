@@ -15,7 +15,7 @@ from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.effects import CATALOG
 from mffit.report import constants, style, text, write_diagnosis
-from mffit.report.diagnosis_view import view_of
+from mffit.report.curves import conditions
 from mffit.report.figures import gap
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
 
@@ -96,22 +96,22 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
 
 
 def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):
-    for channel in view_of(misaligned).channels:
+    for channel in gap.gap_channels(misaligned):
         # 115 draws: a standard deviation of 1 is met within 20 % in 3 cases of 1000 not
         assert np.nanstd(channel.after) == pytest.approx(1.0, abs=0.2)
-    assert np.nanstd(view_of(misaligned).channels[0].before) > 3.0
+    assert np.nanstd(gap.gap_channels(misaligned)[0].before) > 3.0
 
 
 def test_maps_before_and_after_share_one_scale(misaligned):
-    view = view_of(misaligned)
-    sheet = gap.residuals_before_after(view)
-    assert len(sheet.panels) == 2 * len(view.channels) * len(view.conditions)
-    assert sheet.scale.limit == gap.colour_limit(view.channels)
+    channels = gap.gap_channels(misaligned)
+    sheet = gap.residuals_before_after(misaligned)
+    assert len(sheet.panels) == 2 * len(channels) * len(conditions(misaligned.points))
+    assert sheet.scale.limit == gap.colour_limit(channels)
     assert all(panel.series[0].shade is not None for panel in sheet.panels)
 
 
 def test_evidence_ranks_the_named_effect_first(misaligned):
-    panel = gap.evidence(view_of(misaligned)).panels[0]
+    panel = gap.evidence(misaligned).panels[0]
     assert panel.y.words[0] == misaligned.effects[0].effect.name
     lengths = list(panel.series[0].lengths)
     assert lengths == sorted(lengths, reverse=True)
@@ -127,7 +127,7 @@ def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tie
         for trial, gain in zip(trials, gains, strict=False)
     )
     step = dataclasses.replace(step, trials=trials, threshold=5.0)
-    panel = gap.evidence(view_of(dataclasses.replace(misaligned, steps=(step,)))).panels[0]
+    panel = gap.evidence(dataclasses.replace(misaligned, steps=(step,))).panels[0]
     best, behind = panel.notes
     assert best.text == "best"
     assert behind.colour == (style.INK if tied else style.MUTED)
@@ -138,8 +138,8 @@ def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
-    assert gap.colour_limit(view_of(clean).channels) == constants.RESIDUAL_SCALE
-    loud = gap.GapChannel(name="Fy", before=np.full(9, 500.0), after=np.zeros(9), noise=6.0)
+    assert gap.colour_limit(gap.gap_channels(clean)) == constants.RESIDUAL_SCALE
+    loud = gap.GapChannel(name="Fy", before=np.full(9, 500.0), after=np.zeros(9))
     assert gap.colour_limit([loud]) == constants.LARGEST_GAP_SCALE
 
 
@@ -155,7 +155,7 @@ def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     assert unknown.unexplained
     alert = page.text.index("There is structure that no effect of the library describes")
     assert alert < page.text.index("Fy gap, rms")
-    assert view_of(unknown).frames("Fy")[0] == unknown.unexplained_where[0]
+    assert gap.framed(unknown, "Fy")[0] == unknown.unexplained_where[0]
 
 
 def test_without_moment_only_side_force_is_shown(tmp_path):

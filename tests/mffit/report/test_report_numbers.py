@@ -12,7 +12,7 @@ import pytest
 
 from mffit.report import constants, page
 from mffit.report.build_view import view_of
-from mffit.report.drawing.records import Look, Panel, Sheet, Trace, with_shorter_series
+from mffit.report.drawing.records import Look, Panel, Sheet, Trace
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
 
@@ -35,7 +35,12 @@ def test_every_reading_is_in_the_table_of_the_fit(view):
 
 def test_parts_are_named_as_in_the_legend(view):
     found = rows(decomposition.parts(view))
-    assert {row["series"].split(":")[0] for row in found} == {"raw reading", "odd part", "even part"}
+    assert {row["series"].split(":")[0] for row in found} == {
+        "raw reading",
+        "odd part",
+        "even part",
+        "even part of the model",
+    }
 
 
 def test_bars_and_error_bars_are_named_by_the_words_at_the_axis(view):
@@ -49,26 +54,20 @@ def test_bars_and_error_bars_are_named_by_the_words_at_the_axis(view):
 
 
 def test_a_map_gives_the_value_of_every_colour(view):
-    values = np.linspace(-3.0, 3.0, len(view.points))
-    found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, "u"))
+    found = rows(residuals.residual_maps(view))
     coloured = sorted(float(row["value"]) for row in found if row["value"])
-    assert coloured == pytest.approx(sorted(values), abs=1e-5)
+    assert coloured == pytest.approx(sorted(np.concatenate([x for _, x in view.scaled])), rel=1e-4, abs=1e-5)
 
 
-def test_a_long_series_is_drawn_at_evenly_spaced_points_and_the_picture_says_so():
+def test_of_a_long_series_every_so_many_points_are_listed(monkeypatch):
+    monkeypatch.setattr(constants, "POINTS_PER_SERIES", 10)
     x = np.arange(95.0)
     bars = Trace(name="points", x=x, y=x**2, half=np.full(95, 3.0), look=Look(marker="o"))
     few = Trace(name="few", x=x[:9], y=x[:9], shade=x[:9], look=Look(marker="s"))
-    sheet = Sheet(rows=[[Panel(series=[bars, few])]], height=1.0)
-    shorter = with_shorter_series(sheet, 10)
-    drawn, untouched = shorter.panels[0].series
-    assert list(drawn.x) == list(x[::10])
-    assert list(drawn.columns()["upper"]) == list(x[::10] ** 2 + 3.0)
-    assert list(untouched.x) == list(few.x)
-    assert shorter.remark == "Of longer series at most 10 points, evenly spaced, are drawn and listed."
-    assert with_shorter_series(shorter, 10) is shorter
-    found = rows(shorter)
-    assert [float(row["x"]) for row in found if row["series"] == "points"] == list(np.arange(0.0, 95.0, 10.0))
+    found = rows(Sheet(rows=[[Panel(series=[bars, few])]], height=1.0))
+    assert [float(row["x"]) for row in found if row["series"] == "points"] == list(x[::10])
+    assert [float(row["upper"]) for row in found if row["series"] == "points"] == list(x[::10] ** 2 + 3.0)
+    assert sum(row["series"] == "few" for row in found) == 9
 
 
 def test_a_table_is_packed_and_the_same_table():

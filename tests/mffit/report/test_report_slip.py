@@ -15,11 +15,9 @@ from mffit.fit.posterior import Posterior
 from mffit.report import build, constants, page
 from mffit.report.build_view import view_of
 from mffit.report.figures import fit, residuals, slip
-from mffit.report.with_band import with_band
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from tests.mffit.fit import combined_programme as belt
-from tir.outputs import outputs_of
 
 U = {"PDX1": 0.02, "RBX1": 0.4, "RBY1": 0.4, "QDZ1": 0.002}
 
@@ -64,15 +62,16 @@ def test_every_reading_is_on_one_curve_over_an_angle_or_over_slip(view):
 def test_panels_over_slip_hold_every_driven_reading_of_each_channel(view):
     driven = sum(len(c.index) for c in view.curves if c.over == "kappa")
     for channel in view.channels:
-        sheet = fit.model_against_points(view, channel, fit.SLIP)
-        assert len(sheet.panels) == 3 * 2 + 2 * 2
+        sheet = fit.model_against_points(view, channel)
+        over_slip = [p for p in sheet.panels if "slip κ" in p.x.label]
+        assert len(over_slip) == 3 * 2 + 2 * 2
         assert sheet.remark == ""
-        assert sum(len(s.x) for p in sheet.panels for s in named(p, "sweep")) == driven
+        assert sum(len(s.x) for p in over_slip for s in named(p, "sweep")) == driven
 
 
 def test_lines_over_slip_drive_forwards_and_go_through_the_readings(view):
     (Fx,) = (channel for channel in view.channels if channel.name == "Fx")
-    for curve in fit.varied(view.curves, fit.SLIP):
+    for curve in [c for c in view.curves if c.over == "kappa"]:
         line = view.lines[curve]
         assert np.all(line.raw["Fx"][line.x > 0.02] > 0.0)
         apart = Fx.measured[curve.index] - np.interp(curve.varied(view.points), line.x, line.raw["Fx"])
@@ -101,71 +100,40 @@ def test_the_friction_limit_is_closed_convex_and_holds_the_readings(view):
             places = np.column_stack([read.x, read.y])
             beyond = np.max(np.einsum("ij,kij->ki", outwards, places[:, None] - start), axis=1)
             assert np.max(beyond) < 4.0 * belt.NOISE["Fx"]
-        assert np.all(np.hypot(limit.half, limit.half_x) > 0.0)
-
-
-def test_the_friction_limit_is_dotted_where_no_sweep_combined_as_much(view):
-    """Slip was swept at up to 5 deg of sideslip, sideslip alone to 10 deg."""
-    load, curves = next(iter(slip.main_slip_curves(view).items()))
-    _, alpha, _ = slip.friction_limit(view, curves[0])
-    panel = next(p for p in slip.friction_ellipse(view).panels if p.title == f"{load:.0f} N")
-    (whole,) = (s for s in panel.series if s.name == slip.EDGE_NAME)
-    inside = [s for s in panel.series if s.name == slip.EDGE_NAME_RUN]
-    assert whole.look.line == ":"
-    assert sum(len(s.x) for s in inside) == np.sum(np.abs(np.degrees(alpha)) < 5.6) < len(alpha)
-    assert all(s.look.line == "-" for s in inside)
-
-
-def test_a_band_is_what_the_coefficient_moves(view):
-    where = {"Fz": 1400.0, "kappa": np.linspace(-0.2, 0.2, 9), "alpha": 0.05, "Vx": 16.0, "pressure": 250e3}
-    known = Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]]))
-    found = with_band(view.build.fit.tyre.values, known, lambda p: outputs_of(("Fx",), p, where)[0])
-    ends = [
-        view.build.fit.tyre.replace(PDX1=view.build.fit.tyre["PDX1"] + side * U["PDX1"])(
-            1400.0, 0.05, 0.0, where["kappa"], Vx=16.0, p=250e3, turn_slip=False
-        ).Fx
-        for side in (-1.0, 1.0)
-    ]
-    assert found.half == pytest.approx(1.96 * np.abs(ends[1] - ends[0]) / 2.0, rel=2e-3, abs=1e-6)
 
 
 def test_maps_hold_every_reading_inside_their_axes(view):
-    values = [("Fx", np.zeros(len(view.points)))]
     shown = 0
-    for which, over in ((residuals.rolling, residuals.ANGLES), (residuals.driven, residuals.SLIPS)):
-        sheet = residuals.residual_maps(
-            view.points, values, which(view.points, view.conditions), "u", over=over
-        )
-        for panel in sheet.panels:
-            (found,) = (s for s in panel.series if s.shade is not None)
-            shown += len(found.x)
-            assert panel.x.low < found.x.min() <= found.x.max() < panel.x.high
-            assert panel.y.low < found.y.min() <= found.y.max() < panel.y.high
-    assert shown == len(view.points)
+    for panel in residuals.residual_maps(view).panels:
+        (found,) = (s for s in panel.series if s.shade is not None)
+        shown += len(found.x)
+        assert panel.x.low < found.x.min() <= found.x.max() < panel.x.high
+        assert panel.y.low < found.y.min() <= found.y.max() < panel.y.high
+    assert shown == sum(int(np.isfinite(values).sum()) for _, values in view.scaled)
 
 
 def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
     monkeypatch.setattr(constants, "MOST_PANELS", 5)
-    planned = next(one for one in build.planned(view) if one.name == "slip_Fx")
-    picture = page.draw(tmp_path, planned)
-    assert picture.drawing.count("<title") == 5
-    assert "5 more panels are not drawn, for lack of room; the numbers have them." in picture.caption
-    assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves if c.over == "kappa")
+    wanted = next(one for one in build.BUILD if one.name == "fit_Fx")
+    sheet = wanted.draw(view)
+    picture = page.draw(tmp_path, wanted, view)
+    assert picture.drawing.count("<img") == 1 + 5  # with the key
+    said = f"{len(sheet.panels) - 5} more panels are not drawn, for lack of room; the numbers have them."
+    assert said in picture.caption
+    assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves)
     macro = page._environment().get_template("macros.html.j2").module
-    assert "5 more panels are not drawn" in macro.figure(picture)
+    assert said in macro.figure(picture)
 
 
 def test_whatever_a_picture_shows_can_be_seen(view, result):
     """A line has a width, a mark a size, an area some colour."""
-    sheets = [one.make() for built in (view, view_of(result)) for one in build.planned(built)]
+    sheets = [one.draw(built) for built in (view, view_of(result)) for one in build.BUILD]
     looks = [s.look for sheet in sheets for panel in sheet.panels for s in panel.series if hasattr(s, "look")]
     assert all(look.line or look.marker or look.opacity > 0.0 for look in looks)
     assert min(look.width for look in looks if look.line) > 0.3  # pt
     assert min(look.size for look in looks if look.marker) > 0.9
 
 
-def test_pictures_of_slip_are_drawn_only_where_slip_was_run(view, result):
-    names = {one.name for one in build.planned(view)}
-    own = {f"slip_{name}" for name in belt.NOISE} | {"friction_ellipse", "residuals_slip"}
-    assert own <= names
-    assert not own & {one.name for one in build.planned(view_of(result))}
+def test_the_friction_ellipse_is_drawn_only_where_slip_was_run(view, result):
+    assert slip.friction_ellipse(view).panels
+    assert not slip.friction_ellipse(view_of(result)).panels

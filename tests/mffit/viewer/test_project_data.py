@@ -12,7 +12,7 @@ import mffit
 from mffit.points import make_points
 from mffit.quantities import CONDITIONS
 from mffit.viewer.project import project_data
-from mffit.viewer.project_coefficients import coefficient_rows, movers
+from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import facets, last_lines
 
 
@@ -76,18 +76,6 @@ def test_every_condition_with_set_points_is_a_filter():
     assert {q.word for q in CONDITIONS.values()} - words == {"temperature", "time"}
     swept = make_points(np.linspace(-0.3, 0.3, 200), 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0)
     assert {f["name"] for f in facets(swept) if f["as_range"]} == {"alpha"}
-
-
-def test_a_coefficient_is_moved_by_the_sweeps_that_show_it(result):
-    """Camber stiffness by sweeps that lean, the trail by the moment, friction by large sideslip."""
-    moved = movers(result.fit)
-    assert any(word.startswith(("camber", "coupled")) for word in moved["PKY6"])
-    assert moved["QBZ1"][0].startswith("M_z")
-    assert moved["PDY1"][0].startswith("F_y")
-    assert any(word.startswith(("sideslip", "coupled")) for word in moved["PDY1"])
-    rows = {row["name"]: row["moved_by"] for row in coefficient_rows(result, result.fit.coefficients)}
-    assert rows["PDY1"] == moved["PDY1"]
-    assert rows["QSY1"] == ["M_y"]  # of the freely rolling wheel, after the search
 
 
 def test_channels_beside_the_fit_have_the_misfit_of_the_file(result):

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import tir
+from mffit.output import RECORD
 from mffit.virtual_rig import load_plan, simulate
 
 
@@ -21,7 +22,7 @@ def plan(content, folder):
 
 def test_sweeps_configuration_and_truth_are_written(plan, tmp_path, tyre):
     truth = simulate(plan, tmp_path / "out", seed=3)
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = {path.name for path in (tmp_path / "out").iterdir()} - {RECORD}
     assert names == {"sideslip.csv", "camber.csv", "forward.csv", "backward.csv", "tyre.toml", "truth.json"}
     written = json.loads((tmp_path / "out" / "truth.json").read_text())
     assert written["epsilon_gamma"] == truth.nominal.epsilon_gamma

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
-from mffit.window.edits import EDITS, free, hold, leave_out, limit, start, take_back
+from mffit.window.edits import EDITS, coefficient, leave_out, take_back
 from mffit.window.session import ProjectFile
 
 TEXT = """# the front tyre
@@ -40,7 +40,7 @@ def changed_lines(before: str, after: str) -> tuple[set[str], set[str]]:
 
 
 def test_holding_changes_one_line_and_keeps_its_comment():
-    found = hold(TEXT, name="PCY1", value=1.35)
+    found = coefficient(TEXT, name="PCY1", entry=1.35)
     assert changed_lines(TEXT, found) == (
         {"PCY1 = 1.3       # from the last tyre\n"},
         {"PCY1 = 1.35       # from the last tyre\n"},
@@ -48,15 +48,9 @@ def test_holding_changes_one_line_and_keeps_its_comment():
 
 
 def test_a_new_coefficient_is_added_to_the_table():
-    found = hold(TEXT, name="PKY1", value=-15.0)
+    found = coefficient(TEXT, name="PKY1", entry=-15.0)
     assert changed_lines(TEXT, found) == (set(), {"PKY1 = -15.0\n"})
     assert tomllib.loads(found)["coefficients"]["PKY1"] == -15.0
-
-
-def test_a_start_keeps_the_bounds():
-    entry = tomllib.loads(start(TEXT, name="PEY1", value=0.1))["coefficients"]["PEY1"]
-    assert entry == {"min": -3.0, "max": 0.5, "start": 0.1}
-    assert tomllib.loads(start(TEXT, name="PCY1", value=1.2))["coefficients"]["PCY1"] == {"start": 1.2}
 
 
 @pytest.mark.parametrize("name", ["PCY1", "PEY1", "PKY1", "PDY1"])
@@ -68,7 +62,7 @@ def test_a_start_keeps_the_bounds():
 def test_limits_replace_the_entry_and_keep_every_comment(name, entry):
     """A number, a table on one line, a table of its own, and none at all."""
     text = TEXT + "\n[coefficients.PKY1]  # from the report\nstart = -20.0  # a guess\n"
-    found = limit(text, name=name, entry=entry)
+    found = coefficient(text, name=name, entry=entry)
     before, after = tomllib.loads(text), tomllib.loads(found)
     assert after["coefficients"].pop(name, {}) == entry
     before["coefficients"].pop(name, None)
@@ -83,18 +77,18 @@ def test_limits_replace_the_entry_and_keep_every_comment(name, entry):
 
 def test_an_unknown_key_of_limits_is_refused():
     with pytest.raises(InputError, match='"least" is not a key'):
-        limit(TEXT, name="PCY1", entry={"least": 1.0})
+        coefficient(TEXT, name="PCY1", entry={"least": 1.0})
 
 
 def test_freeing_removes_the_line_and_nothing_else():
-    found = free(TEXT, name="PCY1")
+    found = coefficient(TEXT, name="PCY1", entry=None)
     assert changed_lines(TEXT, found) == ({"PCY1 = 1.3       # from the last tyre\n"}, set())
-    assert free(TEXT, name="PKY1") == TEXT
+    assert coefficient(TEXT, name="PKY1", entry=None) == TEXT
 
 
 def test_tables_are_added_where_there_are_none():
     bare = '[tyre]\nname = "a"\n\n[[sweep]]\nfile = "a.csv"'
-    found = leave_out(hold(bare, name="PCY1", value=1.0), readings=[reading("a.csv", 7)], why="a jump")
+    found = leave_out(coefficient(bare, name="PCY1", entry=1.0), readings=[reading("a.csv", 7)], why="a jump")
     assert found.startswith(bare)
     content = tomllib.loads(found)
     assert content["coefficients"] == {"PCY1": 1.0}
@@ -132,7 +126,7 @@ def test_an_array_of_tables_is_extended():
 
 def test_line_ends_stay_as_they_are():
     found = leave_out(TEXT.replace("\n", "\r\n"), readings=[reading("b.csv", 1)], why="x")
-    found = hold(found, name="PKY1", value=-15.0)
+    found = coefficient(found, name="PKY1", entry=-15.0)
     assert "\n" not in found.replace("\r\n", "")
 
 
@@ -160,21 +154,22 @@ def test_readings_without_a_line_are_refused():
 
 def test_an_edit_is_saved_and_undone_byte_for_byte(tyre_toml):
     file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
-    file.edit(lambda text: hold(text, name="PCY1", value=1.35), file.digest)
-    file.edit(lambda text: free(text, name="PCY1"), file.digest)
+    beside = set(tyre_toml.parent.iterdir())
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=None), file.digest)
     assert file.config().coefficients == {}
     file.undo()
     assert file.config().coefficients["PCY1"].held == 1.35
     file.undo()
     assert tyre_toml.read_bytes() == before
     assert not file.can_undo
-    assert [path.name for path in tyre_toml.parent.glob(".*")] == []
+    assert set(tyre_toml.parent.iterdir()) == beside
 
 
 def test_a_change_that_the_program_would_refuse_is_not_written(tyre_toml):
     file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
     with pytest.raises(InputError, match="physically plausible range of PCY1"):
-        file.edit(lambda text: hold(text, name="PCY1", value=99.0), file.digest)
+        file.edit(lambda text: coefficient(text, name="PCY1", entry=99.0), file.digest)
     with pytest.raises(InputError, match="is not the file of"):
         file.edit(lambda text: leave_out(text, readings=[reading("no.csv", 2)], why="x"), file.digest)
     with pytest.raises(InputError, match="why"):
@@ -186,9 +181,9 @@ def test_a_change_that_the_program_would_refuse_is_not_written(tyre_toml):
 def test_changes_of_others_are_neither_overwritten_nor_undone(tyre_toml):
     file = ProjectFile(tyre_toml)
     seen = file.digest
-    file.edit(lambda text: hold(text, name="PCY1", value=1.35), seen)
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), seen)
     with pytest.raises(InputError, match="changed elsewhere"):
-        file.edit(lambda text: free(text, name="PCY1"), seen)
+        file.edit(lambda text: coefficient(text, name="PCY1", entry=None), seen)
     mine = tyre_toml.read_text(encoding="utf-8") + "# my own words\n"
     tyre_toml.write_text(mine, encoding="utf-8")
     with pytest.raises(InputError, match="no change of this window"):
@@ -199,7 +194,7 @@ def test_changes_of_others_are_neither_overwritten_nor_undone(tyre_toml):
 def test_a_mark_of_the_encoding_stays(tyre_toml):
     tyre_toml.write_bytes(b"\xef\xbb\xbf" + tyre_toml.read_bytes())
     file = ProjectFile(tyre_toml)
-    file.edit(lambda text: hold(text, name="PCY1", value=1.35), file.digest)
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
     assert tyre_toml.read_bytes().startswith(b"\xef\xbb\xbf#")
 
 

@@ -113,7 +113,7 @@ def test_the_data_are_those_of_the_build(client, result):
 
 def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session):
     before = {path.name: path.read_bytes() for path in session.file.path.parent.iterdir()}
-    answer = edit(client, session, "hold", name="PCY1", value=1.35).json()
+    answer = edit(client, session, "coefficient", name="PCY1", entry=1.35).json()
     assert answer["state"]["hand"] == {"PCY1": 1.35}
     assert not answer["state"]["is_fitted"]
     after = {path.name: path.read_bytes() for path in session.file.path.parent.iterdir()}
@@ -126,14 +126,13 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
 @pytest.mark.parametrize(
     ("name", "given", "sentence"),
     [
-        ("hold", {"name": "PCY1", "value": 99.0}, "physically plausible range"),
-        ("hold", {"name": "PCY9", "value": 1.0}, "not a coefficient"),
-        ("hold", {"nam": "PCY1"}, "cannot be done with"),
-        ("limit", {"name": "PCY1", "entry": {"min": 1.6, "max": 1.2}}, "1.6 is not below max, 1.2"),
-        ("limit", {"name": "PCY1", "entry": {"min": "1.6"}}, "is a text, not a number"),
-        ("limit", {"name": "PCY1", "entry": 3}, "cannot be done with"),
+        ("coefficient", {"name": "PCY1", "entry": 99.0}, "physically plausible range"),
+        ("coefficient", {"name": "PCY9", "entry": 1.0}, "not a coefficient"),
+        ("coefficient", {"nam": "PCY1"}, "cannot be done with"),
+        ("coefficient", {"name": "PCY1", "entry": {"min": 1.6, "max": 1.2}}, "1.6 is not below max, 1.2"),
+        ("coefficient", {"name": "PCY1", "entry": {"min": "1.6"}}, "is a text, not a number"),
         ("__import__", {}, "not a change"),
-        ("hold", {"name": ["PCY1"], "value": 1.0}, "cannot be done with"),
+        ("coefficient", {"name": ["PCY1"], "entry": 1.0}, "cannot be done with"),
         ("leave_out", {"readings": [{"file": "a", "first": 5, "last": 2}], "why": "x"}, "not in order"),
         (
             "leave_out",
@@ -172,8 +171,10 @@ def test_a_request_that_is_no_change_is_refused(client, session, body):
 
 def test_two_windows_do_not_overwrite_each_other(client, session):
     seen = session.file.digest
-    assert edit(client, session, "hold", name="PCY1", value=1.35).status_code == 200
-    answer = post(client, "edit", **{"do": "hold", "seen": seen, "with": {"name": "PCY1", "value": 1.2}})
+    assert edit(client, session, "coefficient", name="PCY1", entry=1.35).status_code == 200
+    answer = post(
+        client, "edit", **{"do": "coefficient", "seen": seen, "with": {"name": "PCY1", "entry": 1.2}}
+    )
     assert answer.status_code == 422
     assert "changed elsewhere" in answer.json()["error"]
     assert answer.json()["state"]["hand"] == {"PCY1": 1.35}
@@ -183,7 +184,7 @@ def test_a_file_that_somebody_broke_is_said_and_left_alone(client, session):
     session.file.path.write_text("[tyre\n", encoding="utf-8")
     state = client.get(f"/{TOKEN}/state").json()
     assert "not valid TOML" in state["problem"]
-    assert edit(client, session, "hold", name="PCY1", value=1.35).status_code == 422
+    assert edit(client, session, "coefficient", name="PCY1", entry=1.35).status_code == 422
     assert client.get(f"/{TOKEN}/").status_code == 200
     assert session.file.path.read_text(encoding="utf-8") == "[tyre\n"
 
