@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 from uncertainties import UFloat, ufloat
@@ -57,17 +56,9 @@ def align(
             "no load has both forward and backward points at zero sideslip and camber: add rows with direction "
             "forward and backward"
         )
-    found = Alignment(tuple(steps), (), resolution_deg)
-    limit = constants.LARGEST_DIFFERENCE
-    warnings = [
-        wording.axis_off(step.load, difference, limit, abs(step.correction_deg))
-        for step in found.last
-        if (difference := abs(step.F_forward - step.F_backward)) > limit
-    ]
     setups = np.unique(points.setup[on_usual])
-    if len(setups) > 1:
-        warnings.append(wording.last_is_aligned(points.setups[setups[-1]]))
-    return replace(found, warnings=tuple(warnings))
+    last = [wording.last_is_aligned(points.setups[setups[-1]])] if len(setups) > 1 else []
+    return Alignment(tuple(steps), tuple(last), resolution_deg)
 
 
 def _steps(

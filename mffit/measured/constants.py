@@ -7,12 +7,6 @@ from tir.constant import Count, Real
 GUESSED_STIFFNESS_U = Real(
     0.5, "-", "Relative standard uncertainty of the usual cornering stiffness: tyres have 5 to 25 1/rad."
 )
-LARGEST_DIFFERENCE = Real(
-    50.0,
-    "N",
-    "Difference of forward and backward zeros above which the axis is not aligned.",
-    "Mottola and Massaro 2022, section 3",
-)
 AXIS_RESOLUTION = Real(0.01, "deg", "Smallest angle by which a sideslip axis can usually be turned.")
 
 PARABOLA_SIDESLIP = Real(1.2, "deg", "Sideslip within which a parabola describes the side force to a newton.")

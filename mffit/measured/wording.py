@@ -121,13 +121,6 @@ def secant_not_possible(load: float, angle_deg: float) -> str:
     return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
 
 
-def axis_off(load: float, difference: float, limit: float, correction_deg: float) -> str:
-    return (
-        f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N (the limit is {limit:.0f} N): the sideslip "
-        f"axis is off by about {correction_deg:.2f} deg"
-    )
-
-
 def zeros_disagree(load: float, way: str, sweeps: tuple[str, str], forces: tuple[float, float]) -> str:
     return (
         f"at {load:.0f} N the {way} zeros of {sweeps[0]} and {sweeps[1]} are {forces[0]:.0f} N and {forces[1]:.0f} N; these "

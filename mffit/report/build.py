@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from mffit.diagnosis import wording as of_residuals
-from mffit.measured import constants, wording
+from mffit.measured import wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, CoefficientRow, view_of
@@ -159,7 +159,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,
-        aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
         of_setups=wording.setup_scatter,
         meanings=MEANINGS,

@@ -67,10 +67,6 @@ WARNINGS = [
     ),
     (wording.nothing_measured(camber=True, zeros=True, radius=True), "at different loads"),
     (
-        wording.axis_off(900.0, 64.2, 50.0, 0.213),
-        "differ by 64 N (the limit is 50 N): the sideslip axis is off by about 0.21",
-    ),
-    (
         wording.paths_contradict(
             1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))
         ),
