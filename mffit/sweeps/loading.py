@@ -178,9 +178,10 @@ def _apart(
         if wrong is not None:
             line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
             raise InputError(_no_reading(raw, wrong), file=config.path, line=line, key=key)
-        mask = inside(lines, one.ranges)
+        mask = inside(lines, one.ranges) & ~out  # a line that two entries name is listed with the first
         out |= mask
-        excluded.append((one, raw.of_rows(mask)))
+        if np.any(mask):
+            excluded.append((one, raw.of_rows(mask)))
     return None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw, excluded
 
 
