@@ -53,7 +53,7 @@ class Points(MeasuredRows):
         return f"{len(self)} in {len(self.sweep_names)} sweeps"
 
     def channel(self, name: str) -> np.ndarray:
-        """MeasuredRows (n,) of a channel of :data:`mffit.quantities.CHANNELS`, in its unit; NaN where it was not measured."""
+        """Readings (n,) of a channel of :data:`mffit.quantities.CHANNELS`, in its unit; NaN where it was not measured."""
         readings: np.ndarray = getattr(self, name)
         return readings
 
