@@ -121,26 +121,13 @@ class ExcludeTable(Table):
 
 
 def check_exclusions(entries: Sequence[ExcludeTable], files: Collection[str]) -> None:
-    """Refuse entries about a file that is not among the sweeps, and lines that are excluded twice."""
+    """Refuse entries about a file that is not among the sweeps."""
     for index, entry in enumerate(entries):
         if entry.file not in files:
             raise q.wrong(_not_a_sweep(entry.file, files), f"fit.exclude.{index}.file")
-        for earlier in entries[:index]:
-            twice = _common(earlier.ranges, entry.ranges) if earlier.file == entry.file else None
-            if twice is not None:
-                raise q.wrong(
-                    f'line {twice} of "{entry.file}" is in an earlier entry of exclude too; name it once',
-                    f"fit.exclude.{index}.lines",
-                )
 
 
 def _not_a_sweep(file: str, files: Collection[str]) -> str:
     near = meant(file, files)
     hint = f'did you mean "{near}"?' if near else "write the name as [[sweep]] gives it"
     return f'"{file}" is not the file of a [[sweep]]; {hint}'
-
-
-def _common(first: Sequence[LineRange], second: Sequence[LineRange]) -> int | None:
-    """The first line that both have; None without one."""
-    found = [max(a, c) for a, b in first for c, d in second if max(a, c) <= min(b, d)]
-    return min(found, default=None)

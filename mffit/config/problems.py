@@ -6,7 +6,6 @@ Nothing here knows a table: the keys to suggest are read from the pydantic model
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -71,7 +70,6 @@ def validated(
     InputError
         The problem to solve first, with the keys of all others.
     """
-    _refuse_unholdable(content, path, lines)
     try:
         return model.model_validate(dict(content))
     except ValidationError as error:
@@ -83,21 +81,6 @@ def validated(
     others = sorted({mistake.key for mistake in mistakes} - solved)
     also = f" (also wrong: {', '.join(_shown(key, lines) for key in others)})" if others else ""
     raise InputError(first.sentence + also, file=path, line=first.line, key=_shown(first.key, lines))
-
-
-def _refuse_unholdable(
-    content: object, path: Path | None, lines: dict[str, int], key: tuple[str, ...] = ()
-) -> None:
-    """Refuse a whole number that no float can hold, under any key; TOML sets no limit to its digits."""
-    if isinstance(content, Mapping):
-        for name, inner in content.items():
-            _refuse_unholdable(inner, path, lines, (*key, str(name)))
-    elif isinstance(content, list | tuple):
-        for number, inner in enumerate(content):
-            _refuse_unholdable(inner, path, lines, (*key, str(number)))
-    elif isinstance(content, int) and not abs(content) <= sys.float_info.max:
-        dotted = ".".join(key)
-        raise InputError(TOO_MANY_DIGITS, file=path, line=line_of(dotted, lines), key=_shown(dotted, lines))
 
 
 def _mistake(detail: ErrorDetails, lines: dict[str, int], known: Keys) -> _Mistake:
@@ -154,6 +137,8 @@ def _sentence(detail: ErrorDetails, key: str, lines: dict[str, int]) -> str:
         return f'"{given}" is a text, not a number; remove the quotes'
     if kind == "date_type" and isinstance(given, str) and DATE_IN_QUOTES.fullmatch(given):
         return f'"{given}" is a text, not a date; remove the quotes'
+    if kind == "float_type" and isinstance(given, int) and not isinstance(given, bool):
+        return TOO_MANY_DIGITS
     if kind in KINDS:
         return f"{_quoted(given)} is not {KINDS[kind]}; write one"
     message = detail["msg"]
@@ -178,7 +163,7 @@ def _quoted(given: object) -> str:
         return "true" if given else "false"
     if isinstance(given, dict):
         return "a table"
-    return "a list" if isinstance(given, list | tuple) else str(given)
+    return "a list" if isinstance(given, list | tuple) else shortened(str(given))
 
 
 def _unknown(table: str, name: str, known: Keys) -> str:

@@ -2,48 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from dataclasses import dataclass, field
+from typing import Annotated
 
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 from scipy import constants
 
 
-class OtherUnits(NamedTuple):
-    """Units in which a number may have been written by mistake."""
-
-    write: str  #: the right unit, in words
-    units: Mapping[str, float]  #: factor to the right unit, by the words for the wrong one
-    lower: float  #: usual range, in the right unit
-    upper: float
-
-    def hint(self, value: float) -> str:
-        """The units in which the value would be usual, as a remedy; empty if there is none."""
-        fitting = [
-            words for words, factor in self.units.items() if self.lower <= value * factor <= self.upper
-        ]
-        return f"it looks like {' or '.join(fitting)}, write {self.write}" if fitting else ""
-
-
 @dataclass(frozen=True, eq=False)
 class Range:
-    """Validator that refuses a number outside ``lower`` to ``upper``."""
+    """Validator that refuses a number outside ``lower`` to ``upper``, with the units in which it would be a usual one."""
 
     lower: float
     upper: float
     unit: str
-    below: str = ""  #: remedy for a positive number below the range
-    above: str = ""  #: remedy for a number above the range
-    other: OtherUnits | None = None  #: finds a better remedy from the value
+    otherwise: str = ""  #: remedy for a number above the range that no unit explains
+    write: str = ""  #: the right unit, in words
+    units: Mapping[str, float] = field(default_factory=dict)
+    """Factor to the right unit, by the words for one in which the number may have been written."""
+    usual: tuple[float, float] | None = None  #: range of usual numbers; None: all that are accepted
 
     def __call__(self, value: float) -> float:
         if self.lower <= value <= self.upper:
             return value
-        hint = self.above if value > self.upper else self.below if value > 0.0 else ""
-        if hint and self.other is not None:
-            hint = self.other.hint(value) or hint
+        least, most = self.usual or (self.lower, self.upper)
+        fitting = [words for words, factor in self.units.items() if least <= value * factor <= most]
+        hint = self.otherwise if value > self.upper else ""
+        if fitting:
+            hint = f"it looks like {' or '.join(fitting)}, write {self.write}"
         unit = f" {self.unit}" if self.unit != "-" else ""
         sentence = f"{value:g}{unit} is outside {self.lower:g} to {self.upper:g}{unit}"
         raise wrong(f"{sentence}; {hint or 'correct it'}")
@@ -56,54 +45,42 @@ def wrong(sentence: str, key: str = "") -> PydanticCustomError:
 
 TOO_MANY_DIGITS = "has more digits than a number can have; correct it"
 """The sentence about a whole number that no float can hold."""
-MILLIMETRES = "it looks like millimetres, write metres"
+LENGTHS = {"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli}
+PRESSURES = {
+    "psi": constants.psi / constants.kilo,
+    "bar": constants.bar / constants.kilo,
+    "pascals": constants.milli,
+}
 
-RADII = OtherUnits(
-    write="metres",
-    units={"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli},
-    lower=0.1,
-    upper=0.6,
-)
-PRESSURES = OtherUnits(
-    write="kilopascals",
-    units={"psi": constants.psi / constants.kilo, "bar": constants.bar / constants.kilo},
-    lower=40.0,
-    upper=1000.0,
-)
 
-WheelRadius = Annotated[float, AfterValidator(Range(0.03, 1.5, "m", above=MILLIMETRES, other=RADII))]
-Width = Annotated[float, AfterValidator(Range(0.01, 1.0, "m", above=MILLIMETRES))]
-PathRadius = Annotated[float, AfterValidator(Range(0.2, 100.0, "m", above=MILLIMETRES))]
-Length = Annotated[float, AfterValidator(Range(1e-3, 100.0, "m", above=MILLIMETRES))]
+def _length(lower: float, upper: float, usual: tuple[float, float] | None = None) -> AfterValidator:
+    return AfterValidator(Range(lower, upper, "m", "write metres", "metres", LENGTHS, usual))
+
+
+def _angle(lower: float, upper: float) -> AfterValidator:
+    return AfterValidator(Range(lower, upper, "deg", write="degrees", units={"radians": DEGREES}))
+
+
+DEGREES = 180.0 / math.pi
+WheelRadius = Annotated[float, _length(0.03, 1.5, (0.1, 0.6))]
+Width = Annotated[float, _length(0.01, 1.0)]
+PathRadius = Annotated[float, _length(0.2, 100.0)]
+Length = Annotated[float, _length(1e-3, 100.0)]
 Load = Annotated[
-    float, AfterValidator(Range(20.0, 2e5, "N", below="it looks like kilonewtons, write newtons"))
+    float, AfterValidator(Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": constants.kilo}))
 ]
 Temperature = Annotated[float, AfterValidator(Range(-40.0, 200.0, "degC"))]
 Pressure = Annotated[
-    float,
-    AfterValidator(
-        Range(
-            20.0,
-            2000.0,
-            "kPa",
-            below="it looks like bar, write kilopascals",
-            above="it looks like pascals, write kilopascals",
-            other=PRESSURES,
-        )
-    ),
+    float, AfterValidator(Range(20.0, 2000.0, "kPa", "", "kilopascals", PRESSURES, (20.0, 1000.0)))
 ]
-Speed = Annotated[float, AfterValidator(Range(0.01, 150.0, "m/s", above="write metres per second"))]
-EstimateAngle = Annotated[
-    float, AfterValidator(Range(1.0, 60.0, "deg", below="it looks like radians, write degrees"))
-]
-CamberLimit = Annotated[
-    float, AfterValidator(Range(5.0, 70.0, "deg", below="it looks like radians, write degrees"))
-]
-Play = Annotated[float, AfterValidator(Range(0.0, 10.0, "deg", above="write the full play in degrees"))]
+Speed = Annotated[float, AfterValidator(Range(0.01, 150.0, "m/s", "write metres per second"))]
+EstimateAngle = Annotated[float, _angle(1.0, 60.0)]
+CamberLimit = Annotated[float, _angle(5.0, 70.0)]
+Play = Annotated[float, AfterValidator(Range(0.0, 10.0, "deg", "write the full play in degrees"))]
 Revolutions = Annotated[float, AfterValidator(Range(0.0, 1e4, "revolutions"))]
 Inclination = Annotated[float, AfterValidator(Range(-360.0, 720.0, "deg"))]
-ULength = Annotated[float, AfterValidator(Range(0.0, 0.1, "m", above=MILLIMETRES))]
+ULength = Annotated[float, _length(0.0, 0.1)]
 UForce = Annotated[float, AfterValidator(Range(0.0, 1e4, "N"))]
 UMoment = Annotated[float, AfterValidator(Range(0.0, 1e3, "Nm"))]
 UAngle = Annotated[float, AfterValidator(Range(0.0, 20.0, "deg"))]
-Fraction = Annotated[float, AfterValidator(Range(0.0, 1.0, "of the value", above="write 0.05 for 5 %"))]
+Fraction = Annotated[float, AfterValidator(Range(0.0, 1.0, "of the value", "write 0.05 for 5 %"))]

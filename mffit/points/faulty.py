@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -49,17 +48,16 @@ def driven(sweep: Sweep) -> np.ndarray:
 
 
 def faults(sweep: Sweep) -> list[Fault]:
-    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel.
+    """All faults of the samples of a series, in the order of the rules.
 
     A sensor that was not measured, or has one value for all samples, is not looked at.
     """
-    found = []
-    for channels, rules in groupby(FAULTS, key=lambda rule: rule.channels):
-        same = list(rules)
-        for channel in channels:
-            for rule in same if channels is not SENSORS or _measured(getattr(sweep, channel)) else ():
-                reason = rule.reason.format(channel=channel)
-                found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch, rule.id))
+    found = [
+        Fault(rule.find(sweep, channel), rule.reason.format(channel=channel), rule.ends_stretch, rule.id)
+        for rule in FAULTS
+        for channel in rule.channels
+        if rule.channels is not SENSORS or _measured(getattr(sweep, channel))
+    ]
     return [fault for fault in found if np.any(fault.which)]
 
 

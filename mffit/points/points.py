@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from mffit.brief import Brief
 from mffit.points import constants
 from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.sweeps.sweep import MeasuredRows
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
@@ -30,53 +30,22 @@ OPTIONAL: Mapping[str, Any] = {
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Points(Brief):
-    """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
+class Points(MeasuredRows):
+    """Steady points; arrays are read-only. Angles are the rig's readings in ISO axes; nothing is corrected.
 
-    Angles are the rig's readings in ISO axes; nothing is corrected. A channel that was not measured is all NaN, except
-    pressure and speed, which are nominal then, and slip, which is 0. Built by :func:`make_points`. Code that works for any
-    channel asks :attr:`measured`, :meth:`channel` and :meth:`u`; the fields serve what is about one channel by nature.
+    Built by :func:`make_points`. Code that works for any channel asks :attr:`measured`, :meth:`channel` and :meth:`u`; the
+    fields serve what is about one channel by nature.
     """
 
-    alpha: np.ndarray  #: sideslip angle as read [rad]
-    gamma: np.ndarray  #: camber (inclination angle) as read [rad]
-    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 if it was not measured: rolling freely
-    Fz: np.ndarray  #: load, positive [N]
-    p: np.ndarray  #: inflation pressure [Pa]
-    V: np.ndarray  #: speed, positive in both directions [m/s]
     phi_t: np.ndarray  #: turn slip of the path, declared radius [1/m]
-    Fx: np.ndarray  #: [N]
-    Fy: np.ndarray  #: [N]
-    Mx: np.ndarray  #: [Nm]
-    My: np.ndarray  #: [Nm]
-    Mz: np.ndarray  #: [Nm]
-    RL: np.ndarray  #: loaded radius [m]
-    omega: np.ndarray  #: wheel speed [rad/s], negative when the wheel rolls backwards
-    T: np.ndarray  #: tyre temperature [degC]
-    t: np.ndarray  #: when the point was taken [s]
-    u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; so for every channel
-    u_Fy: np.ndarray
-    u_Mx: np.ndarray
-    u_My: np.ndarray
-    u_Mz: np.ndarray
-    u_RL: np.ndarray
-    u_omega: np.ndarray
-    iteration: np.ndarray  #: step of the steering alignment; NaN when not given
-    direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
     continuous: np.ndarray  #: bool: a sample of a moving sweep, not a steady point
-    time: np.ndarray  #: time within the sweep [s] of a point of a moving sweep; NaN for steady points
     sweep: np.ndarray  #: index into ``sweep_names``
     file: np.ndarray  #: index into ``files``
-    line: np.ndarray  #: line in that file, counted from 1
     setup: np.ndarray  #: set-up of the rig, index into ``setups``
     sweep_names: tuple[str, ...]
     files: tuple[str, ...]
     setups: tuple[str, ...]  #: names of the set-ups of the rig; one empty name if none is declared
-    table: pd.DataFrame  #: input columns as in docs/files.md, rig's axes; a row per point
-
-    def __len__(self) -> int:
-        return len(self.alpha)
 
     @property
     def headline(self) -> str:

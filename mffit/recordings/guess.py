@@ -14,7 +14,7 @@ import numpy as np
 
 from mffit.recordings import constants
 from mffit.recordings.slip_definition import SLIP, slip_definition
-from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices, customary, hot
+from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
@@ -66,13 +66,9 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)
     columns, of_axes = _in_one_frame(columns)
-    chosen, left_out = choices(columns, unloaded_radius)
-    remarks = [*of_axes, *left_out.values()]
+    chosen, left_out, of_units = choices(columns, unloaded_radius)
+    remarks = [*of_axes, *left_out.values(), *of_units]
     columns = {name: column for name, column in columns.items() if name not in left_out}
-    if remark := customary(columns, chosen):
-        remarks.append(remark)
-    if remark := hot(columns):
-        remarks.append(remark)
     found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")

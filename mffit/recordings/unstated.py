@@ -122,8 +122,8 @@ AMERICAN = frozenset(
 
 def choices(
     found: Mapping[str, FoundChannel], radius: float | None
-) -> tuple[dict[str, Choice], dict[str, str]]:
-    """Units of the columns for which nothing states one, and why optional columns are left out; both by channel.
+) -> tuple[dict[str, Choice], dict[str, str], list[str]]:
+    """Units of the columns for which nothing states one, why optional columns are left out, and remarks on doubtful units.
 
     Parameters
     ----------
@@ -134,7 +134,8 @@ def choices(
     for kind in KINDS:
         for group in _groups(kind, found):
             chosen |= _shared_unit(kind, group, _Known(found, chosen, radius))
-    chosen |= _american(_Known(found, chosen, radius))
+    american, remarks = _american(_Known(found, chosen, radius))
+    chosen |= american
     turning = _turning(_Known(found, chosen, radius))
     left_out = {"omega_radps": turning} if isinstance(turning, str) else {}
     if not isinstance(turning, str):
@@ -143,7 +144,8 @@ def choices(
     for name in found:
         if name not in left_out and (reason := _implausible(name, known)):
             left_out[name] = reason
-    return {name: chosen[name] for name in chosen if name not in left_out}, left_out
+    chosen = {name: choice for name, choice in chosen.items() if name not in left_out}
+    return chosen, left_out, [*remarks, *_hot(found)]
 
 
 class _Known(NamedTuple):
@@ -260,34 +262,48 @@ def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
     return 1.0 / rate if rate > 0.0 else None
 
 
-def _american(known: _Known) -> dict[str, Choice]:
-    """American units of the columns of the kinds without a stated unit, if a column can only be in one.
+def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
+    """American units of the kinds without a stated unit, if a column can only be in one; a remark if one is in one.
 
     A pressure in psi is no such sign: rigs in Europe have gauges in psi, too. A pressure or a stated unit that is not American
     speaks against them.
     """
     found, chosen, _ = known
-    sign = next((column for name, column in found.items() if _only_american(name, known)), None)
     stated = {column.channel.unit: column.unit for column in found.values() if column.unit}
+    doubtful = {
+        name: unit
+        for name in chosen
+        if (kind := found[name].channel.unit) in KINDS
+        and kind not in stated
+        and (unit := KINDS[kind].american)
+        and spelt(known.unit(name)) not in AMERICAN
+    }
     others = [unit for kind, unit in stated.items() if kind in KINDS and KINDS[kind].american]
     if "p_kPa" in found:
         others.append(known.unit("p_kPa"))
-    if sign is None or not all(spelt(unit) in AMERICAN for unit in others):
-        return {}
-    moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
-    arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
-    given = {}
-    for name in chosen:
-        column = found[name]
-        kind = column.channel.unit
-        unit = KINDS[kind].american
-        if kind == "N m" and arm < constants.LARGEST_LEVER_ARM_IN_FEET:
-            unit = FOOT_POUNDS
-        fits = kind != "m" or unit in known.possible(kind, column.middle)
-        if unit and unit != chosen[name].unit and kind not in stated and fits:
-            why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
-            given[name] = Choice(unit, why)
-    return given
+    sign = next((column for name, column in found.items() if _only_american(name, known)), None)
+    if sign is not None and all(spelt(unit) in AMERICAN for unit in others):
+        moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
+        arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
+        given = {}
+        for name, unit in doubtful.items():
+            column = found[name]
+            if unit == "in-lb" and arm < constants.LARGEST_LEVER_ARM_IN_FEET:
+                unit = FOOT_POUNDS
+            if column.channel.unit != "m" or unit in known.possible("m", column.middle):
+                why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
+                given[name] = Choice(unit, why)
+        return given, []
+    hint = next((name for name in found if spelt(known.unit(name)) in AMERICAN), None)
+    if hint is None or not doubtful:
+        return {}, []
+    pairs = [f"{found[name].heading} ({known.unit(name)} or {unit})" for name, unit in doubtful.items()]
+    name, unit = next(iter(doubtful.items()))
+    return {}, [
+        f"{found[hint].heading} is in {known.unit(hint)}, so columns without a stated unit may be in American units, too: "
+        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {name} = "
+        f'{{ column = "{found[name].heading}", unit = "{unit}" }}'
+    ]
 
 
 def _only_american(name: str, known: _Known) -> bool:
@@ -374,37 +390,14 @@ def _implausible(name: str, known: _Known) -> str:
     return f"{left_out}: in {unit or 'plain numbers'} it is not within {limits}; {remedy}"
 
 
-def hot(found: Mapping[str, FoundChannel]) -> str:
-    """A remark if a temperature that is stated in degC is that of no tyre; "" otherwise."""
+def _hot(found: Mapping[str, FoundChannel]) -> list[str]:
+    """A remark if a temperature that is stated in degC is that of no tyre."""
     column = found.get("T_degC")
     if column is None or not column.unit or spelt(column.unit) != "degC":
-        return ""
+        return []
     if list(_Known(found, {}, None).possible("degC", column.middle)) != ["degF"]:
-        return ""
-    return (
+        return []
+    return [
         f"{column.heading} ({column.range}) is stated in {column.unit}, but no tread stays as hot: if it is in degF, write "
         f'T_degC = {{ column = "{column.heading}", unit = "degF" }} under [columns]'
-    )
-
-
-def customary(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
-    """A remark if one column is in an American unit and others state none; "" otherwise."""
-    known = _Known(found, chosen, None)
-    settled = {column.channel.unit for column in found.values() if column.unit}
-    sign = next((name for name in found if spelt(known.unit(name)) in AMERICAN), None)
-    doubtful = {
-        name: KINDS[kind].american
-        for name in chosen
-        if (kind := found[name].channel.unit) in KINDS.keys() - settled
-        and KINDS[kind].american
-        and spelt(known.unit(name)) not in AMERICAN
-    }
-    if sign is None or not doubtful:
-        return ""
-    pairs = [f"{found[name].heading} ({known.unit(name)} or {unit})" for name, unit in doubtful.items()]
-    name, unit = next(iter(doubtful.items()))
-    return (
-        f"{found[sign].heading} is in {known.unit(sign)}, so columns without a stated unit may be in American units, too: "
-        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {name} = "
-        f'{{ column = "{found[name].heading}", unit = "{unit}" }}'
-    )
+    ]

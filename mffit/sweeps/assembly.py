@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from mffit.config import Config, SweepTable
 from mffit.errors import InputError
 from mffit.quantities import CHANNELS, u_column
 from mffit.quantities import column as column_of
@@ -17,22 +18,13 @@ from mffit.sweeps.sweep import Sweep
 from tir.conventions import FLIPPED, to_iso
 
 
-class Circumstances(NamedTuple):
-    """What the configuration says about a file."""
+def sweeps_of(columns: Columns, config: Config, entry: SweepTable, setup: str = "") -> list[Sweep]:
+    """The sweeps of a file, one per ``run``, or one for the whole file; forces stay in the rig's frame.
 
-    axes: str  #: of the rig
-    file: str  #: name as in ``tyre.toml``
-    direction: int = 1  #: +1 or -1, if the file has no such column
-    mount: int = 1  #: +1 normal, -1 tyre turned on its rim
-    setup: str = ""  #: name of the set-up of the rig
-    pressure: float = np.nan  #: [Pa], if not measured
-    speed: float = np.nan  #: [m/s], if not measured
-
-
-def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:
-    """The sweeps of a file, one per ``run``, or one for the whole file; forces stay in the rig's frame."""
-    check_loads(columns, given.axes)
-    whole = _sweep(columns, given)
+    ``setup`` is the name of the set-up of the rig.
+    """
+    check_loads(columns, config.rig.axes)
+    whole = _sweep(columns, config, entry, setup)
     if "run" not in columns.table:
         return [whole]
     runs = columns.table["run"].astype(str).to_numpy()
@@ -40,38 +32,39 @@ def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:
     return [rows_of(whole, np.flatnonzero(runs == name), f"{whole.name}:{name}") for name in names]
 
 
-def _sweep(columns: Columns, given: Circumstances) -> Sweep:
-    table, n = columns.table, len(columns.raw)
+def _sweep(columns: Columns, config: Config, entry: SweepTable, setup: str) -> Sweep:
+    table, n, axes = columns.table, len(columns.raw), config.rig.axes
 
     def column(name: str, missing: float = np.nan) -> np.ndarray:
         # A channel that was not measured takes no memory, even in a long recording.
         return np.asarray(table[name], dtype=float) if name in table else np.broadcast_to(missing, (n,))
 
     def iso(channel: str, name: str) -> np.ndarray:
-        return np.asarray(to_iso(given.axes, channel, column(name)) + 0.0)  # turns -0.0 into 0.0
+        return np.asarray(to_iso(axes, channel, column(name)) + 0.0)  # turns -0.0 into 0.0
 
-    direction = np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction
+    stated = -1 if entry.direction == "backward" else 1
+    direction = np.broadcast_to(stated, (n,)) if columns.direction is None else columns.direction
     channels = {name: iso(name, column_of(name)) for name in CHANNELS if column_of(name) in table}
     if "omega" in channels:  # rigs count revolutions without a sign, or with one of their own
         channels["omega"] = direction * np.abs(channels["omega"])
     absent = np.broadcast_to(np.nan, (n,))
     return Sweep(
-        name=stem(given.file),
-        file=given.file,
+        name=stem(entry.file),
+        file=entry.file,
         alpha=np.radians(iso("alpha", "alpha_deg")),
         gamma=np.radians(iso("gamma", "gamma_deg")),
         kappa=np.nan_to_num(iso("kappa", "kappa")) if "kappa" in table else column("kappa", 0.0),
         Fz=usual_sign(column("Fz_N")) * column("Fz_N"),
         **{name: channels.get(name, absent) for name in CHANNELS},
-        p=1e3 * column("p_kPa", given.pressure / 1e3),
-        V=column("V_mps", given.speed),
+        p=1e3 * column("p_kPa", config.tyre.nominal_pressure),
+        V=column("V_mps", config.tyre.nominal_speed),
         T=column("T_degC"),
         t=column("t_s"),
         **{f"u_{name}": column(u_column(name)) for name in CHANNELS},
         iteration=column("iteration"),
         direction=direction,
-        mount=given.mount,
-        setup=given.setup,
+        mount=1 if entry.mount == "normal" else -1,
+        setup=setup,
         time=column("time_s"),
         point=table["point"].astype(str).to_numpy() if "point" in table else None,
         line=np.asarray(columns.raw.lines),

@@ -9,7 +9,7 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -61,7 +61,19 @@ def read_csv(path: Path) -> RawTable:
     InputError
         The file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
     """
-    content = _utf8(path)
+    return _table_of_text(_utf8(path), path)
+
+
+def table_of(rows: Iterable[Sequence[str | float]], path: Path) -> RawTable:
+    """A table made of rows of cells, as of a spreadsheet; the number of a row is its line."""
+    text = io.StringIO()
+    lines = csv.writer(text, delimiter="\t", lineterminator="\n")
+    lines.writerows([" ".join(c.split()) if isinstance(c, str) else c for c in row] for row in rows)
+    return _table_of_text(text.getvalue().encode(errors="replace"), path)
+
+
+def _table_of_text(content: bytes, path: Path) -> RawTable:
+    """The table that a text in UTF-8 holds."""
     if b"#" in content:
         content = COMMENT.sub(b"", content)
     end = len(content) if len(content) <= HEAD else content.rfind(b"\n", 0, HEAD)

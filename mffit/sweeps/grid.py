@@ -1,4 +1,4 @@
-"""From rows of cells to a table of title, headings, units and data; for text files and spreadsheets."""
+"""The rows above the data of a table: title, headings and units; for text files and spreadsheets."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mffit.errors import InputError
-from mffit.sweeps.raw_table import RawTable, with_decimal_point
+from mffit.sweeps.raw_table import with_decimal_point
 from mffit.sweeps.units import is_unit
 
 Row = Sequence[str | float]
@@ -28,40 +28,6 @@ class Head(NamedTuple):
     title: str  #: text above the headings
 
 
-def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
-    """A table made of rows; rows without any text are skipped.
-
-    Parameters
-    ----------
-    rows : cells stripped of blanks, "" for an empty one
-    lines : line of each row in the file, from 1
-    path : of the file, for errors
-
-    Raises
-    ------
-    InputError
-        There are no headings or no data, a heading is empty or appears twice, or a row has another length.
-    """
-    filled = [(row, line) for row, line in zip(rows, lines, strict=True) if any(cell != "" for cell in row)]
-    head = head_of([row for row, _ in filled], [line for _, line in filled], path)
-    heading_line = filled[head.at][1]
-    data, width = filled[head.rows :], len(head.headings)
-    if not data:
-        raise without_data(path, heading_line)
-    for row, line in data:
-        if len(row) < width or any(cell != "" for cell in row[width:]):
-            raise ragged(len(row), width, path, line)
-    return RawTable(
-        headings=head.headings,
-        units=head.units,
-        cells=tuple(zip(*(row[:width] for row, _ in data), strict=True)),
-        lines=tuple(line for _, line in data),
-        path=path,
-        heading_line=heading_line,
-        about={"title": head.title} if head.title else {},
-    )
-
-
 def without_data(path: Path, line: int) -> InputError:
     """The error about a table without rows."""
     return InputError("has headings but no data; add one row per point", file=path, line=line)
@@ -76,7 +42,14 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
-    """Headings and units in the first rows of a table; see :func:`table_of`."""
+    """Headings and units in the first rows of a table.
+
+    Parameters
+    ----------
+    rows : cells stripped of blanks, "" for an empty one; no row is empty
+    lines : line of each row in the file, from 1
+    path : of the file, for errors
+    """
     if not rows:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)

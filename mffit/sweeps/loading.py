@@ -14,7 +14,7 @@ from mffit.config.lines import ExcludeTable, inside, ranges_text
 from mffit.config.models import SweepTable
 from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
 from mffit.errors import InputError
-from mffit.sweeps.assembly import Circumstances, sweeps_of
+from mffit.sweeps.assembly import sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
@@ -56,18 +56,8 @@ def load(config: Config) -> Sweeps:
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         raw, apart = _apart(config, entry, _raw(config, index, entry))
-        direction = -1 if entry.direction == "backward" else 1
-        given = Circumstances(
-            axes=config.rig.axes,
-            file=entry.file,
-            direction=direction,
-            mount=1 if entry.mount == "normal" else -1,
-            setup=setup,
-            pressure=1e3 * config.tyre.nominal_pressure,
-            speed=config.tyre.nominal_speed,
-        )
         for exclusion, rows in apart:
-            sweeps, frame = _as_far_as_readable(config, index, entry, rows, given)
+            sweeps, frame = _as_far_as_readable(config, index, entry, rows, setup)
             if frame is not None:
                 frames[entry.file] = frame
             excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
@@ -80,8 +70,8 @@ def load(config: Config) -> Sweeps:
         )
         of_columns.extend((raw.path, sentence) for sentence in columns.warnings)
         if entry.direction is not None and columns.direction is not None:
-            warnings.extend(_contradicting(columns, entry, direction))
-        found.extend(sweeps_of(columns, given))
+            warnings.extend(_contradicting(columns, entry))
+        found.extend(sweeps_of(columns, config, entry, setup))
     if not found:
         raise InputError(
             "leaves out every reading; remove some entries",
@@ -178,9 +168,10 @@ def _apart(
         if wrong is not None:
             line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
             raise InputError(_no_reading(raw, wrong), file=config.path, line=line, key=key)
-        mask = inside(lines, one.ranges)
+        mask = inside(lines, one.ranges) & ~out  # a line that two entries name is listed with the first
         out |= mask
-        excluded.append((one, raw.of_rows(mask)))
+        if np.any(mask):
+            excluded.append((one, raw.of_rows(mask)))
     return None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw, excluded
 
 
@@ -194,12 +185,12 @@ def _no_reading(raw: RawTable, wrong: int) -> str:
 
 
 def _as_far_as_readable(
-    config: Config, index: int, entry: SweepTable, raw: RawTable, given: Circumstances
+    config: Config, index: int, entry: SweepTable, raw: RawTable, setup: str
 ) -> tuple[tuple[Sweep, ...], FileFrame | None]:
     """The sweeps of excluded rows and their frame; none if a row is damaged, which may be why it is excluded."""
     try:
         columns = _columns(config, index, entry, raw)
-        return tuple(sweeps_of(columns, given)), _frame(config, columns)
+        return tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
     except InputError:
         return (), None
 
@@ -253,9 +244,9 @@ def _unknown(name: str) -> str:
     return f"is not a column of a sweep; {hint}"
 
 
-def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[str]:
+def _contradicting(columns: Columns, entry: SweepTable) -> list[str]:
     assert columns.direction is not None
-    differs = int(np.sum(columns.direction != direction))
+    differs = int(np.sum(columns.direction != (-1 if entry.direction == "backward" else 1)))
     if not differs:
         return []
     return [

@@ -7,8 +7,8 @@ from contextlib import closing
 from pathlib import Path
 
 from mffit.errors import InputError
+from mffit.sweeps.csv_text import table_of
 from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, needed, undamaged
-from mffit.sweeps.grid import table_of
 from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_comma, with_decimal_point
 
 
@@ -35,7 +35,7 @@ def read_xlsx(path: Path) -> RawTable:
                 cells += len(row)  # also those that a workbook only claims to have
                 check_size(BYTES_OF_A_NUMBER * cells, path)
             if any(sum(cell != "" for cell in row) > 1 for row in rows):
-                return table_of(_with_points(rows), range(1, len(rows) + 1), path)
+                return table_of(_with_points(rows), path)
     raise InputError("has no sheet with a table; put headings above the columns", file=path)
 
 

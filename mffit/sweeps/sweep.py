@@ -11,18 +11,15 @@ from mffit.brief import Brief
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Sweep(Brief):
-    """Rows of one sweep in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel not measured.
+class MeasuredRows(Brief):
+    """Rows in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel that was not measured."""
 
-    The rows are finished points, or samples of a time series if ``time`` is finite.
-    """
-
-    name: str
-    file: str  #: name as in ``tyre.toml``
     alpha: np.ndarray  #: sideslip angle as read [rad]
-    gamma: np.ndarray  #: camber as read [rad]
-    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 where it was not measured
+    gamma: np.ndarray  #: camber (inclination angle) as read [rad]
+    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 if it was not measured: rolling freely
     Fz: np.ndarray  #: load, positive [N]
+    p: np.ndarray  #: inflation pressure, nominal if not measured [Pa]
+    V: np.ndarray  #: speed, positive in both directions, nominal if not measured [m/s]
     Fx: np.ndarray  #: [N]
     Fy: np.ndarray  #: [N]
     Mx: np.ndarray  #: [Nm]
@@ -30,10 +27,8 @@ class Sweep(Brief):
     Mz: np.ndarray  #: [Nm]
     RL: np.ndarray  #: loaded radius [m]
     omega: np.ndarray  #: wheel speed [rad/s], negative when the wheel rolls backwards
-    p: np.ndarray  #: pressure, nominal if not measured [Pa]
-    V: np.ndarray  #: speed, positive, nominal if not measured [m/s]
     T: np.ndarray  #: tyre temperature [degC]
-    t: np.ndarray  #: time at which a finished point was taken [s]
+    t: np.ndarray  #: when a finished point was taken [s]
     u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; so for every channel
     u_Fy: np.ndarray
     u_Mx: np.ndarray
@@ -41,19 +36,31 @@ class Sweep(Brief):
     u_Mz: np.ndarray
     u_RL: np.ndarray
     u_omega: np.ndarray
-    iteration: np.ndarray  #: step of the steering alignment
+    iteration: np.ndarray  #: step of the steering alignment; NaN when not given
     direction: np.ndarray  #: +1 forward, -1 backward
-    mount: int  #: +1 normal, -1 tyre turned on its rim
-    setup: str  #: name of the set-up of the rig; empty if none is declared
-    time: np.ndarray  #: time of a sample [s]; NaN for finished points
-    point: (
-        np.ndarray | None
-    )  #: label of the point that a sample belongs to, "" between points; None without labels
+    time: (
+        np.ndarray
+    )  #: time of a sample within its file or moving sweep [s]; NaN for finished and steady points
     line: np.ndarray  #: line in the file, from 1
-    table: pd.DataFrame  #: columns as reported, in the contract's names and units and the rig's axes
+    table: (
+        pd.DataFrame
+    )  #: columns as reported, in the contract's names and units and the rig's axes, a row per reading
 
     def __len__(self) -> int:
         return len(self.alpha)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sweep(MeasuredRows):
+    """Rows of one sweep: finished points, or samples of a time series if ``time`` is finite."""
+
+    name: str
+    file: str  #: name as in ``tyre.toml``
+    mount: int  #: +1 normal, -1 tyre turned on its rim
+    setup: str  #: name of the set-up of the rig; empty if none is declared
+    point: (
+        np.ndarray | None
+    )  #: label of the point that a sample belongs to, "" between points; None without labels
 
     @property
     def is_series(self) -> bool:

@@ -23,7 +23,7 @@ from pydantic import (
 from mffit.config import Config, path_curvature, setup_names
 from mffit.config import quantities as q
 from mffit.config.models import SetupName, SweepTable
-from mffit.config.table import Table
+from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
 from mffit.rig_errors import RIG_ERRORS, RigError
 
@@ -214,11 +214,6 @@ class SweepPlan(Table):
         return self
 
 
-def _entries(given: Any) -> Any:
-    """A list of TOML as a tuple."""
-    return tuple(given) if isinstance(given, list) else given
-
-
 class RigTables(Table):
     """The tables of ``rig.toml`` that ``tyre.toml`` does not have, or has in another form."""
 
@@ -229,8 +224,8 @@ class RigTables(Table):
     noise: NoiseTable = NoiseTable()
     drive: DriveTable = DriveTable()
     conditions: ConditionsTable = ConditionsTable()
-    rolling_radius: Annotated[tuple[RollingRadiusPlan, ...], BeforeValidator(_entries)] = ()
-    sweep: Annotated[tuple[SweepPlan, ...], BeforeValidator(_entries), Field(min_length=1)]
+    rolling_radius: Annotated[tuple[RollingRadiusPlan, ...], BeforeValidator(list_of_tables)] = ()
+    sweep: Annotated[tuple[SweepPlan, ...], BeforeValidator(list_of_tables), Field(min_length=1)]
 
 
 @dataclass(frozen=True, slots=True)

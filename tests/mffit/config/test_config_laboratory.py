@@ -52,7 +52,6 @@ def test_one_line_may_be_a_number(tmp_path):
         (excluding(why=""), "fit.exclude[1].why", "is missing; add it to this entry"),
         (excluding(why=', why = "  "'), "fit.exclude[1].why", "is empty; write why"),
         (excluding(why=', why = "x", wy = "x"'), "fit.exclude[1].wy", 'did you mean "why"'),
-        (excluding(lines='lines = "1", why = "x" }, { file = "a.csv", lines = "1-2"'), "fit.exclude[2].lines", "line 1 of"),
         (in_lab("order =", "ordr ="), "lab.ordr", 'did you mean "order"'),
         (in_lab('serial = "F 17"', "serial = 17"), "lab.instruments[1].serial", "17 is not a text in quotes"),
         (in_lab("calibrated = 2026-03-01", 'calibrated = "2026-03-01"'), "lab.instruments[1].calibrated", "remove the quotes"),

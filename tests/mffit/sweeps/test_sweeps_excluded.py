@@ -59,6 +59,12 @@ def test_the_diagnosis_and_the_alignment_do_not_see_them_either(project):
         assert not np.isin(seen.line[seen.file == file], [4, 5]).any()
 
 
+def test_a_line_of_two_entries_is_listed_once(project):
+    found = read_points(excluding(project, ("sideslip_1500.csv", "4-5"), ("sideslip_1500.csv", "5-6")))
+    assert [row.lines for row in found.left_out if row.by == "hand"] == ["4-5", "6"]
+    assert found.excluded.line.tolist() == [4, 5, 6]
+
+
 def test_a_damaged_row_can_be_excluded(project):
     """The row would be refused otherwise: the files of a laboratory stay as the rig wrote them."""
     project.tables["camber_1500.csv"]["Fy_N"] = project.tables["camber_1500.csv"]["Fy_N"].astype(object)

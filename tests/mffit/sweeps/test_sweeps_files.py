@@ -134,6 +134,16 @@ WHOLE = {
     "header only": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n", 1, "no data"),
     "ragged": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,1500\n", 3, "3 cells under 4 headings"),
     "too many cells": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300,7\n", 2, "5 cells under 4 headings"),
+    "ragged behind the first lines": (
+        b"alpha_deg,gamma_deg,Fz_N,Fy_N\n" + b"0,0,1500,-300\n" * 9000 + b"0,0,1500\n" * 2, 9002, "3 cells under 4 headings",
+    ),
+    "a cell more behind the first lines": (
+        b"alpha_deg,gamma_deg,Fz_N,Fy_N\n" + b"0,0,1500,-300\n" * 9000 + b"0,0,1500,-300,7\n", 9002, "5 cells under 4 headings",
+    ),
+    "open quotation mark": (b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"1500,-300\n0,0,1500,1\n', 3, "valid CSV"),
+    "line break within a cell": (
+        b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"15\n00",-300\n', 3, "quotation mark is not closed in its line",
+    ),
     "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
     "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
     "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "numbers instead of headings"),
@@ -141,7 +151,7 @@ WHOLE = {
     "kilonewtons": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1.5,-300\n", 2, "kN"),
     "all loads negative": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,-1500,-300\n", 2, 'axes = "sae"'),
     "no direction": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,direction\n0,0,1500,-300,left\n", 2, "write forward"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WHOLE)

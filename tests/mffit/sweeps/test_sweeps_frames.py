@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mffit.sweeps.assembly import Circumstances, sweeps_of
+from mffit import config
+from mffit.sweeps.assembly import sweeps_of
 from mffit.sweeps.columns import Columns
 from mffit.sweeps.frames import to_contact_frame, to_contact_point
 from mffit.sweeps.raw_table import RawTable
@@ -24,8 +25,9 @@ def sweep(gamma_deg: float, Fy: float, Fz: float, Mz: float, My: float | None) -
     table = pd.DataFrame([values])
     cells = tuple((str(value),) for value in table.iloc[0])
     raw = RawTable(tuple(table), ("",) * len(cells), cells, (2,), None, 1)
-    given = Circumstances("iso", "a.csv", 1, 1, 250e3, 6.0)
-    return sweeps_of(Columns(raw, table, None, ()), given)[0]
+    tyre = {"name": "a", "unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
+    settings = config.load({"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}]})
+    return sweeps_of(Columns(raw, table, None, ()), settings, settings.sweep[0])[0]
 
 
 def axes_of_the_wheel(gamma: float) -> tuple[np.ndarray, np.ndarray]:
