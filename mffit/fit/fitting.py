@@ -141,7 +141,7 @@ def fit(
         ),
         warnings=(
             *([moved] if contradicted else []),
-            *warnings(fitted, full, doubts, outlying, files.untested, plan.cover),
+            *warnings(fitted, full, doubts, outlying, files.untested),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,
