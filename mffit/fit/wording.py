@@ -16,10 +16,9 @@ from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.coverage import why_held
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Gaps, Verdict
 from mffit.fit.influences.nuisances import TEMPERATURE
-from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
@@ -82,7 +81,8 @@ def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
     out += [
         f"Give {names['turn-slip']}, the fitted model itself, to a simulator that computes turn slip, the rotation of the wheel "
         f"about the vertical along a curved path (its USE_MODE ends in 5, here {mode['turn-slip']}). Give {normal} to every "
-        f"other simulator (its USE_MODE ends in 4, here {mode['normal']}).{unsure} With the wrong file the camber forces are wrong.",
+        f"other simulator (its USE_MODE ends in 4, here {mode['normal']}).{unsure} With the wrong file the "
+        "camber forces are wrong.",
         f"{normal} reproduces the fitted model on a straight path to {Fy.ridden:.0f} N and {Mz.ridden:.1f} Nm rms where vehicles "
         "are ridden, much lean and much sideslip apart, because camber changes the grip through spin, for which the formula "
         "without spin has no term. For an upright wheel the two files are equal.",
