@@ -19,10 +19,9 @@ from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
 from mffit.fit.fitted import left_by
-from mffit.fit.influences.between_runs import between_runs
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
+from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
-from mffit.fit.influences.temperature import at_temperature
 from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
@@ -142,7 +141,7 @@ def fit(
         ),
         warnings=(
             *([moved] if contradicted else []),
-            *warnings(fitted, full, doubts, outlying, files.untested, plan.cover),
+            *warnings(fitted, full, doubts, outlying, files.untested),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,

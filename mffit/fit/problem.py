@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
@@ -137,16 +137,12 @@ class FitProblem:
 
         return LeastSquaresProblem(residual, linear)
 
-    def blocks(
-        self, names: Sequence[str], *, by_sweep: bool = False
-    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    def blocks(self, names: Sequence[str]) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Rows (m,) of the points, block after block, with their residuals (c m,) and derivatives (c m, k).
 
         As :meth:`mffit.rig.Simulation.in_blocks`, channel after channel; rows that are not used are 0.
         """
-        for rows, readings, by_channel in self.simulation.in_blocks(
-            self.points, names, self.sigma, by_sweep=by_sweep
-        ):
+        for rows, readings, by_channel in self.simulation.in_blocks(self.points, names, self.sigma):
             c, m, which = len(self.sigma), len(rows), successive(rows)
             data, slopes = np.empty((c, m)), np.empty((len(names), c, m))
             for k, (name, sigma) in enumerate(self.sigma.items()):
@@ -155,15 +151,6 @@ class FitProblem:
                 data[k] = np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0)
                 np.multiply(by_channel[name].T, used / u, out=slopes[:, k])
             yield rows, data.ravel(), slopes.reshape(len(names), -1).T
-
-    def sweeps(
-        self, names: Sequence[str]
-    ) -> Callable[[], Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
-        """:meth:`blocks` of whole sweeps, as often as they are asked for; where one holds all points, it is computed once."""
-        first = next(self.blocks(names, by_sweep=True))
-        if len(first[0]) == len(self.points):
-            return lambda: (first,)
-        return lambda: self.blocks(names, by_sweep=True)
 
     def rows(self, names: Sequence[str], every: int = 1) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (c m + r,) and derivatives of each ``every``-th point, channel after channel, and of the measured radii."""

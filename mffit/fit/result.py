@@ -12,10 +12,9 @@ from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.between_runs import BetweenRuns
 from mffit.fit.influences.confounding import Confounding
+from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import NuisanceChoice
-from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import Vertical

@@ -13,19 +13,16 @@ from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandBesideSweeps, Bands
-from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
-from mffit.fit.coverage import StageCoverage, why_held
+from mffit.fit.by_hand import NO_HAND, Hand
+from mffit.fit.coverage import why_held
 from mffit.fit.fitted import Fitted
-from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Gaps, Verdict
 from mffit.fit.influences.nuisances import TEMPERATURE
-from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names, name_at_temperature
-from mffit.fit.written.misfit import FileFigures
-from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
@@ -46,110 +43,58 @@ def explanations(
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if hand.names:
-        out.append(by_hand_sentence(hand, names["normal"] if files.lacking else ""))
+        said = "; ".join(hand.said(name) for name in hand.names)
+        out.append(
+            f"Set by hand in [coefficients]: {said}. Every file has held values, and uncertainties take them as exact."
+        )
     if measured.epsilon_gamma is not None and "PECP1" not in hand.held:
         said = PECP1_IS[config.spin.pecp1].format(measured=measured.epsilon_gamma.value)
         out.append(f"PECP1 = {float(values['PECP1']):.4f} is {said}.")
     return out
 
 
-def by_hand_sentence(hand: Hand, derived: str) -> str:
-    """What the engineer set, and what it means for the uncertainties and for the file ``derived`` from the model, if any."""
-    sentence = f"Set by hand in [coefficients]: {'; '.join(hand.said(name) for name in hand.names)}."
-    if hand.held:
-        sentence += " The uncertainties of the others take held values as exact, and every file has them."
-    own = [name for name in hand.held if name in (*CAMBER_FORCE, *CAMBER_MOMENT)]
-    if derived and own:
-        sentence += (
-            f" {derived} would imitate the fitted model better with values of its own for {', '.join(own)}."
-        )
-    return sentence
-
-
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
     """Which file (``names``, by use) is for which use, how far it is from the fitted model, and what was tested."""
+    mode = {use: int(file.tyre["USE_MODE"]) for use, file in files.by_use.items()}
+    normal = names["normal"]
     if not files.lacking:
-        return [_flat_track_sentence(files, names["normal"]), ranges_sentence(files)]
-    both = [_both_sentence(files.by_use["both"], names["both"])] if "both" in files.by_use else []
-    return [
-        *both,
-        _use_sentence(files, names),
-        f"{names['turn-slip']} is the fitted model itself.",
-        _misfit_sentence(files.by_use["normal"], names["normal"], files.camber_limit),
-        *_limit_sentences(files),
-        _lacking_sentence(files, names["normal"]),
-        ranges_sentence(files),
+        said = (
+            f"Give {normal} to the simulator with turn slip off (USE_MODE {mode['normal']}): a straight path does not measure "
+            "turn slip."
+        )
+        return [said, ranges_sentence(files)]
+    out = []
+    if "both" in files.by_use:
+        misfit = files.by_use["both"].misfit
+        places = ("straight", "straight_with_turn_slip", "disc")
+        without, straight, disc = (misfit[place]["Fy"].weighted for place in places)
+        out.append(
+            f"Give {names['both']} to a simulator if you do not know whether it computes turn slip. It differs from the fitted "
+            f"model by {disc:.0f} N on the disc and {straight:.0f} N on a straight path with turn slip (USE_MODE "
+            f"{mode['both']}), and by {without:.0f} N on a straight path without turn slip (change the last digit of USE_MODE to "
+            "4). Each of the other two files is better in its own use."
+        )
+    unsure = "" if out else f" If you do not know, use {normal}."
+    Fy, Mz = files.by_use["normal"].straight["Fy"], files.by_use["normal"].straight["Mz"]
+    less = "less" if files.stiffness_loss >= 0 else "more"
+    lacking = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
+    out += [
+        f"Give {names['turn-slip']}, the fitted model itself, to a simulator that computes turn slip, the rotation of the wheel "
+        f"about the vertical along a curved path (its USE_MODE ends in 5, here {mode['turn-slip']}). Give {normal} to every "
+        f"other simulator (its USE_MODE ends in 4, here {mode['normal']}).{unsure} With the wrong file the "
+        "camber forces are wrong.",
+        f"{normal} reproduces the fitted model on a straight path to {Fy.ridden:.0f} N and {Mz.ridden:.1f} Nm rms where vehicles "
+        "are ridden, much lean and much sideslip apart, because camber changes the grip through spin, for which the formula "
+        "without spin has no term. For an upright wheel the two files are equal.",
+        f"{normal} has {abs(files.stiffness_loss):.0%} {less} camber stiffness at zero camber than the fitted model, and "
+        f"lacks the turn-slip force of curved roads (upright wheel, nominal load, by radius): {lacking}.",
     ]
-
-
-def _flat_track_sentence(files: Files, name: str) -> str:
-    return (
-        f"Give {name} to the simulator with turn slip off (USE_MODE {_mode(files.by_use['normal'])}): a straight path "
-        "does not measure turn slip."
-    )
-
-
-def _use_sentence(files: Files, names: Mapping[str, str]) -> str:
-    unsure = "" if "both" in files.by_use else f" If you do not know, use {names['normal']}."
-    return (
-        f"Give {names['turn-slip']} to a simulator that computes turn slip, the rotation of the wheel about the vertical "
-        f"along a curved path (its USE_MODE ends in 5, here {_mode(files.by_use['turn-slip'])}). Give {names['normal']} to "
-        f"every other simulator (its USE_MODE ends in 4, here {_mode(files.by_use['normal'])}).{unsure} With the wrong "
-        "file the camber forces are wrong."
-    )
-
-
-def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str:
-    Fy, Mz = normal.straight["Fy"], normal.straight["Mz"]
-    everything = (
-        "everything tested"
-        if limit is None
-        else f"everything tested to {np.degrees(limit):.0f} deg of camber"
-    )
-    return (
-        f"{name} reproduces the fitted model on a straight path to {Fy.ridden:.0f} N and {Mz.ridden:.1f} Nm rms where "
-        f"vehicles are ridden, much lean and much sideslip apart ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over {everything}, "
-        f"{Fy.largest:.0f} N at most). The reason is that camber changes the grip through spin, for which the formula without "
-        "spin has no term. For an upright wheel the two files are equal."
-    )
-
-
-def _limit_sentences(files: Files) -> list[str]:
-    """What became of the camber to which [normal] holds a file."""
-    if files.camber_limit is not None:
-        return [
-            f"CAMMAX of this file is {np.degrees(files.camber_limit):.0f} deg, as [normal] camber_max_deg asks."
-        ]
-    if files.wide_limit is None:
-        return []
-    return [
-        f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
-        f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
-    ]
-
-
-def _lacking_sentence(files: Files, name: str) -> str:
-    compared = "less" if files.stiffness_loss >= 0 else "more"
-    forces = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
-    return (
-        f"{name} has {abs(files.stiffness_loss):.0%} {compared} camber stiffness at zero camber than the fitted model, and lacks "
-        f"the turn-slip force of curved roads (upright wheel, nominal load, by radius): {forces}."
-    )
-
-
-def _both_sentence(file: FileFigures, name: str) -> str:
-    places = ("straight", "straight_with_turn_slip", "disc")
-    without, straight, disc = (file.misfit[place]["Fy"].weighted for place in places)
-    return (
-        f"Give {name} to a simulator if you do not know whether it computes turn slip. It differs from the fitted model by "
-        f"{disc:.0f} N on the disc and {straight:.0f} N on a straight path with turn slip (USE_MODE {_mode(file)}), and by "
-        f"{without:.0f} N on a straight path without turn slip (change the last digit of USE_MODE to 4). Each of the other "
-        "two files is better in its own use."
-    )
-
-
-def _mode(file: FileFigures) -> int:
-    return int(file.tyre["USE_MODE"])
+    if files.wide_limit is not None:
+        out.append(
+            f"[normal] camber_max_deg = {np.degrees(files.wide_limit):.0f} has no effect, because the camber range of the files "
+            f"ends at {np.degrees(files.written['CAMMAX']):.0f} deg."
+        )
+    return [*out, ranges_sentence(files)]
 
 
 def ranges_sentence(files: Files) -> str:
@@ -278,7 +223,6 @@ def warnings(
     doubts: Sequence[Doubt],
     outlying: Sequence[Outlier],
     untested: Mapping[str, str],
-    coverage: Sequence[StageCoverage] = (),
 ) -> tuple[str, ...]:
     """All warnings of the fits without and with influences, the most important first; ``untested`` is that of the files."""
     out = [
@@ -286,14 +230,14 @@ def warnings(
         for word, origin in untested.items()
     ]
     out += _at_bounds(plain, fitted)
-    out += by_hand_warnings(fitted, coverage)
+    out += by_hand_warnings(fitted)
     out += [doubt.sentence for doubt in doubts]
     if outlying:
         out.append(outliers_sentence(outlying))
     return tuple(out)
 
 
-def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[str]:
+def by_hand_warnings(fitted: Fitted) -> list[str]:
     """Bounds set by hand that the fit ends at, bounds and priors without effect, and priors that the points contradict."""
     hand, free = fitted.hand, {number.name for number in fitted.numbers}
     out = []
@@ -307,14 +251,10 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
     for name in hand.names:
         if name in free or name in hand.held:
             continue
-        reasons = [
-            reason for row in coverage if name in row.held for reason in row.missing if reason != HELD_BY_HAND
-        ]
-        why = f" ({'; '.join(reasons)})" if reasons else ""
         given = (
             "its prior counts as its value and uncertainty" if name in hand.priors else "nothing was searched"
         )
-        out.append(f"{name} is set in [coefficients], but the points do not free it{why}: {given}")
+        out.append(f"{name} is set in [coefficients], but the points do not free it: {given}")
     return [*out, *contradicted_priors(fitted)]
 
 
@@ -397,11 +337,11 @@ def nuisance_sentences(
     ``name`` is that of the tyre; ``plain`` the agreement of the plain file with the points, by channel.
     """
     first = [] if temperature is None else [_files_sentence(name, temperature, plain)]
-    last = []
+    last, measured = [], bool(np.any(np.isfinite(found.full.problem.points.T)))
     for verdict in found.choice.verdicts:
         said = f"The {verdict.nuisance.name} is"
         compared = f" ({_compared(verdict)})" if verdict.beside else ""
-        if not verdict.modelled and _worth_telling(verdict, found):
+        if not verdict.modelled and (verdict.beside or (verdict.nuisance.id == TEMPERATURE and measured)):
             last.append(f"{said} not modelled: {verdict.reason}{compared}.")
         elif verdict.modelled and verdict.nuisance.key != TEMPERATURE:
             first.append(f"{said} modelled: {_size(verdict, found, runs)}; {verdict.reason}{compared}.")
@@ -422,25 +362,14 @@ def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
     special, (low, high) = name_at_temperature(name), found.T_range
-    each = [
-        f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
-    ]
-    terms = listed(each)
-    warm = f"{found.T_ref:g}"
+    terms = [f"{SCALED[n]} {_percent(*value)} per {unit_of(n)[2:]}" for n, value in found.terms.items()]
     return (
-        f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
-        f"{_of_left_out(found.left_out_plain)}. {special} is for simulations that do: it holds at {warm} degC and leaves "
-        f"{_gaps(_rms(found.channels))}{_of_left_out(found.left_out)} with its temperature terms, which were measured from "
-        f"{low:.0f} to {high:.0f} degC: {terms}. Without them it leaves {_gaps(_rms(found.alone))}, so take it to the "
-        f"temperature of the simulation first, in Python by tyre.at_temperature({high:.0f})."
+        f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms. "
+        f"{special} is for simulations that do: it holds at {found.T_ref:g} degC and leaves {_gaps(_rms(found.channels))} with "
+        f"its temperature terms, which were measured from {low:.0f} to {high:.0f} degC: {listed(terms)}. Without them it leaves "
+        f"{_gaps(_rms(found.alone))}, so take it to the temperature of the simulation first, in Python by "
+        f"tyre.at_temperature({high:.0f})."
     )
-
-
-def _worth_telling(verdict: Verdict, found: NuisanceFit) -> bool:
-    """Whether it was tried, or the temperature was measured but could not be used."""
-    T = found.full.problem.points.T
-    moves = bool(np.any(np.isfinite(T))) and float(np.nanmax(T) - np.nanmin(T)) > 0.0
-    return bool(verdict.beside) or (verdict.nuisance.id == TEMPERATURE and moves)
 
 
 def _compared(verdict: Verdict) -> str:
@@ -455,10 +384,6 @@ def _stated(name: str, value: float, u: float) -> str:
 def _percent(value: float, u: float) -> str:
     text, spread = rounded(100.0 * value, 100.0 * u)
     return ascii_only(f"{text} +- {spread} %")
-
-
-def _of_left_out(gaps: Gaps) -> str:
-    return f" ({_gaps(gaps)} of left-out sweeps)" if gaps else ""
 
 
 def _rms(channels: Mapping[str, Agreement]) -> dict[str, float]:

@@ -12,9 +12,8 @@ from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Verdict
-from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.written.files import Files

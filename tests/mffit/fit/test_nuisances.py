@@ -179,7 +179,7 @@ def test_a_plan_in_which_temperature_runs_along_with_pressure_is_criticised(warm
 
 def test_the_growth_is_that_over_known_terms(warmed):
     """By the conditional variance of the joint posterior."""
-    row, posterior = warmed[0].fit.confounded[0], warmed[0].fit.temperature.posterior
+    row, posterior = warmed[0].fit.confounded[0], warmed[0].fit.full.posterior
     C = posterior.covariance
     i = posterior.names.index(row.coefficient)
     k = [posterior.names.index(name) for name in ("k_T_grip_per_K", "k_T_stiffness_per_K")]

@@ -194,7 +194,7 @@ def test_the_sentences_state_the_figures(files):
         in said
     )
     assert f"{made.stiffness_loss:.0%} less camber stiffness" in said
-    assert "Give small.tir to a simulator that computes turn slip" in said
+    assert "Give small.tir, the fitted model itself, to a simulator that computes turn slip" in said
     assert "Tested: 900 to 2100 N, sideslip to 8.0 deg, camber to 45.0 deg, 250 kPa only." in said
 
 

@@ -1,7 +1,8 @@
-"""The file at one temperature, and how it compares with the plain file."""
+"""What a fit modelled besides coefficients, as report and result.json state it: runs that differ, the file at one temperature."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -10,15 +11,52 @@ import numpy as np
 from mffit.fit import agreement
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.influences.between_runs import without_runs
 from mffit.fit.influences.nuisance_choice import Gaps
+from mffit.fit.influences.nuisances import of_run
 from mffit.fit.influences.with_nuisances import NuisanceFit
-from mffit.fit.posterior import Posterior
 from mffit.fit.written.misfit import FileFigures
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rig_errors import OF_RUN
 from mffit.scatter import ALARM
 from tir.temperature import SCALED_BY
+
+
+@dataclass(frozen=True, slots=True)
+class BetweenRuns:
+    """The numbers that every run has, and their scatter."""
+
+    runs: tuple[str, ...]  #: names of the sweeps
+    scatter: Mapping[
+        str, tuple[float, float]
+    ]  #: number -> (standard deviation among the runs, its uncertainty) [-]
+    values: Mapping[
+        str, tuple[tuple[float, float], ...]
+    ]  #: number -> (value, standard error) of every run [-]
+    alone: Mapping[str, Agreement]  #: by channel, agreement of the model without the numbers of the runs
+
+
+def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
+    """The record of a fit that models them; None for others."""
+    full = found.full
+    own = {name: value for name, value in full.rig.items() if of_run(name)}
+    if not own:
+        return None
+    runs = tuple(dict.fromkeys(name.partition(OF_RUN)[2] for name in own))
+    # The relative uncertainty of a standard deviation from n values, to first order.
+    share = 1.0 / math.sqrt(2.0 * len(runs))
+    rest = without_runs(full.simulation).readings(points)
+    return BetweenRuns(
+        runs=runs,
+        scatter={name: (value, share * value) for name, value in found.choice.scatter.items()},
+        values={name: tuple(own[f"{name}{OF_RUN}{run}"] for run in runs) for name in found.choice.scatter},
+        alone=agreement.with_points(rest, points),
+    )
+
+
+def without_runs(simulation: Simulation) -> Simulation:
+    """The simulation at the mean of the runs."""
+    return simulation.with_numbers(dict.fromkeys(filter(of_run, simulation.of_parts), 0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +67,8 @@ class AtTemperature:
     T_ref: float  #: at which the file holds [degC]
     T_range: tuple[float, float]  #: of the points [degC]
     terms: Mapping[str, tuple[float, float]]  #: temperature term -> (value, standard error) [1/K]
-    rig: Mapping[
-        str, tuple[float, float]
-    ]  #: rig number -> (value, standard error), temperature terms included
+    rig: Mapping[str, tuple[float, float]]  #: rig number -> (value, standard error), these included
     coefficients: Mapping[str, Coefficient]
-    posterior: Posterior
-    simulation: Simulation  #: the tyre on the rig as fitted, at its temperatures
     channels: Mapping[str, Agreement]  #: with its terms
     alone: Mapping[str, Agreement]  #: the same without its terms
     left_out: Gaps  #: by channel, rms error of left-out sweeps with the terms
@@ -60,8 +94,6 @@ def at_temperature(
         terms=terms,
         rig={**full.rig, "T_ref_degC": (T_ref, 0.0)},
         coefficients=coefficients,
-        posterior=full.posterior,
-        simulation=full.simulation,
         channels=agreement.with_points(simulation.readings(points, full.problem.channels), points),
         alone=agreement.with_points(alone.readings(points, full.problem.channels), points),
         left_out=verdict.beside,
