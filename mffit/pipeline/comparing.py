@@ -12,6 +12,7 @@ from mffit import fleet
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
+from mffit.fit import Posterior
 from mffit.fleet import Specimen
 from mffit.measured import LoadResult
 from mffit.output import output_folder
@@ -96,7 +97,7 @@ def _subject(path: Path) -> ComparedSubject:
     posterior = posterior_of(tyre, path)
     if posterior is None:
         return subject
-    return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
+    return replace(subject, known=Posterior(posterior.names, posterior.root @ posterior.root.T))
 
 
 def _build_in(folder: Path) -> Specimen:
