@@ -14,6 +14,7 @@ from mffit.fit.posterior import spread_through
 from mffit.quantities import CHARACTERISTICS
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
+from tir.equations.normalise import camber_reduction
 from tir.outputs import outputs_of
 
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
@@ -70,7 +71,7 @@ def characteristics(
     driven = min(float(tyre["KPUMAX"]), SLIP_BEYOND_THE_PEAK) if slip_reach is None else slip_reach
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
     found = {
-        "epsilon_gamma": p.PECP1 * (1.0 + p.PECP2 * dfz),
+        "epsilon_gamma": camber_reduction(p, dfz),
         "C_alpha_N_per_rad": by_slip["Fy"],
         "C_gamma_N_per_rad": slopes("gamma")["Fy"],
         "C_Mz_alpha_Nm_per_rad": by_slip["Mz"],

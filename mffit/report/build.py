@@ -13,7 +13,7 @@ from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
-from mffit.report.build_view import PER_LOAD, BuildView, view_of
+from mffit.report.build_view import PER_LOAD, BuildView, CoefficientRow, view_of
 from mffit.report.catalogue import Picture
 from mffit.report.figures import (
     bands,
@@ -28,6 +28,9 @@ from mffit.report.figures import (
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
+
+OTHERS = "EVERYTHING_ELSE"
+"""The section of dimensions, ranges and nominal conditions."""
 
 BUILD: tuple[Picture[BuildView], ...] = (
     Picture(
@@ -108,8 +111,8 @@ BUILD: tuple[Picture[BuildView], ...] = (
         title="Residuals over sideslip and camber, or over slip and sideslip, one map per load and pressure",
         shows="Measured minus model, of the freely rolling wheel over sideslip and camber, of the driven and braked wheel over "
         "longitudinal slip and sideslip. A good fit shows pale colours without order. A patch of one colour is structure that "
-        "the model misses; mffit diagnose looks for its cause. Points with equal angles are drawn side by side; a small dot "
-        "marks a point that was run backwards.",
+        "the model misses; mffit diagnose looks for its cause. Of readings at one place the worst is on top; a small dot marks "
+        "a point that was run backwards.",
         draw=residuals.residual_maps,
     ),
     Picture(
@@ -147,7 +150,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         verdict=verdict(result),
         headlines=headlines(result),
         purposes=purposes(result),
-        sections=groupby(view.rows, key=lambda row: row.known.section),
+        sections=groupby(sorted(view.rows, key=lambda row: _section(row) == OTHERS), key=_section),
         channels=CHANNELS,
         of_number=words.of_number,
         epsilon_values=wording.epsilon_values(result.measured),
@@ -162,3 +165,9 @@ def write_build(result: BuildResult, folder: Path) -> None:
         meanings=MEANINGS,
         units=UNITS,
     )
+
+
+def _section(row: CoefficientRow) -> str:
+    """The section of the table in which a coefficient is."""
+    section = row.known.section
+    return section if section.endswith("_COEFFICIENTS") else OTHERS
