@@ -36,8 +36,6 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
-        verify,
-        write_tydex,
     )
 
     __version__: str
@@ -52,10 +50,8 @@ __all__ = [
     "predict",
     "show",
     "spin",
-    "verify",
     "write_c",
     "write_fmu",
-    "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -114,74 +115,70 @@ def of_model(
     return LeastSquaresProblem(residual, linear)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
-    """The end of a search."""
+    """The end of a search; derivatives there are computed when they are asked for."""
 
-    values: Mapping[str, float]
-    data: np.ndarray  #: (m,) residuals of the data, as in :class:`Linear`
-    jacobian: np.ndarray  #: (m, k) of the data
-    prior: np.ndarray  #: (k,) precision of the priors, 1 / spread^2
+    objective: Objective
+    x: np.ndarray  #: (k,)
     cost: float  #: sum of squares of data, priors and limits
-    at_bound: frozenset[str]  #: numbers at one of their own bounds
-    at_limit: frozenset[str]  #: numbers that a physical limit holds
     steps: int
-    left: float  #: fall of ``cost`` that an undamped step still promises: 0 at a minimum
+    known: Linear | None  #: the problem there, where the search computed it
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the free numbers."""
-        return tuple(self.values)
-
-    @property
-    def covariance(self) -> np.ndarray:
-        """Covariance (k, k) from data and priors; limits are not information and do not enter."""
-        return inverse(self.jacobian.T @ self.jacobian + np.diag(self.prior))
-
-
-class Minimum(NamedTuple):
-    """Where a search ends."""
-
-    names: tuple[str, ...]
-    x: np.ndarray  #: (k,)
-    cost: float  #: sum of squares of data, priors and limits
-    steps: int
-    here: Linear | None  #: the problem there, where the search computed it
+        return tuple(number.name for number in self.objective.numbers)
 
     @property
     def values(self) -> dict[str, float]:
         """The numbers by name."""
         return dict(zip(self.names, self.x.tolist(), strict=True))
 
+    @cached_property
+    def here(self) -> Linear:
+        """Residuals and derivatives."""
+        return self.objective.problem.linear(self.x) if self.known is None else self.known
 
-def minimum(
-    problem: LeastSquaresProblem,
-    numbers: Sequence[FreeNumber],
-    *,
-    max_steps: int = 200,
-    tolerance: float = POLISH_TOLERANCE,
-) -> Minimum:
-    """The minimum that :func:`solve` finds, without the derivatives there."""
-    objective = _Objective.of(problem, numbers)
-    x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
-    here, at_x = problem.linear(x), True
-    cost = objective.cost(x, here.data, here.limits)
-    damping, taken, close = 1e-3, 0, False
-    while taken < max_steps and len(x) and not close:
-        if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
-            here, at_x = problem.linear(x), True
-        form = _Quadratic.around(objective, x, here)
-        close, least = form.left < tolerance * cost, NEGLIGIBLE * tolerance * cost
-        step = (
-            _last_step(objective, x, cost, form, least)
-            if close
-            else _step(objective, x, cost, form, damping, least)
-        )
-        if step is None:
-            break
-        x, cost, damping, at_x = step.x, step.cost, step.damping, False
-        taken += 1
-    return Minimum(tuple(n.name for n in numbers), x, cost, taken, here if at_x else None)
+    @property
+    def data(self) -> np.ndarray:
+        """Residuals (m,) of the data, as in :class:`Linear`."""
+        return self.here.data
+
+    @property
+    def jacobian(self) -> np.ndarray:
+        """Derivatives (m, k) of the data."""
+        return self.here.slope
+
+    @property
+    def prior(self) -> np.ndarray:
+        """Precision (k,) of the priors, 1 / spread^2."""
+        return self.objective.precision
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance (k, k) from data and priors; limits are not information and do not enter."""
+        return inverse(self.jacobian.T @ self.jacobian + np.diag(self.prior))
+
+    @property
+    def at_bound(self) -> frozenset[str]:
+        """Numbers at one of their own bounds."""
+        ends = zip(self.objective.numbers, self.x, strict=True)
+        return frozenset(n.name for n, value in ends if touches(value, n.lower, n.upper))
+
+    @property
+    def at_limit(self) -> frozenset[str]:
+        """Numbers whose stiffness comes to a good part from broken limits."""
+        active = self.here.limits_slope[self.here.limits > 0.0]
+        by_limits, by_data = np.sum(active**2, axis=0), np.sum(self.jacobian**2, axis=0)
+        share = constants.HELD_BY_LIMIT_SHARE
+        rows = zip(self.names, by_limits, by_data, strict=True)
+        return frozenset(name for name, a, b in rows if a > share * (a + b) and a > 0.0)
+
+    @property
+    def left(self) -> float:
+        """Fall of ``cost`` that an undamped step still promises: 0 at a minimum."""
+        return _Quadratic.around(self.objective, self.x, self.here).left
 
 
 def solve(
@@ -201,22 +198,22 @@ def solve(
     tolerance : share of the sum of squares below which the gain that an undamped step promises ends the search (Bates and
         Watts 1981); the gain of a damped step says nothing, because it is small wherever the damping is large
     """
-    found = minimum(problem, numbers, max_steps=max_steps, tolerance=tolerance)
-    objective = _Objective.of(problem, numbers)
-    here = problem.linear(found.x) if found.here is None else found.here
-    return Solution(
-        values=found.values,
-        data=here.data,
-        jacobian=here.slope,
-        prior=objective.precision,
-        cost=found.cost,
-        at_bound=frozenset(
-            n.name for n, v in zip(numbers, found.x, strict=True) if touches(v, n.lower, n.upper)
-        ),
-        at_limit=_held_by_limits([n.name for n in numbers], here),
-        steps=found.steps,
-        left=_Quadratic.around(objective, found.x, here).left,
-    )
+    objective = Objective.of(problem, numbers)
+    x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
+    here, at_x = problem.linear(x), True
+    cost = objective.cost(x, here.data, here.limits)
+    damping, taken, close = 1e-3, 0, False
+    while taken < max_steps and len(x) and not close:
+        if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
+            here, at_x = problem.linear(x), True
+        form = _Quadratic.around(objective, x, here)
+        close = form.left < tolerance * cost
+        step = _step(objective, x, cost, form, UNDAMPED if close else damping, NEGLIGIBLE * tolerance * cost)
+        if step is None:
+            break
+        x, cost, damping, at_x = step.x, step.cost, step.damping, False
+        taken += 1
+    return Solution(objective, x, cost, taken, here if at_x else None)
 
 
 def touches(value: float, lower: float, upper: float) -> bool:
@@ -240,19 +237,21 @@ def root(covariance: np.ndarray) -> np.ndarray:
     return np.asarray(scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0)))
 
 
-class _Objective(NamedTuple):
+class Objective(NamedTuple):
     """The sum of squares of data, priors and limits, and the bounds."""
 
     problem: LeastSquaresProblem
+    numbers: tuple[FreeNumber, ...]
     lower: np.ndarray
     upper: np.ndarray
     expected: np.ndarray
     precision: np.ndarray
 
     @classmethod
-    def of(cls, problem: LeastSquaresProblem, numbers: Sequence[FreeNumber]) -> _Objective:
+    def of(cls, problem: LeastSquaresProblem, numbers: Sequence[FreeNumber]) -> Objective:
         return cls(
             problem=problem,
+            numbers=tuple(numbers),
             lower=np.array([n.lower for n in numbers]),
             upper=np.array([n.upper for n in numbers]),
             expected=np.array([n.expected for n in numbers]),
@@ -272,40 +271,29 @@ class _Step(NamedTuple):
 
 
 def _step(
-    objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float, least: float
+    objective: Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float, least: float
 ) -> _Step | None:
     """The next place with a smaller sum of squares; None if there is none.
 
-    A step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops, such steps
-    go to and fro, and rounding would decide on which side they end.
+    A damped step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops,
+    such steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, near the minimum:
+    its fall may be too small to be seen beside rounding, so it only must not rise by more.
     """
+    last = damping == UNDAMPED
     while damping < 1e12:
         move = form.move(damping)
         if move is not None:
             promised = form.gain(move)
-            if promised <= least:
+            if promised <= least and not last:
                 return None
             trial = np.clip(x + move, objective.lower, objective.upper)
             new = objective.cost(trial, *objective.problem.residual(trial))
-            if new < cost:
-                return _Step(trial, new, _next_damping(damping, (cost - new) / promised))
+            if new < cost or (last and new <= cost + least):
+                return _Step(trial, new, _next_damping(damping, cost - new, promised))
+        if last:
+            return None
         damping = max(6.0 * damping, 1e-8)
     return None
-
-
-def _last_step(
-    objective: _Objective, x: np.ndarray, cost: float, form: _Quadratic, least: float
-) -> _Step | None:
-    """The undamped step from a place close to the minimum; None if the sum of squares rises by more than ``least``.
-
-    Its fall may be too small to be seen beside rounding, which is not asked: damped steps before left the answer short.
-    """
-    move = form.move(UNDAMPED)
-    if move is None:
-        return None
-    trial = np.clip(x + move, objective.lower, objective.upper)
-    new = objective.cost(trial, *objective.problem.residual(trial))
-    return _Step(trial, new, UNDAMPED) if new <= cost + least else None
 
 
 class _Quadratic(NamedTuple):
@@ -319,7 +307,7 @@ class _Quadratic(NamedTuple):
     high: np.ndarray
 
     @classmethod
-    def around(cls, objective: _Objective, x: np.ndarray, here: Linear) -> _Quadratic:
+    def around(cls, objective: Objective, x: np.ndarray, here: Linear) -> _Quadratic:
         return cls(
             gradient=here.slope.T @ here.data + objective.precision * (x - objective.expected),
             curvature=here.slope.T @ here.slope + np.diag(objective.precision),
@@ -408,18 +396,8 @@ def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 
 
-def _next_damping(damping: float, kept: float) -> float:
-    """The damping after a step that kept this share of the decrease that the quadratic form promised."""
-    if kept > 0.75:
+def _next_damping(damping: float, fall: float, promised: float) -> float:
+    """The damping after a step with a fall of the sum of squares of which the quadratic form promised another one."""
+    if fall > 0.75 * promised:
         return damping / 5.0
-    return damping if kept > 0.25 else 3.0 * damping
-
-
-def _held_by_limits(names: Sequence[str], here: Linear) -> frozenset[str]:
-    """Numbers whose stiffness comes to a good part from broken limits."""
-    active = here.limits_slope[here.limits > 0.0]
-    by_limits, by_data = np.sum(active**2, axis=0), np.sum(here.slope**2, axis=0)
-    share = constants.HELD_BY_LIMIT_SHARE
-    return frozenset(
-        n for n, a, b in zip(names, by_limits, by_data, strict=True) if a > share * (a + b) and a > 0.0
-    )
+    return damping if fall > 0.25 * promised else 3.0 * damping

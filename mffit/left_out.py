@@ -66,8 +66,15 @@ def left_out_errors(
     for k in range(int(group.max(initial=-1)) + 1):
         rows = np.flatnonzero(group == k)
         out, r = np.take(slopes.T, rows, axis=1).T, residual[rows]  # by columns, as derivatives are in memory
-        error[rows] = r - out @ np.linalg.solve(information - out.T @ out, gradient - out.T @ r)
+        error[rows] = r + out @ moved_without(out, r, information, gradient)
     return error
+
+
+def moved_without(
+    slopes: np.ndarray, residual: np.ndarray, information: np.ndarray, gradient: np.ndarray
+) -> np.ndarray:
+    """Change (k,) of the numbers when a group with these slopes (n, k) and residuals (n,) is left out."""
+    return -np.linalg.solve(information - slopes.T @ slopes, gradient - slopes.T @ residual)
 
 
 def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:

@@ -12,6 +12,9 @@ from mffit.constants import FALSE_ALARM
 NORMAL = 1.482602218505602
 """Standard deviation of normal noise over the median of its absolute value."""
 
+EFFICIENCY = 0.37
+"""Readings from which a root mean square is as uncertain as this median is from one."""
+
 
 def beyond(chance: float) -> float:
     """Standard deviations from the mean, to either side, beyond which a normal number lies with a probability."""

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from mffit import config
+from mffit.output import RECORD
 from mffit.rig_errors import Faults
 from mffit.virtual_rig import simulate
 
@@ -19,7 +20,7 @@ SIMULATED = sorted(path.parent.name for path in SAMPLES.glob("*/rig.toml"))
 @pytest.mark.parametrize("name", SIMULATED)
 def test_a_sample_can_be_made_again(name, tmp_path):
     simulate(SAMPLES / name / "rig.toml", tmp_path)
-    for made in sorted(tmp_path.iterdir()):
+    for made in sorted(path for path in tmp_path.iterdir() if path.name != RECORD):
         kept = SAMPLES / name / made.name
         if made.name.endswith((".csv", ".csv.gz")):
             # Another processor may round the last printed digit the other way.

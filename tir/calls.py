@@ -32,8 +32,6 @@ Function = Callable[..., Any]
 Made = TypeVar("Made")
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 PER_CALL = int(constants.CONDITIONS_PER_CALL)
-THREADS_FROM = 4 * BLOCK
-"""Conditions that are worth starting threads."""
 FORCES, STATE = Forces._fields, State._fields
 OF_CONTACT = ("K_xk", "K_ya", "mu_x", "mu_y", "sigma_x", "sigma_y")
 """States that the lag of the contact needs."""
@@ -48,7 +46,6 @@ def compile_kernels(
     turn_slip: bool | None = None,
     star: bool = False,
     limits: bool = False,
-    kinds: Sequence[str] = ("batch", "one"),
 ) -> None:
     """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
@@ -59,21 +56,14 @@ def compile_kernels(
     ----------
     turn_slip : for calls with turn slip, without, or (None) both
     star, limits : for calls with these switches
-    kinds : "batch" for arrays, "one" for floats
 
     Raises
     ------
     TirError
-        If llvmlite is not installed (``pip install llvmlite``) or cannot be used here, or a kind is unknown.
+        If llvmlite is not installed (``pip install llvmlite``) or cannot be used here.
     """
-    kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
-    unknown = set(kinds) - set(kernel.KINDS)
-    if unknown:
-        raise TirError(
-            f"{sorted(unknown)[0]} is an unknown kind of kernel; use one of {', '.join(kernel.KINDS)}"
-        )
     for on in (False, True) if turn_slip is None else (turn_slip,):
-        for kind in kinds:
+        for kind in kernel.KINDS:
             kernels.meter(kind, Switches(on, star, limits)).load()
 
 
@@ -270,22 +260,8 @@ def _in_vectors(run: Function, inputs: Sequence[np.ndarray], n: int) -> np.ndarr
         padded = [x if x.ndim == 0 else np.append(x, np.ones(LANES - n)) for x in inputs]
         run(*padded, out, 0, LANES)
         return out[:, :n]
-    if n < THREADS_FROM:
-        try:
-            run(*inputs, out, 0, n)
-        except (ValueError, BufferError):  # the numbers of an array are not one behind the other
-            run(*_in_one_piece(inputs), out, 0, n)
-        return out
-    # imported late, so that import tir is quick
-    from concurrent.futures import ThreadPoolExecutor
-
-    whole, share = _in_one_piece(inputs), max(-(-n // kernel.threads()), BLOCK)
-    with ThreadPoolExecutor() as pool:
-        parts = [pool.submit(run, *whole, out, at, min(at + share, n)) for at in range(0, n, share)]
-    for part in parts:
-        part.result()
+    try:
+        run(*inputs, out, 0, n)
+    except (ValueError, BufferError):  # the numbers of an array are not one behind the other
+        run(*(np.asarray(x, order="C") for x in inputs), out, 0, n)
     return out
-
-
-def _in_one_piece(inputs: Sequence[np.ndarray]) -> list[np.ndarray]:
-    return [np.asarray(x, order="C") for x in inputs]

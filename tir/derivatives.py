@@ -105,12 +105,6 @@ def traced(values: Mapping[str, Any]) -> dict[str, Traced]:
     return {name: Traced(value, tape) for name, value in values.items()}
 
 
-def following(value: Any, numbers: Sequence[Traced], partials: np.ndarray) -> Traced:
-    """A number (n,) computed by other means, with its known derivatives (n, k) by the traced numbers."""
-    parents = tuple(zip(numbers, np.moveaxis(np.asarray(partials), -1, 0), strict=True))
-    return Traced(value, numbers[0].tape, parents)
-
-
 def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
     """Derivative of every element of an output with respect to each traced number.
 

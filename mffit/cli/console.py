@@ -49,12 +49,12 @@ class Voice:
         if out is not None:
             self.say(f"written to {out}: {', '.join(files)}")
 
-    def give(self, content: Callable[[], Any]) -> None:
-        """Print the result for programs; ``content`` is called only if ``--json`` asks for it."""
+    def give(self, content: object) -> None:
+        """Print a record, or what is made of some, for programs if ``--json`` asks for it."""
         if self.json:
             from mffit.results import as_json
 
-            click.echo(as_json.text(content()), nl=False)
+            click.echo(as_json.text(content), nl=False)
 
     def tell(self, sentence: str) -> None:
         """Print a line about the progress to stderr."""

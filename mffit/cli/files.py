@@ -26,7 +26,6 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     Looks at units, missing and unknown keys, and physics over the ranges of the file.
     """
     import tir
-    from mffit.results import as_json
     from tir.errors import counted
 
     tyre = tir.read(file)
@@ -36,7 +35,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors, warnings = (sum(p.level == level for p in problems) for level in ("error", "warning"))
     voice.say(f"{file}: {counted(errors, 'error')}, {counted(warnings, 'warning')}")
-    voice.give(lambda: as_json.problems(file, problems))
+    voice.give({"file": file, "problems": problems})
     if errors:
         raise SystemExit(2)
 
@@ -60,7 +59,7 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
         stem = page.names[0] if files[0].suffix == ".toml" else files[0].stem
         out = page.write(Path(f"{stem}.html"))
     voice.say(f"written to {out}: {', '.join(page.names)}")
-    voice.give(lambda: {"written": [str(out)]})
+    voice.give({"written": [str(out)]})
     if open_it:
         click.launch(str(out))
 
@@ -91,7 +90,7 @@ def convert(old: Path, out: Path, unloaded_radius: float | None, fittyp: str | N
     voice.warn(problem.sentence for problem in found.old.problems)
     voice.say(text.conversion_summary(found))
     voice.say(f"written to {out}")
-    voice.give(lambda: as_json.conversion(found, out))
+    voice.give({"file": found.old.path, "written": out, **as_json.document(found)})
     if wording.reasons(found):
         raise SystemExit(NOT_TRUSTED)
 
@@ -120,7 +119,7 @@ def open_window(paths: tuple[Path, ...], port: int, no_browser: bool, voice: Voi
 
     def opened(address: str) -> None:
         voice.say(f"{paths[0]}: open at {address}\nCtrl-C ends it")
-        voice.give(lambda: {"address": address})
+        voice.give({"address": address})
         if not no_browser:
             click.launch(address)
 

@@ -17,28 +17,21 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
-@out_option("Folder for tyre.toml, stretches.csv and pictures [default: only printed].")
 @voiced
-def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
+def sniff(files: tuple[Path, ...], voice: Voice) -> None:
     """Show the content of recordings.
 
     Prints channels, units, axes, conditions and stretches, and a tyre.toml for the recordings.
     """
-    from mffit import pipeline, recordings
+    from mffit import recordings
     from mffit.report import text
-    from mffit.results import as_json
 
     with voice.progress() as show:
         show("reading recordings")
         found = recordings.sniff(files)
     voice.say(text.sniff_summary(found))
-    voice.give(lambda: as_json.sniffed(found))
-    if out is None:
-        project = recordings.project_text(found, Path())
-        voice.say("\n" + project, end="")
-        return
-    for path in pipeline.write_sniffed(found, out):
-        voice.say(f"written {path}")
+    voice.give(found)
+    voice.say("\n" + recordings.project_text(found, Path()), end="")
 
 
 @click.command()
@@ -100,7 +93,7 @@ def init(
         written = init_project(folder)
     for path in written:
         voice.say(f"written {path}")
-    voice.give(lambda: {"written": [str(path) for path in written]})
+    voice.give({"written": [str(path) for path in written]})
 
 
 def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
@@ -136,4 +129,4 @@ def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
         show("simulating")
         truth = virtual_rig.simulate(rig_toml, out, seed=seed)
     voice.written(out, "sweeps", "tyre.toml", "truth.json")
-    voice.give(truth.to_json)
+    voice.give(truth.to_json())

@@ -23,7 +23,6 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
@@ -32,7 +31,7 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     voice.say(text.spin_summary(measured))
     voice.warn(measured.warnings)
     voice.written(out, "spin.json")
-    voice.give(lambda: as_json.spin(measured))
+    voice.give(measured)
     if not measured.trusted:
         voice.distrust("the measurement is not to be trusted: see above")
 
@@ -54,7 +53,6 @@ def align(
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     if source.suffix != ".toml" and (axes is None or path_centre is None):
         raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
@@ -62,7 +60,7 @@ def align(
     alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
     voice.say(text.alignment_table(alignment))
     voice.warn(alignment.warnings)
-    voice.give(lambda: as_json.alignment(alignment))
+    voice.give(alignment)
 
 
 @click.command()
@@ -84,14 +82,13 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out" / "diagnosis"
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis), "corrected.toml")
-    voice.give(lambda: as_json.diagnosis(diagnosis))
+    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis))
+    voice.give(diagnosis)
     if not diagnosis.trusted:
         voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")
 
@@ -113,14 +110,13 @@ def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, 
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     both = None if turn_slip is None else turn_slip == "on"
     with voice.progress() as show:
         found = pipeline.compare(first, second, turn_slip=both, out=out, progress=show)
     voice.say(text.comparison_table(found))
     voice.written(out, "compare.html", "compare.json")
-    voice.give(lambda: as_json.comparison(found))
+    voice.give(found)
 
 
 @click.command()
@@ -154,7 +150,6 @@ def plan(
     """
     from mffit import pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     if goal and coefficient:
         raise InputError("--goal and --coefficient exclude each other; give only one")
@@ -164,9 +159,8 @@ def plan(
             tyre_toml, coefficient or goal, runs=runs, without=without, out=out, progress=show
         )
     voice.say(text.plan_summary(found))
-    inside = "sheets to fill in" if found.points else "what changes in tyre.toml"
-    voice.written(out, "plan.html", "plan.json", *([f"runs ({inside})"] if found.steps else []))
-    voice.give(lambda: as_json.plan(found))
+    voice.written(out, "plan.html", "plan.json", *(["runs (sheets to fill in)"] if found.steps else []))
+    voice.give(found)
 
 
 @click.command()
@@ -187,4 +181,4 @@ def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     found = pipeline.predict(folder, conditions)
     write_table(found, out, conditions)
     voice.say(text.prediction_summary(found, out))
-    voice.give(lambda: {"written": [str(out)], "conditions": len(found)})
+    voice.give({"written": [str(out)], "conditions": len(found)})

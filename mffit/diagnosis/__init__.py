@@ -14,8 +14,7 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
 8. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.
 
-Every build uses ``remains`` on its own fit: ``remainder`` projects out what was fitted, ``one_step`` tests every effect,
-``structure`` whether the residuals are random.
+Every build uses ``remains`` on the linear model of its own fit: it tests every effect beside all that was fitted.
 """
 
 from mffit.diagnosis.engine import diagnose

@@ -33,7 +33,6 @@ class Bump:
     region: Ranges
     amplitude: float  #: [N] or [Nm]
     gain: float  #: log evidence, the search paid for
-    number: int = -1  #: of its shape among those tried
 
     @property
     def found(self) -> bool:
@@ -64,16 +63,13 @@ class BumpScan:
                 out.append((channel, first, rows, shapes.astype(np.float32), power))
         return out
 
-    def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
-        """The bump that explains most of a hypothesis' residual, its own freed numbers projected out.
-
-        Residuals are clipped at ``limit`` standard deviations, so that an outlier does not make a bump.
-        """
-        residual = np.clip(hypothesis.residual, -limit, limit)
+    def best(self, hypothesis: Hypothesis) -> Bump:
+        """The bump that explains most of a hypothesis' residual, its own freed numbers projected out."""
+        residual = hypothesis.residual
         along = hypothesis.axes.T @ residual
         # Shared changes act on shapes and residual alike, so that they need to be taken off the smaller one only.
-        axes = self.noise.less_shared(hypothesis.axes).astype(np.float32)
-        left = self.noise.less_shared(residual).astype(np.float32)
+        axes = self.noise.back(hypothesis.axes).astype(np.float32)
+        left = self.noise.back(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
         for channel, first, rows, shapes, whole in self._white:
@@ -86,18 +82,8 @@ class BumpScan:
             k = int(np.argmax(gain))
             if gain[k] > best.gain:
                 amplitude = float(score[k] / precision[k])
-                best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]), first + k)
+                best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]))
         return best
-
-    def column(self, channel: str, which: slice) -> np.ndarray:
-        """Some unit bumps of a channel as changes of the readings (c n, k)."""
-        shapes = self.bumps[:, which].astype(float)
-        nothing = np.zeros_like(shapes)
-        return np.vstack([shapes if name == channel else nothing for name in self.noise.channels])
-
-    def plausible(self, bump: Bump) -> np.ndarray:
-        """A bump as a change of the readings (c n, 1) at its usual amplitude."""
-        return self.spread[bump.channel] * self.column(bump.channel, slice(bump.number, bump.number + 1))
 
 
 def bump_scan(points: Points, noise: Noise) -> BumpScan:

@@ -91,11 +91,6 @@ SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
-BUMP_RESIDUAL_CLIP = Real(
-    3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
-)
-MOST_BUMPS_SET_ASIDE = Count(2, "-", "Most bumps that may explain misfit while the scatter is estimated.")
-
 # Where the misfit is
 FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
 MOST_REGIONS = Count(12, "-", "Most regions that are listed.")
@@ -131,9 +126,7 @@ UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
 MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
-FEWEST_CANDIDATES_FITTED = Count(
-    4, "-", "Best candidates of a step: always fitted in full, and tried in place of accepted ones."
-)
+FEWEST_CANDIDATES_FITTED = Count(4, "-", "Best candidates of a step, always fitted in full.")
 PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
 PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
 STRUCTURE_EVIDENCE = Real(
@@ -166,11 +159,6 @@ USUAL_MISS_OF_A_FORMULA = Real(
     0.03,
     "-",
     "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
-)
-SHARES_OF_STRUCTURE = Series(
-    (1.0, 0.3, 0.1, 0.0),
-    "-",
-    "Shares of smooth structure that may be left beside a further effect, tried to first order.",
 )
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(
@@ -226,13 +214,6 @@ PARTS_OF_A_RUN = Count(
 
 # What a fit leaves
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
-INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
-MOST_POINTS_EXAMINED = Count(
-    40_000,
-    "-",
-    "Points whose residuals are examined, of more evenly spaced ones: a fiftieth of the noise still shows.",
-    "tests/benchmarks/scale.py",
-)
 IMITATED_SHARE = Real(
     1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
 )
@@ -241,11 +222,6 @@ DISTINCT_DIRECTION = Real(
     "-",
     "A direction with a smaller share of the power of the strongest one is one with others: it adds no number.",
 )
-AS_GOOD_SHARE = Real(
-    0.9,
-    "-",
-    "Share of what the best effect explains from which another explains as much, far above the noise.",
-)
 SAME_RESIDUALS = Real(
     0.5,
     "-",
@@ -253,9 +229,6 @@ SAME_RESIDUALS = Real(
     "channels have about 0, those that sweeps hardly separate nearly 1.",
 )
 MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
-BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
-NEIGHBOURS_OF_RESIDUALS = Count(2, "-", "Lags along a sweep at which residuals are compared.")
 MOST_NUMBERS_IN_SENTENCE = Count(
     3, "-", "Most numbers of an effect, or conditions of residuals, in a sentence."
 )
-SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")

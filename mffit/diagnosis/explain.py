@@ -80,6 +80,8 @@ def explain(
         if seen and rms(misfit / noise.u) > constants.MISFIT_AT_NOISE:
             found = replace(found, misfit=misfit)
         found = found.with_coefficients(inexact)
+        if seen and found.smooth.found:
+            break  # left-out sweeps decide, and beside the misfit of the given model the noise hardly counts
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
     assert found is not None

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -16,7 +15,6 @@ from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Simulation
-from mffit.scatter import robust
 
 
 def learned_noise(
@@ -46,30 +44,9 @@ def learned_noise(
     named = np.column_stack(
         [nothing, *(generous * g for g in others), inexact.columns(points, state, problem.channels)]
     )
-    named = _with_bumps(problem, residual, named, basis)
     explained = ExplainingColumns(named=named, runs=runs, smooth=basis, withdrawn=without_offsets)
     start = replace(stated, scatter=before.scatter)
     return learned(start, residual, explained, predicted).alone()
-
-
-def _with_bumps(
-    problem: DiagnosisProblem, residual: np.ndarray, named: np.ndarray, basis: np.ndarray
-) -> np.ndarray:
-    """What could explain the misfit (c n, k), with the bumps that are found beside it."""
-    points = problem.points
-    for _ in range(constants.MOST_BUMPS_SET_ASIDE):
-        allowed = problem.noise.sharing(named, constants.USUAL_MISS_OF_A_FORMULA * basis)
-        white = allowed.whiten(np.nan_to_num(residual))
-        channel = allowed.used // len(points)
-        for k in range(len(problem.channels)):
-            rows = channel == k
-            white[rows] /= max(robust(white[rows]), 1e-9) if rows.any() else 1.0
-        scan = bump_scan(points, allowed)
-        bump = scan.best(replace(problem.null, residual=white), constants.BUMP_RESIDUAL_CLIP)
-        if not bump.found:
-            break
-        named = np.column_stack([named, constants.GENEROUS_EFFECT_SIZE * scan.plausible(bump)])
-    return named
 
 
 def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:

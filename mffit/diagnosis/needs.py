@@ -113,5 +113,5 @@ def possible(
         if lack:
             lacking.setdefault(lack, []).append(effect)
         else:
-            out.append(_in_range(effect.of_parts(files).of_setups(points.used_setups), points))
+            out.append(_in_range(effect.written_out(files, points.used_setups), points))
     return out, [NotVisible(needs=lack, effects=tuple(hidden)) for lack, hidden in lacking.items()]

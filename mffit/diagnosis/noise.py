@@ -61,13 +61,37 @@ class RunOffsets(NamedTuple):
         return self.log_odds - self.needed
 
 
+class SharedDirections(NamedTuple):
+    """Orthonormal directions along which some whitened readings change together."""
+
+    rows: slice  #: of the readings
+    axes: np.ndarray  #: (m, k)
+    variance: np.ndarray  #: (k,) of the changes, over that of the readings
+
+    def less(self, z: np.ndarray) -> np.ndarray:
+        """Differences (m,) or (m, j) in units of their uncertainty with these changes; a symmetric operation."""
+        return self._along(z, 1.0 / np.sqrt(1.0 + self.variance) - 1.0)
+
+    def more(self, z: np.ndarray) -> np.ndarray:
+        """The inverse."""
+        return self._along(z, np.sqrt(1.0 + self.variance) - 1.0)
+
+    def power(self, along: np.ndarray) -> np.ndarray:
+        """By how much the sum of squares (j,) of differences falls, from their parts (k, j) along the directions."""
+        return (self.variance / (1.0 + self.variance)) @ along**2
+
+    def _along(self, z: np.ndarray, gain: np.ndarray) -> np.ndarray:
+        return z + self.axes @ (gain * (self.axes.T @ z).T).T if len(gain) else z
+
+
 @dataclass(frozen=True)
 class Noise:
     """Covariance of the readings, and the whitening that goes with it.
 
     The readings (c n,) are those of n points in c channels, one channel after the other. Their covariance is D M D + S S':
     independent uncertainties D; M with ``memory`` to the power of the distance along each chain, times 1 less the
-    ``independent`` share; and columns S of changes that several readings share, one standard deviation each.
+    ``independent`` share; and columns S of changes that several readings share, one standard deviation each. Smooth
+    ``structure`` of single channels is added along directions of the readings that D and M have whitened.
     """
 
     u: np.ndarray  #: (c n,) standard uncertainty of every reading; inf where missing
@@ -83,6 +107,7 @@ class Noise:
     )
     weight: np.ndarray | None = None  #: (c n,) of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
+    structure: tuple[SharedDirections, ...] = ()
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
     """By id of the effect: offsets of runs that errors with a memory look like; empty without a memory."""
 
@@ -133,17 +158,18 @@ class Noise:
         return out
 
     @cached_property
-    def _axes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Orthonormal directions (m, k) of the shared changes, whitened, and their variances (k,)."""
+    def _directions(self) -> SharedDirections:
+        """Of the shared changes, beside the structure."""
         if self.shared is None or not self.shared.shape[1]:
-            return np.empty((len(self.used), 0)), np.empty(0)
-        white = self._independent(self.shared[self.used])
+            return SharedDirections(slice(None), np.empty((len(self.used), 0)), np.empty(0))
+        white = self.less_structure(self._independent(self.shared[self.used]))
         variance, turn = np.linalg.eigh(white.T @ white)
         some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
-        return white @ (turn[:, some] / np.sqrt(variance[some])), variance[some]
+        axes = white @ (turn[:, some] / np.sqrt(variance[some]))
+        return SharedDirections(slice(None), axes, variance[some])
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
-        """Differences of used readings (m,) or (m, k), whitened without shared changes."""
+        """Differences of used readings (m,) or (m, k), whitened without shared changes and structure."""
         out: np.ndarray = (x.T / self.u[self.used]).T
         for own, errors in self._errors:
             if not errors.trivial:
@@ -152,28 +178,41 @@ class Noise:
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
-        return self.less_shared(self._independent(x[self.used]))
+        return self._directions.less(self.less_structure(self._independent(x[self.used])))
 
-    def less_shared(self, z: np.ndarray) -> np.ndarray:
-        """Whitened differences (m,) or (m, k) of which shared changes explain a part, in units of the joint uncertainty.
+    def less_structure(self, z: np.ndarray) -> np.ndarray:
+        """Whitened differences (m,) or (m, k) of which smooth structure explains a part, in units of the joint uncertainty."""
+        out = z.copy() if self.structure else z
+        for one in self.structure:
+            out[one.rows] = one.less(z[one.rows])
+        return out
 
-        The operation is symmetric.
-        """
-        axes, variance = self._axes
-        if not len(variance):
-            return z
-        lost = 1.0 - 1.0 / np.sqrt(1.0 + variance)
-        return z - axes @ ((lost * (axes.T @ z).T).T)
+    def unshared(self, x: np.ndarray) -> np.ndarray:
+        """The inverse of what shared changes and structure do to whitened differences (m,) or (m, k)."""
+        out = self._directions.more(x)
+        for one in self.structure:
+            out[one.rows] = one.more(out[one.rows])
+        return out
 
-    def with_shared(self, x: np.ndarray) -> np.ndarray:
-        """The inverse of :meth:`less_shared`."""
-        axes, variance = self._axes
-        return x + axes @ (((np.sqrt(1.0 + variance) - 1.0) * (axes.T @ x).T).T) if len(variance) else x
+    def back(self, x: np.ndarray) -> np.ndarray:
+        """The transposed of what shared changes and structure do to whitened differences (m,) or (m, k)."""
+        return self.less_structure(self._directions.less(x))
 
     def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """By how much the sum of squares (k,) of differences (m, k) falls with shared changes, z its only rows that are not 0."""
-        axes, variance = self._axes
-        return (variance / (1.0 + variance)) @ (axes[rows].T @ z) ** 2
+        """By how much the sum of squares (k,) of whitened differences (m, k) falls with shared changes and structure.
+
+        Only the given ``rows`` of the differences, all in one channel, are not 0, and ``z`` has only these.
+        """
+        fall = self._directions.power(self._directions_back[rows].T @ z)
+        for one in self.structure:
+            if one.rows.start <= rows[0] < one.rows.stop:
+                fall = fall + one.power(one.axes.T @ z)
+        return fall
+
+    @cached_property
+    def _directions_back(self) -> np.ndarray:
+        """Directions of shared changes beside structure, as sums over differences without it."""
+        return self.less_structure(self._directions.axes)
 
     def only(self, channel: str) -> Noise:
         """The scatter of one channel."""
@@ -187,6 +226,7 @@ class Noise:
             weight=None if self.weight is None else self.of_channel(self.weight, channel),
             scatter={channel: self.scatter[channel]},
             shared=None,
+            structure=(),
         )
 
     def error_of_sum(self, rows: np.ndarray) -> float:
@@ -224,10 +264,10 @@ class Noise:
         return replace(self, u=self.u * np.concatenate(factors), scatter=scatter)
 
     def alone(self) -> Noise:
-        """The scatter of the readings without shared changes."""
-        return replace(self, shared=None)
+        """The scatter of the readings without shared changes and structure."""
+        return replace(self, shared=None, structure=())
 
     def sharing(self, *columns: np.ndarray) -> Noise:
         """The same scatter with these shared changes (c n, k), and no others."""
         given = [c for c in columns if c.size]
-        return replace(self, shared=np.column_stack(given) if given else None)
+        return replace(self, shared=np.column_stack(given) if given else None, structure=())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -17,6 +16,7 @@ from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, s
 from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
+from mffit.left_out import moved_without
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
@@ -35,8 +35,7 @@ class LinearisedNumbers:
 
     def moved_without(self, rows: np.ndarray) -> np.ndarray:
         """Change (k,) of the numbers when some readings, by their positions among the used ones, are left out."""
-        out = self.white[rows]
-        return -np.linalg.solve(self.information - out.T @ out, self.gradient - out.T @ self.residual[rows])
+        return moved_without(self.white[rows], self.residual[rows], self.information, self.gradient)
 
 
 class DiagnosisProblem:
@@ -77,12 +76,6 @@ class DiagnosisProblem:
     def seen_through(self, noise: Noise) -> DiagnosisProblem:
         """The same with another noise."""
         return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
-
-    def _with_share(self, share: float) -> DiagnosisProblem:
-        """The same with a part of the smooth structure in the covariance."""
-        assert self.beside is not None
-        part = {name: share * size for name, size in self.beside.amplitude.items()} if share else {}
-        return self.at_amplitude(Smooth(part, math.inf))
 
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
         """The same with smooth structure in the covariance as it was found beside a hypothesis."""
@@ -193,24 +186,16 @@ class DiagnosisProblem:
             gradient=information @ away + white.T @ residual,
         )
 
-    def promising(
-        self, before: Hypothesis, candidates: Sequence[Effect]
-    ) -> list[tuple[Effect, float, DiagnosisProblem]]:
-        """Candidates with their gain in log evidence to first order, best first, and the problem to fit each in.
-
-        Its covariance has the part of the smooth structure that is likeliest to be left beside the candidate.
-        """
+    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
+        """Candidates with their gain in log evidence to first order, best first."""
         columns = self.columns(before.state, candidates)
         beside = self.beside or StructureBeside.nothing(self.noise)
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
         model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
-        known, alone, problems = model.near(now)[0], beside.scatter.alone(), {1.0: self, 0.0: self}
-        if now:
-            problems = {share: self._with_share(share) for share in constants.SHARES_OF_STRUCTURE}
-        out = []
+        known, alone, out = model.evidence(now), beside.scatter.alone(), []
         for effect, groups in columns.items():
-            found = max(model.with_columns(alone.whiten(one)).near(now) for one in groups)
-            out.append((effect, max(found[0] - known, 0.0), problems[found[1]]))
+            found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
+            out.append((effect, max(found - known, 0.0)))
         return sorted(out, key=lambda row: -row[1])
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
@@ -298,7 +283,8 @@ class DiagnosisProblem:
         away = np.array([fitted.numbers[n.name] - n.expected for n in numbers])
         at_centre = fitted.residual - fitted.jacobian @ away
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        return self.noise.with_shared(columns), self.noise.with_shared(at_centre)
+        found = self.noise.unshared(np.column_stack([at_centre, columns]))
+        return found[:, 1:], found[:, 0]
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
@@ -312,9 +298,9 @@ class DiagnosisProblem:
 
         def linear(x: np.ndarray) -> Linear:
             out, slope = at(x).sensitivities(self.points, names, self.channels)
-            data = self.noise.whiten(np.nan_to_num(out.stacked - self.measured))
-            rows = np.where(np.isfinite(self.measured)[:, None], slope.stacked, 0.0)
-            return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
+            rows = np.column_stack([out.stacked - self.measured, slope.stacked])
+            white = self.noise.whiten(np.nan_to_num(np.where(np.isfinite(self.measured)[:, None], rows, 0.0)))
+            return Linear(white[:, 0], white[:, 1:], nothing, np.zeros((0, len(names))))
 
         return LeastSquaresProblem(residual, linear)
 

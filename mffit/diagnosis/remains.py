@@ -1,18 +1,73 @@
-"""What a fit leaves of the readings: its structure, and the effect or the sweep that would explain it best."""
+"""What a fit leaves of the readings: what the formula misses, and the effect or the sweep that would explain it best."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
+from scipy.special import chdtrc, ndtri
 
-from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
-from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
-from mffit.diagnosis.structure import Structure, structure
+from mffit.constants import PREDICTION_FALSE_ALARM
+from mffit.diagnosis import constants
+from mffit.diagnosis.needs import possible
+from mffit.diagnosis.noise import Noise, Scatter
+from mffit.diagnosis.priors import anchor, moving
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.effects import CATALOG, Effect, Free
 from mffit.fit.fitted import Fitted
+from mffit.fit.influences.joint import JointFit
+from mffit.least_squares import FreeNumber, touches
 from mffit.linearised import LinearisedFit
+from mffit.points import Points
+from mffit.scatter import rms
 from mffit.suspicion import HeldNumber, LeftOutSweeps
+from tir.parameters import BY_NAME
+
+
+@dataclass(frozen=True, slots=True)
+class OneStep:
+    """What one effect would explain, to first order beside all fitted numbers."""
+
+    effect: Effect
+    log_chance: float
+    """Natural logarithm of the probability that residuals without the effect explain as much."""
+    numbers: dict[str, tuple[float, float]]
+    """Value and standard error by name, as the readings alone have them."""
+    share: float  #: of the sum of squares of the residuals that the effect removes
+    known: bool = False  #: whether the fit had its numbers with a prior, which they then contradict
+    change: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False, compare=False)
+    """(m,) of the residuals by these numbers, beside the fitted ones, in units of their weights"""
+
+
+@dataclass(frozen=True, slots=True)
+class BestEffect:
+    """The effect that explains a remainder best, and how many were tried."""
+
+    best: OneStep
+    rivals: tuple[OneStep, ...]  #: that explain it as well
+    tried: int
+    gain: float = -math.inf
+    """Of log evidence if the best takes the place of a smooth miss of the formula and of differences of runs."""
+    missed: float = 0.0  #: log evidence of that smooth miss
+
+    @property
+    def chance(self) -> float:
+        """Probability that any of the effects explains as much in the residuals of a sound fit, at most 1."""
+        return min(1.0, self.tried * math.exp(self.best.log_chance))
+
+    @property
+    def sigma(self) -> float:
+        """The same in standard deviations of a normal distribution, two-sided; 0 if it is likely."""
+        return _sigma(self.best.log_chance + math.log(self.tried))
+
+    @property
+    def significant(self) -> bool:
+        """Whether neither chance nor differences of runs explain it, and more is explained than left to the formula."""
+        enough = math.log(self.tried / PREDICTION_FALSE_ALARM)
+        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed - self.gain)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,45 +82,224 @@ class OddSweep:
 class Remains:
     """The residuals of a fit, examined."""
 
-    structure: Structure
+    linear: LinearisedFit | None = None
     effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none can be seen
     sweep: OddSweep | None = None  #: the sweep that contradicts the others most
     held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit
-    left_out: Mapping[str, LeftOutSweeps] = field(
-        default_factory=dict
-    )  #: by channel, prediction of left-out sweeps
-    change: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
-    """By channel, what the best effect explains at every reading (n,) [N], [Nm]"""
-
-    def gain_over_the_formula(self, linear: LinearisedFit) -> float:
-        """Gain of log evidence if the best effect takes the place of a smooth miss of the formula."""
-        return sum(
-            linear.channels[name].gain(change[linear.channels[name].rows])
-            for name, change in self.change.items()
-        )
+    left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
+    """By channel, prediction of left-out sweeps."""
 
 
-NOTHING_REMAINS = Remains(Structure(()))
+NOTHING_REMAINS = Remains()
 
 
-def remains(fitted: Fitted) -> Remains:
-    """The residuals of a fit at its solution, examined by all tests."""
-    left = remainder(fitted)
-    effect = best_effect(left)
+def remains(fitted: Fitted, linear: LinearisedFit) -> Remains:
+    """The residuals of a fit at its solution, from the linear model of them."""
+    left = Left.of(fitted, linear)
     return Remains(
-        structure=structure(left),
-        effect=effect,
-        held=held_numbers(left, fitted),
-        left_out=left_out_sweeps(left),
-        change={} if effect is None else _change(left, effect.best.change, len(fitted.problem.points)),
+        linear=linear,
+        effect=best_effect(left),
+        held=held_numbers(left),
+        left_out=left_out_sweeps(linear),
     )
 
 
-def _change(left: Remainder, change: np.ndarray, n: int) -> dict[str, np.ndarray]:
-    """Rows of a remainder in units of their uncertainty as changes of the readings at all n points."""
-    examined = np.arange(n) // -(-n // len(left.points))
-    own = change[: len(left.sigma)] * np.where(left.used, left.sigma, 0.0)
-    return {
-        name: part[examined]
-        for name, part in zip(left.channels, np.split(own, len(left.channels)), strict=True)
+def left_out_sweeps(linear: LinearisedFit) -> dict[str, LeftOutSweeps]:
+    """By channel, how well sweeps are predicted from all others by a fit without them."""
+    out = {}
+    for name, channel in linear.channels.items():
+        found = channel.without_runs(channel.model.groups, missed=False)
+        out[name] = LeftOutSweeps(
+            sweeps=len(found),
+            fitted=rms(channel.unit * channel.model.residual),
+            predicted=rms(np.concatenate([one.error for one in found])),
+            typical=float(np.median([rms(one.error) for one in found])),
+        )
+    return out
+
+
+class Left(NamedTuple):
+    """The residuals of a fit as one linear model of all channels, in units of their weights."""
+
+    fitted: Fitted
+    linear: LinearisedFit
+    joint: JointFit
+    points: Points  #: (n,) that are looked at
+    expected: Mapping[str, tuple[float, float]]
+    """Centre and spread of the prior of every uncertain number but the coefficients that the fit freed."""
+
+    @classmethod
+    def of(cls, fitted: Fitted, linear: LinearisedFit) -> Left:
+        problem = fitted.problem
+        numbers = [n for n in problem.starting_here(fitted.numbers) if n.name not in fitted.at_bound]
+        held = [
+            FreeNumber(name, value := problem.value(name), -math.inf, math.inf, expected=value, spread=u)
+            for name, u in {**fitted.held, **fitted.held_rig}.items()
+            if u > 0.0
+        ]
+        known = [*(n for n in numbers if n.name not in BY_NAME), *held]
+        joint = JointFit.of(problem, [*numbers, *held], (), problem.points.sweep)
+        return cls(
+            fitted,
+            linear,
+            joint,
+            problem.points.select(joint.looked_at),
+            {n.name: (n.expected, n.spread) for n in known},
+        )
+
+    def test(self, change: np.ndarray) -> _Test | None:
+        """The score test of changes (c n, j); None where fitted numbers imitate all of them."""
+        rows = np.zeros((len(self.joint.model.residual), change.shape[1]))
+        rows[: len(change)] = np.nan_to_num(change) / self.joint.sigma.ravel()[:, None]
+        found = self.joint.further(rows)
+        seen = np.diag(found.information) > constants.IMITATED_SHARE * np.maximum(
+            np.sum(rows**2, axis=0), 1e-12
+        )
+        if not seen.any():
+            return None
+        information, pull = found.information[np.ix_(seen, seen)], found.pull[seen]
+        size = np.sqrt(np.diag(information))
+        strength, axes = np.linalg.eigh(information / np.outer(size, size))
+        clear = strength > constants.DISTINCT_DIRECTION
+        inverse = (axes[:, clear] / strength[clear]) @ axes[:, clear].T / np.outer(size, size)
+        explained, amount = float(pull @ inverse @ pull), inverse @ pull
+        chance = float(chdtrc(int(clear.sum()), explained))
+        return _Test(
+            seen=seen,
+            amount=amount,
+            u=np.sqrt(np.diag(inverse)),
+            log_chance=math.log(chance) if chance > 0.0 else -math.inf,
+            share=min(explained / max(self.joint.misfit, 1e-12), 1.0),
+            change=found.outside[:, seen] @ amount,
+        )
+
+    def by_channel(self, change: np.ndarray) -> dict[str, np.ndarray]:
+        """A change of the rows (m,) as that of the readings that the linear model of every channel looks at."""
+        sigma, out = self.joint.sigma, {}
+        parts = dict(zip(self.joint.channels, change[: sigma.size].reshape(sigma.shape), strict=True))
+        for (name, part), u in zip(parts.items(), sigma, strict=True):
+            rows = self.linear.channels[name].rows
+            near = np.searchsorted(self.joint.looked_at, rows, side="right") - 1
+            out[name] = (part * np.where(np.isfinite(u), u, 0.0))[near]
+        return out
+
+
+class _Test(NamedTuple):
+    """The score test of several changes."""
+
+    seen: np.ndarray  #: mask (j,) of those that fitted numbers do not imitate
+    amount: np.ndarray  #: of each of these
+    u: np.ndarray  #: their standard errors
+    log_chance: float
+    share: float  #: of the sum of squares that they explain
+    change: np.ndarray  #: (m,) of the rows, without what fitted numbers follow of it
+
+
+def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
+    """The effect that explains most beyond chance; None if the readings show no effect that the fit does not follow.
+
+    Each effect's change of the readings is compared with the residuals, without what fitted numbers can follow. A rig error that
+    is itself a number of the fit is compared with its declaration. What the formula misses counts as noise.
+    """
+    best_of: dict[str, OneStep] = {}
+    for step in sorted(_steps(left, effects), key=lambda step: step.log_chance):
+        best_of.setdefault(step.effect.id, step)
+    if not best_of:
+        return None
+    best, *others = best_of.values()
+    near = [other for other in others if _as_good(other, best)]
+    # The starts of one effect are nearly the same direction: each effect counts once.
+    found = BestEffect(best, tuple(near[: constants.MOST_RIVALS_NAMED]), len(best_of))
+    if found.chance >= PREDICTION_FALSE_ALARM:
+        return found
+    acts = {name: part for name, part in left.by_channel(best.change).items() if np.any(part)}
+    return replace(
+        found,
+        gain=sum(left.linear.channels[name].gain(part) for name, part in acts.items()),
+        missed=sum(max(left.linear.channels[name].proof, 0.0) for name in acts),
+    )
+
+
+def _as_good(other: OneStep, best: OneStep) -> bool:
+    """Whether another effect explains the same residuals as well as the best one."""
+    a, b = other.change, best.change
+    if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
+        return False
+    return other.log_chance < best.log_chance - math.log(constants.TIE_EXCLUDED_BY_CHANCE)
+
+
+def _steps(left: Left, effects: Sequence[Effect]) -> Iterator[OneStep]:
+    simulation, u = left.fitted.simulation, left.joint.sigma.ravel()
+    scatter = dict.fromkeys(left.joint.channels, Scatter())
+    noise = Noise(u=u, stated=u, chain=np.zeros(len(u)), origin=None, scatter=scatter)
+    problem = DiagnosisProblem(left.points, simulation, noise)
+    freed = {n.name for n in left.fitted.numbers if n.name in BY_NAME}
+    visible, _ = possible(effects, left.points, simulation)
+    candidates = [e for e in visible if e.switches or any(f.name not in freed for f in moving((e,)))]
+    for effect, groups in problem.columns(simulation, candidates).items():
+        frees = moving((effect,))
+        kept = [k for k, free in enumerate(frees) if free.name not in freed]
+        for columns in groups:
+            found = left.test(columns if effect.switches else columns[:, kept])
+            if found is None:
+                continue
+            step = _step(left, effect, [frees[k] for k in kept], found)
+            if all(_is_possible(step, free) for free in frees):
+                yield step
+
+
+def _is_possible(step: OneStep, free: Free) -> bool:
+    """Whether the readings ask for a number that a rig or a tyre can have."""
+    value, _ = step.numbers.get(free.name, (free.lower, 0.0))
+    return free.lower <= value <= free.upper
+
+
+def _step(left: Left, effect: Effect, frees: Sequence[Free], found: _Test) -> OneStep:
+    seen = [free for free, visible in zip(frees, found.seen, strict=False) if visible]
+    numbers = {
+        free.name: _estimate(left, free, by, u)
+        for free, by, u in zip(seen, found.amount.tolist(), found.u.tolist(), strict=False)
     }
+    known = bool(numbers) and all(name in left.expected for name in numbers)
+    return OneStep(effect, found.log_chance, numbers, found.share, known, found.change)
+
+
+def _estimate(left: Left, free: Free, by: float, u: float) -> tuple[float, float]:
+    """Value and standard error of a number by the readings alone, from its step and that step's error in usual sizes."""
+    simulation = left.fitted.simulation
+    unit = free.spread * anchor(free, simulation, left.points)[1]
+    if free.name in left.expected:  # its prior is part of the step's error
+        value, spread = left.expected[free.name]
+        return value + by * unit, math.sqrt(max((u * unit) ** 2 - spread**2, 0.0))
+    return simulation.number(free.name, left.points) + by * unit, u * unit
+
+
+def _sigma(log_chance: float) -> float:
+    """Standard deviations of a two-sided normal chance, also where the chance itself underflows."""
+    if log_chance >= 0.0:
+        return 0.0
+    if log_chance > -600.0:
+        return -float(ndtri(0.5 * math.exp(log_chance)))
+    return math.sqrt(-2.0 * log_chance)
+
+
+def held_numbers(left: Left) -> tuple[HeldNumber, ...]:
+    """The numbers that a bound, a physical limit or the engineer holds, and how far the readings contradict it."""
+    fitted, hand = left.fitted, left.fitted.hand
+    names = sorted({*fitted.at_bound, *(name for name in hand.held if BY_NAME[name].stage)})
+    if not names:
+        return ()
+    bounds = {n.name: (n.lower, n.upper) for n in fitted.numbers}
+    slopes = fitted.simulation.sensitivities(left.points, names, left.joint.channels)[1].stacked
+    out = []
+    for name, change in zip(names, slopes.T, strict=True):
+        found = left.test(change[:, None])
+        if found is None:
+            continue
+        value = fitted.simulation.number(name, left.points)
+        lower, upper = bounds.get(name, (-math.inf, math.inf))
+        if touches(value, lower, upper) and (found.amount[0] > 0.0) == (value - lower < upper - value):
+            continue  # the readings pull it back inside
+        by_hand = name in hand.held or name in hand.bounded
+        out.append(HeldNumber(name, _sigma(found.log_chance), found.share, by_hand))
+    return tuple(out)

@@ -33,7 +33,7 @@ LARGEST_MEMORY = math.log(constants.LARGEST_MEMORY / (1.0 - constants.LARGEST_ME
 class ExplainingColumns:
     """What could explain a residual, one prior standard deviation of each as a column (c n, k)."""
 
-    named: np.ndarray  #: effects, coefficients, bumps
+    named: np.ndarray  #: effects, coefficients
     runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
     withdrawn: bool = (

@@ -69,7 +69,7 @@ def price(candidates: int) -> float:
 def select(
     problem: DiagnosisProblem, candidates: Sequence[Effect]
 ) -> tuple[DiagnosisProblem, Hypothesis, list[ForwardStep]]:
-    """Forward steps until nothing passes; after each, exchange effects and drop one that became needless.
+    """Forward steps until nothing passes; after each, an effect that became needless is dropped.
 
     A fit may end in a local optimum, so that a set can look better or worse when it is met again. A set that was replaced is
     therefore never entered a second time, which ends the search. The problem that is returned has in its covariance the smooth
@@ -84,10 +84,7 @@ def select(
         left.add(current.ids)
         if not step.passes or step.best.ids in left:
             break
-        first = constants.FEWEST_CANDIDATES_FITTED
-        near = [trial.effects[-1] for trial in (*step.trials[:first], *steps[0].trials[:first])]
-        current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
-        current = _without_needless(problem, current, step.threshold, left)
+        current = _without_needless(problem, step.best, step.threshold, left)
         beside = problem.at_amplitude(current.smooth)
         if beside is not problem:
             problem, current = beside, refitted(beside, current, current.effects)
@@ -98,43 +95,19 @@ def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequ
     """Every candidate beside the accepted effects; those with any prospect are fitted in full."""
     trials = []
     ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
-    for rank, (effect, gain, within) in enumerate(ranked):
+    for rank, (effect, gain) in enumerate(ranked):
         effects = (*before.effects, effect)
         hope = max(constants.PROMISING_GAIN, constants.PROMISING_SHARE * ranked[0][1])
         if rank < constants.FEWEST_CANDIDATES_FITTED or (
             rank < constants.MOST_CANDIDATES_FITTED and gain > hope
         ):
-            trials.append(within.fit(effects, before.numbers))
+            trials.append(problem.fit(effects, before.numbers))
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
     return ForwardStep(
         before=before, trials=tuple(trials), threshold=price(len(candidates)), start=problem.start
     )
-
-
-def _exchanged(
-    problem: DiagnosisProblem, current: Hypothesis, candidates: Sequence[Effect], left: set[Ids]
-) -> Hypothesis:
-    """The hypothesis after exchanges of single effects that help; adds replaced sets to ``left``."""
-    for _ in range(2 if len(current.effects) > 1 else 0):
-        best = current
-        for effect in current.effects:
-            rest = current.others(effect)
-            new = [e for e in candidates if e not in current.effects and _ids(*rest, e) not in left]
-            without = refitted(problem, current, rest)
-            lacks = best.log_evidence - without.log_evidence
-            for other, gain, within in problem.promising(without, new):
-                if (1.0 + constants.PROMISING_SHARE) * gain + constants.PROMISING_GAIN < lacks:
-                    continue
-                trial = within.fit((*rest, other), current.numbers_of(rest))
-                if trial.log_evidence > best.log_evidence + constants.TIED_EVIDENCE:
-                    best = trial
-        if best is current:
-            break
-        left.add(current.ids)
-        current = best
-    return current
 
 
 def _without_needless(

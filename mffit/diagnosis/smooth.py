@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import block_diag, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.noise import Noise, SharedDirections
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
@@ -99,41 +99,56 @@ class SmoothStructure:
 
     channels: tuple[str, ...]  #: (c,)
     shared: np.ndarray  #: (m, p) changes that readings share, one standard deviation each
-    axes: tuple[np.ndarray, ...]  #: (m, k) orthonormal directions of every channel's structure
-    variances: tuple[np.ndarray, ...]  #: (k,) of these at amplitude 1
-    changes: tuple[np.ndarray, ...]  #: (c n, k) of the readings along them, one standard deviation each
+    directions: tuple[SharedDirections, ...]  #: of every channel's structure at amplitude 1
 
     @classmethod
     def over(cls, basis: np.ndarray, noise: Noise) -> SmoothStructure:
         """Of a basis (c n, k) with as many columns for every channel, beside the shared changes of a noise."""
-        alone = noise.alone()
-        axes, variances, changes = [], [], []
-        for columns in np.split(basis, len(noise.channels), axis=1):
-            left, size, turn = np.linalg.svd(alone.whiten(columns), full_matrices=False)
+        alone, n = noise.alone(), len(noise.u) // len(noise.channels)
+        ends = np.searchsorted(noise.used, n * np.arange(len(noise.channels) + 1))
+        directions = []
+        for begin, end, columns in zip(
+            ends[:-1], ends[1:], np.split(basis, len(noise.channels), axis=1), strict=True
+        ):
+            rows = slice(int(begin), int(end))
+            left, size, _ = np.linalg.svd(alone.whiten(columns)[rows], full_matrices=False)
             some = size > 1e-4 * max(float(size.max(initial=0.0)), 1e-9)
-            axes.append(left[:, some])
-            variances.append(size[some] ** 2)
-            changes.append(columns @ turn[some].T)
+            directions.append(SharedDirections(rows, left[:, some], size[some] ** 2))
         nothing = np.zeros((len(noise.used), 0))
         shared = nothing if noise.shared is None else alone.whiten(noise.shared)
-        return cls(noise.channels, shared, tuple(axes), tuple(variances), tuple(changes))
+        return cls(noise.channels, shared, tuple(directions))
+
+    @cached_property
+    def _alone(self) -> BesideColumns:
+        nothing = BesideColumns(
+            self,
+            self.shared[:, :0],
+            np.zeros((0, 0)),
+            tuple(np.zeros((len(one.variance), 0)) for one in self.directions),
+        )
+        return nothing.with_columns(self.shared)
 
     def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
         """The structure beside columns (m, j) of unit prior variance that may explain a residual (m,)."""
-        return BesideColumns.of(self, np.column_stack([residual, self.shared, columns]))
+        return self._alone.with_columns(np.column_stack([residual, columns]))
+
+    def at(self, amplitude: Mapping[str, float]) -> tuple[SharedDirections, ...]:
+        """The structure of the channels that have an amplitude."""
+        found = zip(self.channels, self.directions, strict=True)
+        return tuple(
+            one._replace(variance=amplitude[name] ** 2 * one.variance)
+            for name, one in found
+            if amplitude.get(name)
+        )
 
 
 class BesideColumns(NamedTuple):
     """What the evidence of any amplitude needs: products of a residual and of columns, and their parts along the structure."""
 
     structure: SmoothStructure
-    rows: np.ndarray  #: (m, 1 + j) the residual first
-    products: np.ndarray  #: (1 + j, 1 + j)
-    along: tuple[np.ndarray, ...]  #: (k, 1 + j) for every channel
-
-    @classmethod
-    def of(cls, structure: SmoothStructure, rows: np.ndarray) -> BesideColumns:
-        return cls(structure, rows, rows.T @ rows, tuple(axes.T @ rows for axes in structure.axes))
+    rows: np.ndarray  #: (m, p + 1 + j) the shared changes, the residual, the columns
+    products: np.ndarray  #: (p + 1 + j, p + 1 + j)
+    along: tuple[np.ndarray, ...]  #: (k, p + 1 + j) for every channel
 
     def with_columns(self, columns: np.ndarray) -> BesideColumns:
         """The same with further columns (m, i)."""
@@ -143,42 +158,30 @@ class BesideColumns(NamedTuple):
             np.column_stack([self.rows, columns]),
             np.block([[self.products, across], [across.T, columns.T @ columns]]),
             tuple(
-                np.column_stack([along, axes.T @ columns])
-                for along, axes in zip(self.along, self.structure.axes, strict=True)
+                np.column_stack([along, one.axes.T @ columns[one.rows]])
+                for along, one in zip(self.along, self.structure.directions, strict=True)
             ),
         )
 
     def evidence(self, amplitude: Mapping[str, float]) -> float:
         """Log evidence with the columns and with structure of given amplitudes by channel, less a constant."""
         products, log = self.products, self.improbable(amplitude)
-        for name, along, variance in zip(
-            self.structure.channels, self.along, self.structure.variances, strict=True
+        for name, along, one in zip(
+            self.structure.channels, self.along, self.structure.directions, strict=True
         ):
             if amplitude.get(name):
-                size = amplitude[name] ** 2 * variance
+                size = amplitude[name] ** 2 * one.variance
                 products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
                 log += 0.5 * float(np.sum(np.log1p(size)))
-        root = cholesky(np.eye(len(products) - 1) + products[1:, 1:], lower=True)
-        found = solve_triangular(root, products[1:, 0], lower=True)
-        return -0.5 * float(products[0, 0] - found @ found) - float(np.sum(np.log(np.diag(root)))) - log
+        r = self.structure.shared.shape[1]  # place of the residual
+        others = np.delete(np.arange(len(products)), r)
+        root = cholesky(np.eye(len(others)) + products[np.ix_(others, others)], lower=True)
+        found = solve_triangular(root, products[others, r], lower=True)
+        return -0.5 * float(products[r, r] - found @ found) - float(np.sum(np.log(np.diag(root)))) - log
 
     def improbable(self, amplitude: Mapping[str, float]) -> float:
         """By how much amplitudes are less probable beforehand than none, as a logarithm."""
         return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
-
-    @property
-    def price(self) -> float:
-        """Log evidence that the choice of amplitudes costs, and that structure needs beforehand."""
-        return len(self.structure.channels) * math.log(len(AMPLITUDES)) + constants.STRUCTURE_EVIDENCE
-
-    def near(self, amplitude: Mapping[str, float]) -> tuple[float, float]:
-        """The best evidence with amplitudes that are a share of the given ones, the price paid, and that share."""
-        shares = constants.SHARES_OF_STRUCTURE if amplitude else (0.0,)
-        found = []
-        for share in shares:
-            value = self.evidence({name: share * size for name, size in amplitude.items()})
-            found.append((value - self.price if share else value, share))
-        return max(found)
 
     def best(self) -> Smooth:
         """The likeliest amplitudes, with the price of their search."""
@@ -222,7 +225,4 @@ class StructureBeside:
     @property
     def noise(self) -> Noise:
         """The covariance."""
-        own = [] if self.scatter.shared is None else [self.scatter.shared]
-        sizes = [self.amplitude.get(name, 0.0) for name in self.structure.channels]
-        found = zip(sizes, self.structure.changes, strict=True)
-        return self.scatter.sharing(*own, *(size * changes for size, changes in found if size))
+        return replace(self.scatter, structure=self.structure.at(self.amplitude))

@@ -9,9 +9,8 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise
 from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
-from mffit.diagnosis.one_step import BestEffect
+from mffit.diagnosis.remains import BestEffect
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
-from mffit.diagnosis.structure import Structure
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Validation
 from mffit.effects import Effect
@@ -296,17 +295,3 @@ def _number(name: str, value: float, u: float) -> str:
     value, u, unit = shown(name, value, u)
     part = name.partition(OF_RUN)[2]
     return f"{part}{': ' if part else ''}{to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {unit}".rstrip()
-
-
-def structure(found: Structure) -> str:
-    """The conditions over which the residuals of each channel are not random; empty for random ones."""
-    by_channel: dict[str, list[str]] = {}
-    for comparison in found.found:
-        by_channel.setdefault(comparison.channel, []).append(comparison.word)
-    said = [
-        f"those of {channel} follow {', '.join(words[: constants.MOST_NUMBERS_IN_SENTENCE])}"
-        for channel, words in by_channel.items()
-    ]
-    smallest = float(constants.SMALLEST_CHANCE_NAMED)
-    chance = f"{found.chance:.1g}" if found.chance > smallest else f"below {smallest:g}"
-    return f"{'; '.join(said)} (chance {chance} with {len(found.comparisons)} comparisons)" if said else ""

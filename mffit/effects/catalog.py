@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from mffit.effects.effect import Effect, Free
-from mffit.effects.longitudinal import LONGITUDINAL_EFFECTS
-from mffit.effects.overturning import OVERTURNING_EFFECTS
 from mffit.effects.tyre import TYRE_EFFECTS
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, Appearance, RigError
 
@@ -18,7 +16,6 @@ def _effect(error: RigError, seen: Appearance) -> Effect:
         physics=seen.physics,
         free=(_free(error, seen), *(_free(BY_NAME[name]) for name in seen.together_with)),
         needs=seen.needs,
-        parity=seen.parity,
         confusable_with=seen.confusable_with,
         remedy=seen.remedy,
         axes=seen.axes,
@@ -40,8 +37,6 @@ def _free(error: RigError, seen: Appearance | None = None) -> Free:
 
 CATALOG: tuple[Effect, ...] = (
     *TYRE_EFFECTS,
-    *LONGITUDINAL_EFFECTS,
-    *OVERTURNING_EFFECTS,
     *(_effect(error, seen) for error in RIG_ERRORS for seen in error.seen_as),
 )
 NAMES = {effect.id: effect.name for effect in CATALOG}

@@ -34,14 +34,6 @@ class Free:
             object.__setattr__(self, "lower", max(self.lower, lower))
             object.__setattr__(self, "upper", min(self.upper, upper))
 
-    def of_run(self, file: str) -> Free:
-        """The number of the run that a file holds."""
-        return replace(self, name=number_of(self.name, file), per_run=False)
-
-    def of_setup(self, setup: str) -> Free:
-        """The number of one set-up."""
-        return replace(self, name=number_of(self.name, setup), per_setup=False)
-
 
 @dataclass(frozen=True, slots=True)
 class Effect:
@@ -53,7 +45,6 @@ class Effect:
     physics: str  #: one sentence
     free: tuple[Free, ...]
     needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see effects.needs
-    parity: str = ""  #: under alpha, gamma, phi_t -> reversed
     confusable_with: tuple[str, ...] = ()
     remedy: str = ""  #: what to do at the rig; {value}, {opposite}: the first number in the rig's own axes, with its sign
     axes: tuple[str, ...] = ()  #: channels in whose axes that number counts
@@ -74,22 +65,12 @@ class Effect:
         """Whether it frees numbers of single runs."""
         return any(free.per_run for free in self.free) or self.runs_written_out
 
-    def of_setups(self, setups: Sequence[str]) -> Effect:
-        """The same with the zeros of every set-up written out, if there are several set-ups."""
-        if len(setups) < 2 or not any(free.per_setup for free in self.free):
-            return self
+    def written_out(self, files: Sequence[str], setups: Sequence[str]) -> Effect:
+        """The same with the numbers of these runs written out, and the zeros of these set-ups if there are several."""
+        zeros = setups if len(setups) > 1 else ("",)
         free = [
-            f.of_setup(name) if f.per_setup else f
-            for f in self.free
-            for name in (setups if f.per_setup else ("",))
+            replace(number, name=number_of(number.name, part), per_run=False, per_setup=False)
+            for number in self.free
+            for part in (files if number.per_run else zeros if number.per_setup else ("",))
         ]
-        return replace(self, free=tuple(free))
-
-    def of_parts(self, files: Sequence[str]) -> Effect:
-        """The same with what differs from run to run written out for these files."""
-        if not self.differs_by_run:
-            return self
-        free = [
-            f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))
-        ]
-        return replace(self, free=tuple(free), runs_written_out=True)
+        return replace(self, free=tuple(free), runs_written_out=self.differs_by_run)

@@ -15,7 +15,6 @@ TYRE_EFFECTS = (
         physics="On a curved path the contact patch turns as it rolls, which pushes the tyre outwards and twists it.",
         free=(Free(name="turn_slip", spread=1.0),),
         needs=("curved",),
-        parity="odd in phi_t",
     ),
     _effect(
         id="camber-reduction",
@@ -24,7 +23,6 @@ TYRE_EFFECTS = (
         "differently.",
         free=(Free(name="PECP1", spread=0.3, scan=(0.0, 0.2, -0.2), upper=0.95),),
         needs=("curved",),
-        parity="odd in phi_t",
         confusable_with=("path-radius", "camber-misalignment"),
     ),
     _effect(
@@ -33,7 +31,6 @@ TYRE_EFFECTS = (
         physics="The share of the camber's spin that the crown passes on changes as load flattens it.",
         free=(Free(name="PECP2", spread=1.0, scan=(0.5, -0.5)),),
         needs=("curved", "loads"),
-        parity="odd in phi_t",
     ),
     _effect(
         id="ply-steer",
@@ -41,7 +38,6 @@ TYRE_EFFECTS = (
         physics="The belt's outer plies steer the tyre, which shifts the side-force curve and turns with the direction of "
         "rolling.",
         free=(Free(name="PHY1", spread=0.001),),
-        parity="even in alpha",
         confusable_with=("sideslip-misalignment",),
         prior=-0.5,
     ),
@@ -50,7 +46,6 @@ TYRE_EFFECTS = (
         name="conicity",
         physics="A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
         free=(Free(name="PVY1", spread=0.005),),
-        parity="even in alpha and gamma",
         confusable_with=("crosstalk-fz-fy", "loadcell-offset-fy"),
         prior=-0.3,
     ),
@@ -60,7 +55,6 @@ TYRE_EFFECTS = (
         physics="The side force per degree of lean at small camber differs from the model's.",
         free=(Free(name="PKY6", spread=0.15, relative=True),),
         needs=("camber",),
-        parity="odd in gamma and phi_t",
     ),
     _effect(
         id="camber-thrust-curvature",
@@ -68,7 +62,6 @@ TYRE_EFFECTS = (
         physics="Part of the camber force does not saturate with slip but adds to it.",
         free=(Free(name="PVY3", spread=0.2),),
         needs=("camber",),
-        parity="odd in gamma",
     ),
     _effect(
         id="camber-grip",
@@ -76,7 +69,6 @@ TYRE_EFFECTS = (
         physics="A leaned tyre presses unevenly and loses peak side force.",
         free=(Free(name="PDY3", spread=0.2),),
         needs=("camber",),
-        parity="odd",
     ),
     _effect(
         id="camber-cornering-stiffness",
@@ -84,7 +76,6 @@ TYRE_EFFECTS = (
         physics="A leaned tyre has another cornering stiffness than an upright one.",
         free=(Free(name="PKY3", spread=0.1),),
         needs=("coupled",),
-        parity="odd",
     ),
     _effect(
         id="load-grip",
@@ -92,7 +83,6 @@ TYRE_EFFECTS = (
         physics="Friction falls, or rises, with contact pressure.",
         free=(Free(name="PDY2", spread=0.1),),
         needs=("loads",),
-        parity="odd",
     ),
     _effect(
         id="load-cornering-stiffness",
@@ -100,7 +90,6 @@ TYRE_EFFECTS = (
         physics="Cornering stiffness grows with load at first and then less and less; the load of its maximum differs.",
         free=(Free(name="PKY2", spread=0.2, relative=True),),
         needs=("loads",),
-        parity="odd",
     ),
     _effect(
         id="pressure",
@@ -114,7 +103,6 @@ TYRE_EFFECTS = (
             Free(name="PPZ1", spread=0.3),
         ),
         needs=("pressures",),
-        parity="odd",
     ),
     _effect(
         id="curvature-asymmetry",
@@ -122,7 +110,6 @@ TYRE_EFFECTS = (
         physics="The curve bends differently on its two sides.",
         free=(Free(name="PEY3", spread=0.1),),
         needs=("slip",),
-        parity="even in alpha",
     ),
     _effect(
         id="trail-load",
@@ -130,7 +117,6 @@ TYRE_EFFECTS = (
         physics="The contact patch grows with load and the trail with it, not in proportion.",
         free=(Free(name="QDZ2", spread=0.02),),
         needs=("loads", "moment"),
-        parity="odd",
     ),
     _effect(
         id="trail-camber",
@@ -138,7 +124,6 @@ TYRE_EFFECTS = (
         physics="A leaned tyre stands on another part of its crown, with another contact length.",
         free=(Free(name="QDZ3", spread=0.07), Free(name="QDZ4", spread=0.2)),
         needs=("coupled", "moment"),
-        parity="odd",
     ),
     _effect(
         id="residual-torque",
@@ -146,7 +131,6 @@ TYRE_EFFECTS = (
         physics="A moment remains at zero slip, from plies and tread pattern.",
         free=(Free(name="QDZ6", spread=0.003),),
         needs=("moment",),
-        parity="even",
         confusable_with=("loadcell-offset-mz",),
         prior=-0.3,
     ),
@@ -156,7 +140,6 @@ TYRE_EFFECTS = (
         physics="Camber twists the contact patch, which leaves a moment at zero slip.",
         free=(Free(name="QDZ8", spread=0.02),),
         needs=("camber", "moment"),
-        parity="odd",
     ),
     _effect(
         id="spin-grip-loss",
@@ -164,7 +147,6 @@ TYRE_EFFECTS = (
         physics="A turning contact patch uses part of the grip for the turning.",
         free=(Free(name="PDYP1", spread=0.3, scan=(0.1, 0.3, 0.6, -0.1, -0.3)),),
         needs=("spin",),
-        parity="even in phi",
     ),
     _effect(
         id="spin-stiffness-loss",
@@ -172,7 +154,6 @@ TYRE_EFFECTS = (
         physics="A turning contact patch yields more easily to sideslip.",
         free=(Free(name="PKYP1", spread=1.0, scan=(0.3, 0.8, 2.0, -0.3, -0.8)),),
         needs=("spin",),
-        parity="even in phi",
     ),
     _effect(
         id="spin-trail-loss",
@@ -180,7 +161,6 @@ TYRE_EFFECTS = (
         physics="Spin builds its own stresses along the contact patch, which bring the side force nearer to its middle.",
         free=(Free(name="QDTP1", spread=3.0, scan=(0.5, 1.5, 3.0, -0.5, -1.5)),),
         needs=("spin", "moment"),
-        parity="even in phi",
     ),
     _effect(
         id="spin-torque",
@@ -188,6 +168,115 @@ TYRE_EFFECTS = (
         physics="A contact patch that is turned resists with a moment of its own.",
         free=(Free(name="QCRP1", spread=0.1, scan=(0.005, 0.03, 0.1, 0.2, -0.03, -0.06)),),
         needs=("spin", "moment"),
-        parity="odd in phi",
+    ),
+    # Drive and brake, alone and with sideslip
+    _effect(
+        id="longitudinal-grip",
+        name="longitudinal grip",
+        physics="The peak of the longitudinal force is higher, or lower, than the model's.",
+        free=(Free(name="PDX1", spread=0.1, relative=True),),
+        needs=("drive",),
+        confusable_with=("loadcell-gain-fx",),
+    ),
+    _effect(
+        id="longitudinal-grip-load",
+        name="longitudinal grip over load",
+        physics="Longitudinal friction falls, or rises, with contact pressure.",
+        free=(Free(name="PDX2", spread=0.1),),
+        needs=("drive", "loads"),
+    ),
+    _effect(
+        id="slip-stiffness",
+        name="slip stiffness",
+        physics="The longitudinal force per unit of slip near free rolling differs from the model's.",
+        free=(Free(name="PKX1", spread=0.15, relative=True),),
+        needs=("drive",),
+        confusable_with=("loadcell-gain-fx",),
+    ),
+    _effect(
+        id="slip-shift",
+        name="shift of the Fx curve over slip",
+        physics="The longitudinal force is zero at another slip than that of free rolling, at which slip is counted from zero.",
+        free=(Free(name="PHX1", spread=0.002),),
+        needs=("drive",),
+        confusable_with=("slip-zero",),
+        prior=-2.0,
+    ),
+    _effect(
+        id="rolling-force",
+        name="longitudinal force in proportion to load",
+        physics="A share of the load that the slip does not change acts along the tyre, as rolling resistance does.",
+        free=(Free(name="PVX1", spread=0.005),),
+        needs=("drive",),
+        confusable_with=("loadcell-offset-fx", "longitudinal-drag"),
+        prior=-0.3,
+    ),
+    _effect(
+        id="combined-longitudinal",
+        name="loss of longitudinal force by sideslip",
+        physics="Sideslip uses part of the grip, so that less is left for drive and brake.",
+        free=(Free(name="RBX1", spread=0.2, relative=True),),
+        needs=("drive", "combined"),
+    ),
+    _effect(
+        id="combined-lateral",
+        name="loss of side force by longitudinal slip",
+        physics="Drive and brake use part of the grip, so that less is left for the side force.",
+        free=(Free(name="RBY1", spread=0.2, relative=True),),
+        needs=("drive", "combined"),
+    ),
+    _effect(
+        id="combined-camber",
+        name="combined slip with camber",
+        physics="A leaned tyre shares its grip between drive and sideslip otherwise than an upright one.",
+        free=(
+            Free(name="RBX3", spread=10.0),
+            Free(name="RBY4", spread=10.0),
+        ),
+        needs=("drive", "combined_camber"),
+    ),
+    _effect(
+        id="longitudinal-arm",
+        name="moment arm of the longitudinal force",
+        physics="The longitudinal force acts off the middle of the wheel and turns it, to the other side once the tyre is "
+        "turned on its rim.",
+        free=(Free(name="SSZ1", spread=0.006),),
+        needs=("drive", "moment"),
+        confusable_with=("crosstalk-fx-mz",),
+        prior=-2.0,
+    ),
+    # Overturning moment
+    _effect(
+        id="overturning-offset",
+        name="overturning moment of the upright tyre",
+        physics="The load acts a little off the middle of the wheel, from conicity and plies.",
+        free=(Free(name="QSX1", spread=0.01),),
+        needs=("overturning",),
+        confusable_with=("loadcell-offset-mx",),
+        prior=-0.3,
+    ),
+    _effect(
+        id="overturning-camber",
+        name="overturning moment with camber",
+        physics="A leaned tyre stands on another part of its crown, so that the load acts off the middle of the wheel.",
+        free=(Free(name="QSX2", spread=0.2),),
+        needs=("overturning", "camber"),
+    ),
+    _effect(
+        id="overturning-side-force",
+        name="overturning moment with side force",
+        physics="Side force bends the carcass, and the load acts off the middle of the wheel.",
+        free=(Free(name="QSX3", spread=0.02),),
+        needs=("overturning", "slip"),
+        confusable_with=("crosstalk-fy-mx", "overturning-arm"),
+    ),
+    _effect(
+        id="overturning-arm",
+        name="arm of the side force in the overturning moment",
+        physics="The side force acts a little above or below the plane of the road, at the same height under every load.",
+        free=(Free(name="QSX13", spread=0.01),),
+        needs=("overturning", "slip"),
+        confusable_with=("crosstalk-fy-mx", "overturning-side-force"),
+        prior=-2.0,
     ),
 )

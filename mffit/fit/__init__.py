@@ -2,7 +2,8 @@
 
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.fitted import ensemble, left_by, with_free_epsilon
+from mffit.fit.drawn import ensemble
+from mffit.fit.fitted import left_by, with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult

@@ -1,13 +1,13 @@
-"""Where the 95 % bands are narrow: of Fy at the pressure of most sweeps, of Fx at the sideslips with longitudinal slip."""
+"""How wide the 95 % bands are where the sweeps are, and where they are not: other pressures, other sideslips."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
+from mffit.constants import STRAIGHT
 from mffit.fit import constants
 from mffit.fit.coverage import side_run
 from mffit.fit.posterior import Posterior, spread_through
@@ -19,19 +19,36 @@ from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
-class BandsByPressure:
+class BandBesideSweeps:
+    """Rms half widths of a band over the tested loads, at the one sideslip that was run and where none was."""
+
+    channel: str
+    sideslip: float  #: that was run [rad]
+    half_at: float  #: there [N]
+    beside: float  #: sideslip that was not run [rad]
+    half_beside: float  #: there [N]
+
+    @property
+    def wider(self) -> bool:
+        """Whether the fit knows the force clearly less well where no sweep is."""
+        return self.half_beside > constants.WIDER_BANDS * self.half_at
+
+
+@dataclass(frozen=True, slots=True)
+class Bands:
     """Rms half width of the 95 % bands of Fy over the tested angles and loads, and what widens them."""
 
     main: float  #: pressure of most sweeps [Pa]
     half: float  #: at it [N]
-    others: tuple[float, ...]  #: the other pressures that were run, and the nominal one [Pa]
-    half_of_others: float  #: at these [N]; 0 without others
-    unseen: str = (
-        ""  #: the coefficient without effect in these sweeps that widens them most; empty without one
-    )
-    share: float = 0.0  #: its share of the variance there
+    others: tuple[float, ...] = ()  #: the other pressures that were run, and the nominal one [Pa]
+    half_of_others: float = 0.0  #: at these [N]; 0 without others
+    unseen: str = ""
+    """The coefficient without effect in these sweeps with more than half of the variance there; empty without one."""
+    share: float = 0.0  #: its share
     half_of_exact_zeros: float = 0.0
     """Half width at the pressure of most sweeps if the zeros of the rig were exactly known [N]."""
+    combined: BandBesideSweeps | None = None  #: of Fx, where slip was run at one sideslip only
+    other_side: BandBesideSweeps | None = None  #: of Fy, where sideslip was run to one side only
 
     @property
     def wider(self) -> bool:
@@ -39,67 +56,9 @@ class BandsByPressure:
         return bool(self.unseen) and self.half_of_others > constants.WIDER_BANDS * self.half
 
 
-@dataclass(frozen=True, slots=True)
-class BandOfCombined:
-    """Rms half width of the 95 % band of Fx over longitudinal slip and load, where slip was run at one sideslip only."""
-
-    sideslip: float  #: the one at which it was run [rad], without its sign
-    half_at: float  #: there [N]
-    half_between: float  #: halfway to straight running [N]
-
-    @property
-    def wider(self) -> bool:
-        """Whether the fit knows Fx clearly less well between the sideslips than at them."""
-        return self.half_between > constants.WIDER_BANDS * self.half_at
-
-
-@dataclass(frozen=True, slots=True)
-class BandOfOtherSide:
-    """Rms half width of the 95 % band of Fy over the tested loads, where sideslip was run to one side only."""
-
-    sideslip: float  #: the largest that was run [rad]
-    half: float  #: there [N]
-    half_opposite: float  #: at the same angle to the other side [N]
-
-
-def band_of_other_side(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfOtherSide | None:
-    """The band of Fy at the largest sideslip and opposite to it; None if both sides were run, and on a curved path."""
-    if not side_run(points) or np.any(points.phi_t):
-        return None
-    alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
-    return BandOfOtherSide(alpha, *(_half_at(posterior, tyre, points, "Fy", a) for a in (alpha, -alpha)))
-
-
-def band_of_combined(posterior: Posterior, tyre: Simulation, points: Points) -> BandOfCombined | None:
-    """The band of Fx at the one sideslip with longitudinal slip, and before it; None without such, and with several."""
-    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > STRAIGHT.rad]
-    sizes = {int(k) for k in levels.nearest_labels(np.abs(run), levels.SIDESLIP)} if run else set()
-    if len(sizes) != 1 or "Fx" not in points.measured:
-        return None
-    halves = (_half_at(posterior, tyre, points, "Fx", alpha) for alpha in (run[-1], 0.5 * run[-1]))
-    return BandOfCombined(abs(run[-1]), *halves)
-
-
-def _half_at(posterior: Posterior, tyre: Simulation, points: Points, channel: str, alpha: float) -> float:
-    """Rms half width of the 95 % band of a channel at a sideslip, over the tested loads and, of Fx, longitudinal slips."""
-    tested = tested_ranges(points)
-    ends = (tested["KPUMIN"], tested["KPUMAX"]) if channel == "Fx" else (0.0, 0.0)
-    Fz, kappa = np.meshgrid(
-        np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
-        np.linspace(*ends, constants.STEPS_OF_A_GRID if channel == "Fx" else 1),
-    )
-    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
-    where = make_points(alpha, 0.0, Fz.ravel(), kappa=kappa.ravel(), p=p, V=V, phi_t=0.0)
-    return rms(posterior.band(tyre, where, (channel,))[channel])
-
-
-def bands_by_pressure(
-    posterior: Posterior,
-    held: Collection[str],
-    tyre: Simulation,
-    points: Points,
-    zeros: Collection[str] = (),
-) -> BandsByPressure:
+def bands(
+    posterior: Posterior, held: Collection[str], tyre: Simulation, points: Points, zeros: Collection[str] = ()
+) -> Bands:
     """The bands of a fitted tyre on a straight path.
 
     ``held`` names the coefficients that the fit took as exact, ``zeros`` the zeros of the rig that it determined with the tyre.
@@ -107,33 +66,57 @@ def bands_by_pressure(
     main = float(np.median(points.p[main_pressure(points)]))
     pressures = [*levels.level_values(points.p, levels.PRESSURE), float(tyre.values["NOMPRES"])]
     others = tuple(sorted({float(p) for p in pressures if abs(p - main) > levels.PRESSURE.tolerance}))
-    names = [name for name in posterior.names if name in BY_NAME]
-
-    def half(slopes: np.ndarray, known: Collection[str] = ()) -> float:
-        """Rms half width of the 95 % band, if some numbers were exactly known."""
-        left = posterior.given(known)
-        rows, columns = [left.names.index(n) for n in names if n in left.names], np.isin(names, left.names)
-        covariance = left.covariance[np.ix_(rows, rows)]
-        return COVERAGE_FACTOR_95 * rms(spread_through(slopes[:, columns], covariance))
-
-    at_main = _over_tested(names, tyre, points, (main,))
-    found = BandsByPressure(main, half(at_main), (), 0.0, half_of_exact_zeros=half(at_main, zeros))
-    if not others:
-        return found
-    slopes = _over_tested(names, tyre, points, others)
-    whole = half(slopes)
-    known = {name: half(slopes, (name,)) for name in held if name in posterior.names}
-    unseen = min(known, key=lambda name: known[name], default="")
-    share = 1.0 - (known[unseen] / whole) ** 2 if unseen and whole else 0.0
-    return replace(
-        found, others=others, half_of_others=whole, unseen=unseen if share > 0.5 else "", share=share
+    alone = posterior.given(zeros)
+    beside = {band.channel: band for band in _beside_sweeps(posterior, tyre, points)}
+    elsewhere = _grid(points, others) if others else None
+    unseen, share = _widest(posterior, held, tyre, elsewhere) if elsewhere is not None else ("", 0.0)
+    return Bands(
+        main=main,
+        half=_half(posterior, tyre, _grid(points, (main,))),
+        others=others,
+        half_of_others=_half(posterior, tyre, elsewhere) if elsewhere is not None else 0.0,
+        unseen=unseen if share > 0.5 else "",
+        share=share,
+        half_of_exact_zeros=_half(alone, tyre, _grid(points, (main,))),
+        combined=beside.get("Fx"),
+        other_side=beside.get("Fy"),
     )
 
 
-def _over_tested(
-    names: Sequence[str], tyre: Simulation, points: Points, pressures: tuple[float, ...]
-) -> np.ndarray:
-    """Derivatives (n, k) of Fy by the named coefficients on a grid over the tested angles and loads."""
+def _beside_sweeps(posterior: Posterior, tyre: Simulation, points: Points) -> Iterator[BandBesideSweeps]:
+    """The bands of Fx halfway to the only sideslip with slip, and of Fy opposite to the only side that was run."""
+    found = []
+    run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > STRAIGHT.rad]
+    if run and "Fx" in points.measured and len(set(levels.nearest_labels(np.abs(run), levels.SIDESLIP))) == 1:
+        found.append(("Fx", run[-1], 0.5 * run[-1]))
+    if side_run(points) and not np.any(points.phi_t):
+        alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
+        found.append(("Fy", alpha, -alpha))
+    for channel, at, beside in found:
+        halves = [_half(posterior, tyre, _at_sideslip(points, channel, x), channel) for x in (at, beside)]
+        yield BandBesideSweeps(channel, at, halves[0], beside, halves[1])
+
+
+def _half(posterior: Posterior, tyre: Simulation, where: Points, channel: str = "Fy") -> float:
+    """Rms half width of the 95 % band of a channel."""
+    return rms(posterior.band(tyre, where, (channel,))[channel])
+
+
+def _widest(
+    posterior: Posterior, held: Collection[str], tyre: Simulation, where: Points
+) -> tuple[str, float]:
+    """The held coefficient that, if it were exactly known, would narrow the band of Fy most, and its share of the variance."""
+    rows = [i for i, name in enumerate(posterior.names) if name in BY_NAME]
+    names, covariance = [posterior.names[i] for i in rows], posterior.covariance[np.ix_(rows, rows)]
+    slopes = tyre.sensitivities(where, names)[1].Fy
+    across = np.mean((slopes @ covariance) ** 2, axis=0) / np.maximum(np.diag(covariance), 1e-300)
+    whole = float(np.mean(spread_through(slopes, covariance) ** 2))
+    shares = {n: float(x) / whole for n, x in zip(names, across, strict=True) if n in held and whole}
+    return max(shares.items(), key=lambda row: row[1], default=("", 0.0))
+
+
+def _grid(points: Points, pressures: tuple[float, ...]) -> Points:
+    """Conditions on a straight path over the tested angles and loads."""
     tested = tested_ranges(points)
     axes = (
         np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
@@ -142,5 +125,16 @@ def _over_tested(
         np.array(pressures),
     )
     Fz, gamma, alpha, p = (axis.ravel() for axis in np.meshgrid(*axes))
-    where = make_points(alpha, gamma, Fz, p=p, V=float(np.median(points.V)), phi_t=0.0)
-    return np.asarray(tyre.sensitivities(where, names)[1].Fy)
+    return make_points(alpha, gamma, Fz, p=p, V=float(np.median(points.V)), phi_t=0.0)
+
+
+def _at_sideslip(points: Points, channel: str, alpha: float) -> Points:
+    """Conditions of the upright wheel at a sideslip, over the tested loads and, for Fx, longitudinal slips."""
+    tested = tested_ranges(points)
+    ends = (tested["KPUMIN"], tested["KPUMAX"]) if channel == "Fx" else (0.0, 0.0)
+    Fz, kappa = np.meshgrid(
+        np.linspace(tested["FZMIN"], tested["FZMAX"], constants.LOADS_OF_A_GRID),
+        np.linspace(*ends, constants.STEPS_OF_A_GRID if channel == "Fx" else 1),
+    )
+    p, V = float(np.median(points.p[main_pressure(points)])), float(np.median(points.V))
+    return make_points(alpha, 0.0, Fz.ravel(), kappa=kappa.ravel(), p=p, V=V, phi_t=0.0)

@@ -30,16 +30,6 @@ SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
 )
 
-# Estimates of what a cornering test does not measure
-
-# Starting values
-
-LEAST_GAIN_OF_MORE_TERMS = Real(
-    0.1,
-    "-",
-    "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
-)
-
 # A sister tyre
 SISTER_SLIP = Real(
     0.1,
@@ -48,10 +38,6 @@ SISTER_SLIP = Real(
 )
 
 # Radii
-LARGEST_CAMBER_OF_RADII = Real(
-    6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
-)
-
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,
     "m",

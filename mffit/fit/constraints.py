@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,11 +56,9 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
     n = envelope.size
     found = [
         (np.broadcast_to(plain(row), size), np.broadcast_to(gradient(row, by), (size, len(by))))
-        for row in _rows(p, envelope)
+        for row in (*_rows(p, envelope), *_dents(p, envelope))
         for size in [max(n, np.size(plain(row)))]
     ]
-    if envelope.kappa > 0.0 and envelope.alpha > 0.0:
-        found.append(_dented(p, envelope, by))
     return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
 
 
@@ -123,36 +122,27 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     return rows
 
 
-def _dented(p: Any, envelope: Envelope, by: Sequence[Traced]) -> tuple[np.ndarray, np.ndarray]:
+def _dents(p: Any, envelope: Envelope) -> list[Any]:
     """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse has a dent.
 
-    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven. With
-    the derivatives, as in :func:`limits`: by hand, because a traced number knows no neighbours.
+    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven.
     """
-    loads, slips = int(constants.LOADS_OF_A_GRID), int(constants.STEPS_OF_A_GRID)
-    alpha = envelope.alpha * np.array([0.5, 1.0])
-    kappa = float(constants.BEYOND_TESTED) * envelope.kappa * np.linspace(-1.0, 1.0, slips)
-    axes = np.meshgrid(np.linspace(*envelope.Fz, loads), np.concatenate([-alpha, alpha]), kappa)
-    Fz, alpha, kappa = (axis.ravel() for axis in axes)
-    conditions = {"Fz": Fz, "alpha": alpha, "kappa": kappa, "pressure": 0.5 * sum(envelope.pressure)}
-    Fx, Fy = outputs_of(("Fx", "Fy"), p, {**conditions, "Vx": p.LONGVL})
-    lines = len(kappa) // slips
-
-    def steps(force: Any, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Changes of a force from slip to slip (lines, slips - 1), and their derivatives with one more axis."""
-        value, slope = plain(force).reshape(lines, slips), gradient(force, by).reshape(lines, slips, len(by))
-        unit = unit.reshape(lines, slips)[:, 1:]
-        return np.diff(value) / unit, np.diff(slope, axis=1) / unit[..., None]
-
-    (x, x_by), (y, y_by) = steps(Fx, Fz), steps(Fy, -np.sign(alpha) * Fz)
-    turn = x[:, :-1] * y[:, 1:] - y[:, :-1] * x[:, 1:]
-    turn_by = (
-        x_by[:, :-1] * y[:, 1:, None]
-        + x[:, :-1, None] * y_by[:, 1:]
-        - y_by[:, :-1] * x[:, 1:, None]
-        - y[:, :-1, None] * x_by[:, 1:]
+    if not (envelope.kappa > 0.0 and envelope.alpha > 0.0):
+        return []
+    sideslips = envelope.alpha * np.array([-1.0, -0.5, 0.5, 1.0])
+    slips = (
+        float(constants.BEYOND_TESTED) * envelope.kappa * np.linspace(-1.0, 1.0, constants.STEPS_OF_A_GRID)
     )
-    return turn.ravel() - constants.LARGEST_DENT, turn_by.reshape(turn.size, len(by))
+    axes = np.meshgrid(np.linspace(*envelope.Fz, constants.LOADS_OF_A_GRID), sideslips, slips[1:-1])
+    Fz, alpha, kappa = (axis.ravel() for axis in axes)
+    at = {"Fz": Fz, "alpha": alpha, "pressure": 0.5 * sum(envelope.pressure), "Vx": p.LONGVL}
+    step = slips[1] - slips[0]
+    forces = [outputs_of(("Fx", "Fy"), p, {**at, "kappa": kappa + k * step}) for k in (-1.0, 0.0, 1.0)]
+    (x, next_x), (y, next_y) = (
+        [(after - before) / unit for before, after in pairwise(force)]
+        for force, unit in zip(zip(*forces, strict=True), (Fz, -np.sign(alpha) * Fz), strict=True)
+    )
+    return [x * next_y - y * next_x - constants.LARGEST_DENT]
 
 
 def _with_slips(

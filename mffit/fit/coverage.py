@@ -13,8 +13,6 @@ from mffit.fit.stages import STAGES, Stage
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Parameter
 
-NEEDLESS = "left-out sweeps are not predicted clearly better with these terms"
-
 
 @dataclass(frozen=True, slots=True)
 class StageCoverage:
@@ -114,23 +112,19 @@ def _straight_on(points: Points) -> np.ndarray:
     return np.asarray(upright & straight & points.free_rolling)
 
 
-def coverage(
-    points: Points, side: str, by_hand: Collection[str] = (), predicting: Collection[str] = ()
-) -> tuple[StageCoverage, ...]:
+def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
     """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
 
-    Those named in ``by_hand`` are held, whatever the data determine. ``predicting`` are the stages with terms that are free only
-    if they predict left-out sweeps better, and do. Stages of longitudinal slip and of channels beside Fy and
-    Mz are listed where there are such data.
+    Those named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels other than Fy
+    and Mz are listed where there are such data.
     """
     seen = design(points, side)
     rows = []
     for stage in STAGES:
         if not _listed(stage, seen):
             continue
-        needless = NEEDLESS if stage.if_predicted and stage.name not in predicting else ""
         reasons = {
-            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen) or needless
+            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen)
             for name in stage.parameters
         }
         free = tuple(name for name, reason in reasons.items() if not reason)

@@ -46,7 +46,6 @@ class Delivered:
     lent: Lent | None  #: what a sister tyre gave
     relaxation: tuple[Relaxation, ...]  #: one per direction
     posterior: Posterior  #: of all of them
-    beside: tuple[BesideNumbers, ...]  #: what was fitted to readings of its own
     zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
 
 
@@ -79,12 +78,11 @@ def deliver(
     if lent is not None:
         known = known.having(lent.beside.values, "sister")
         posterior = posterior.without(lent.found).with_numbers(lent.beside)
-        own = (*own, lent.beside)
         found |= {name: q for name, q in lent.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return Delivered(known, coefficients, annotated, lent, lag, posterior, own, rolling.zeros)
+    return Delivered(known, coefficients, annotated, lent, lag, posterior, rolling.zeros)
 
 
 def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit.beside import BesideNumbers
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
-from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 
@@ -84,23 +82,3 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     numbers = [*problem.starting_here(fitted.numbers), free]
     solution = solve(problem.free([n.name for n in numbers]), numbers)
     return problem.with_values(solution.values).simulation
-
-
-def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, float]]:
-    """Coefficients of ``count`` tyres drawn from the posterior, each within its bounds and the physical limits of the fit.
-
-    Parameters
-    ----------
-    fitted : the result of the fit
-    count : number of members
-    seed : of the random numbers; the same seed gives the same members
-    """
-    random, values, posterior = np.random.default_rng(seed), fitted.simulation.values, fitted.posterior
-    names = [name for name in posterior.names if error_of(name) is None]
-    rows = [posterior.names.index(name) for name in names]
-    own = BesideNumbers(
-        values={name: float(values[name]) for name in names},
-        covariance=posterior.covariance[np.ix_(rows, rows)],
-        envelope=fitted.problem.envelope,
-    )
-    return [fitted.hand.within(own.drawn(values, values, random)) for _ in range(count)]

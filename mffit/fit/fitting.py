@@ -13,7 +13,8 @@ import numpy as np
 from mffit.config import Config, axis_signs
 from mffit.config.loading import as_declared
 from mffit.fit import agreement
-from mffit.fit.borrowed.sister import sister_of, sister_sentence
+from mffit.fit.bands import bands
+from mffit.fit.borrowed.sister import sister_of
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
@@ -25,21 +26,28 @@ from mffit.fit.influences.temperature import at_temperature
 from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
+from mffit.fit.polish import refitted
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
-from mffit.fit.relaxation import relaxation_sentences
 from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
 from mffit.fit.start import starting_values
-from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
-from mffit.fit.wording import explanations, nuisance_sentences, unmodelled_sentences, warnings, with_remarks
+from mffit.fit.wording import (
+    explanations,
+    nuisance_sentences,
+    remarks,
+    warnings,
+    zeros_of_rig,
+    zeros_sentence,
+)
 from mffit.fit.written.files import plain_use
 from mffit.linearised import LinearisedFit
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
+from mffit.rig import Simulation
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
 from tir import Tyre
 
@@ -80,13 +88,11 @@ def fit(
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
-    overturning = overturning_terms(points, known.values, config.tyre.side, hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),
-        **overturning.start,
         **(turning.start if turning else {}),
     }
-    plan = fit_plan(config, points, measured, known, start, fleet, turning, overturning.predicting)
+    plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
@@ -108,8 +114,15 @@ def fit(
     runs = between_runs(found, points)
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
     channels = agreement.with_points(readings, points)
-    result = FitResult(
-        tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
+    tyre = files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre
+    simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
+    wide = bands(made.posterior, fitted.held, simulation, points, zeros_of_rig(fitted))
+    modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)
+    moved, contradicted = (
+        ("", False) if turning is None else zeros_sentence(turning, fitted, from_base=base is not None)
+    )
+    return FitResult(
+        tyre=tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, made.coefficients),
         channels=channels,
@@ -120,14 +133,15 @@ def fit(
         posterior=made.posterior,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),
         explanations=(
-            *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
+            *modelled,
             *explanations(config, files, made.known.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
-            *relaxation_sentences(made.relaxation),
-            *([] if made.lent is None else [sister_sentence(made.lent)]),
-            *unmodelled_sentences(found),
+            *others,
+            *remarks(config, points, fitted, tyre.values, wide),
+            *([f"{moved[0].upper()}{moved[1:]}."] if moved and not contradicted else []),
         ),
         warnings=(
+            *([moved] if contradicted else []),
             *warnings(fitted, full, doubts, outlying, files.untested, plan.cover),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
@@ -144,11 +158,10 @@ def fit(
         runs=runs,
         confounded=confounded,
         radii=radii,
-        beside=made.beside,
+        bands=wide,
         lent=made.lent,
         relaxation=made.relaxation,
     )
-    return with_remarks(result, config, points, turning, from_base=base is not None)
 
 
 def _fitted_and_judged(
@@ -161,7 +174,8 @@ def _fitted_and_judged(
     progress("predicting each sweep from the others")
 
     def refit(without: np.ndarray) -> FittedModel:
-        fitted = found.refit(np.setdiff1d(np.arange(len(problem.points)), without))
+        others = np.setdiff1d(np.arange(len(problem.points)), without)
+        fitted = refitted(found.full, replace(problem, simulation=found.full.simulation).select(others))
         sigma = {name: weights.copy() for name, weights in found.full.problem.sigma.items()}
         for name, weights in sigma.items():
             weights[without] = problem.sigma[name][without]

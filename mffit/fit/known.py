@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
 from mffit.config.models import TyreTable
@@ -13,7 +15,8 @@ from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
 from mffit.fit.stages import ODD_TERMS
-from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, radius_coefficients
+from mffit.fit.upright import nearest
+from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, effective_radius
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.rig import reference_speed
@@ -72,12 +75,14 @@ def known_before_fit(
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
     known = known.having(covered_ranges(points), "range")
-    r_e = dict(measured.by_load("r_e_measured"))
+    r_e = dict(measured.r_e_loads)
     if r_e:
-        free = hand.without_held(RADIUS_COEFFICIENTS)
-        known = known.having(
-            radius_coefficients(known.values, r_e, reference_speed(points), free), "measured"
+        loads, speed = np.array(list(r_e)), reference_speed(points)
+        radii = np.array(list(r_e.values()))
+        found = nearest(
+            known.values, RADIUS_COEFFICIENTS, lambda v: effective_radius(v, loads, speed), radii, hand.held
         )
+        known = known.having(found, "measured")
     if measured.epsilon_gamma is not None:
         known = known.having({"PECP1": measured.pecp1, "PECP2": measured.pecp2}, "measured")
     if config.tyre.side == "symmetric":

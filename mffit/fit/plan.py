@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from mffit.fit.priors import scatter as scatter_of
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.fit.rig.zeros import TurningZeros
-from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
+from mffit.fit.stages import BY_STAGE, ODD_TERMS
 from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
@@ -88,13 +88,12 @@ def fit_plan(
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
     turning: TurningZeros | None = None,
-    predicting: Collection[str] = (),
 ) -> FitPlan:
     """The plan for these points.
 
-    ``turning`` are zeros that determine PECP1 where eps_gamma was not measured; ``predicting`` as in :func:`coverage`.
+    ``turning`` are zeros that determine PECP1 where eps_gamma was not measured.
     """
-    cover = coverage(points, config.tyre.side, known.hand.held, predicting)
+    cover = coverage(points, config.tyre.side, known.hand.held)
     channels = fitted_channels(cover, points)
     turned = len(np.unique(points.mount)) > 1
     rig = rig_numbers(config, measured, points.used_setups, channels, turned=turned)
@@ -105,7 +104,6 @@ def fit_plan(
         scatter["PVY1"] = config.rig.u_conicity or EXACT
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
-    absent |= {name for stage in STAGES if stage.if_predicted for name in stage.parameters}
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
     extra = ["Q_RE0"] if rig and config.rig.on_disc and config.rolling_radius else []
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}

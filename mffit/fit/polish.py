@@ -17,7 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
-from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, Solution, minimum, solve
+from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
 from mffit.rig_errors import error_of
@@ -37,11 +37,11 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
         begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
         numbers = [n for n in plan.numbers(begin) if n.name not in OF_CAMBER_OR_SPIN]
-        found = minimum(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+        found = solve(begin.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
         ends.append(found)
     best = part.with_values(min(ends, key=lambda end: end.cost).values)
     numbers = plan.numbers(best)
-    near = minimum(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    near = solve(best.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
     return polish(problem.with_values(near.values), plan)
 
 
@@ -55,20 +55,27 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
     problem, scale = near.with_noise_of_misfit().reweighted()
-    problem, solution = _solved(problem, plan.numbers(problem))
-    return _fitted(problem, solution, plan.numbers(problem), plan, scale)
+    return _fitted(problem, plan.numbers(problem), plan, scale)
+
+
+def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
+    """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
+    for _ in range(2):
+        here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
+        problem, scale = here.with_noise_of_misfit().reweighted()
+        fitted = _fitted(problem, fitted.numbers, fitted, scale)
+    return fitted
 
 
 def _fitted(
-    problem: FitProblem,
-    solution: Solution,
-    numbers: Sequence[FreeNumber],
-    given: FitPlan | Fitted,
-    scale: Mapping[str, float],
+    problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted, scale: Mapping[str, float]
 ) -> Fitted:
-    """The record of a solution, at which ``problem`` is; ``given`` says what was held."""
+    """The fit of some numbers, begun at the values of ``problem``; ``given`` says what is held."""
+    numbers = problem.starting_here(numbers)
+    solution = solve(problem.free([n.name for n in numbers]), numbers)
+    problem = problem.with_values(solution.values)
     posterior = joint(problem, solution, {**given.held, **given.held_rig}).without(given.held_rig)
-    stderr = posterior.stderr
+    stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
@@ -80,7 +87,11 @@ def _fitted(
         held_rig=given.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
         at_limit=solution.at_limit - solution.at_bound,
-        regularised=frozenset(_with_prior(numbers)) - _within_their_priors(stderr, numbers),
+        regularised=frozenset(
+            n.name
+            for n in numbers
+            if math.isfinite(n.spread) and error_of(n.name) is None and stderr[n.name] >= share * n.spread
+        ),
         scale=scale,
         left=solution.left,
         cost=solution.cost,
@@ -95,7 +106,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)
-        near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+        near = solve(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
         problem = problem.with_values(near.values)
     return problem
 
@@ -107,23 +118,6 @@ def _strides(n: int) -> Iterator[int]:
     while stride > constants.STRIDE_DIVISOR**2:
         stride //= constants.STRIDE_DIVISOR
         yield stride
-
-
-def _solved(problem: FitProblem, numbers: Sequence[FreeNumber]) -> tuple[FitProblem, Solution]:
-    numbers = problem.starting_here(numbers)
-    solution = solve(problem.free([n.name for n in numbers]), numbers)
-    return problem.with_values(solution.values), solution
-
-
-def _with_prior(numbers: Sequence[FreeNumber]) -> dict[str, float]:
-    """Standard deviation of the prior of every coefficient that has one."""
-    return {n.name: n.spread for n in numbers if error_of(n.name) is None and math.isfinite(n.spread)}
-
-
-def _within_their_priors(errors: Mapping[str, float], numbers: Sequence[FreeNumber]) -> frozenset[str]:
-    """Coefficients that the points determine better than their priors do."""
-    share = constants.FITTED_SHARE_OF_PRIOR
-    return frozenset(name for name, spread in _with_prior(numbers).items() if errors[name] < share * spread)
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:

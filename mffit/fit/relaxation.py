@@ -23,16 +23,14 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
 from mffit.points import Points, levels
+from mffit.points.clock import rolled_distance
 from mffit.points.constants import LONGEST_STEP
-from mffit.points.lag import rolled_distance
 from mffit.points.mean import autoregression
 from mffit.points.steps import STEPPED
-from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.rig.lag import lag_of_move, lagged_setting
 from mffit.rig.simulation import LAG
 from mffit.rig_errors.record import RADIANS
-from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.equations import stiffness
@@ -373,21 +371,4 @@ def _fitted(
         covariance=scale * end.covariance[np.ix_(own, own)],
         leans_on=fitted,
         slope=by_stiffness @ (measured[:, None] * relative) if fitted else np.zeros((len(names), 0)),
-    )
-
-
-def relaxation_sentences(found: Sequence[Relaxation]) -> list[str]:
-    """The relaxation lengths that steps show, and the coefficients: a sentence per direction with steps."""
-    return [_sentence(one) for one in found if one.found]
-
-
-def _sentence(found: Relaxation) -> str:
-    lengths = ", ".join(
-        f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N"
-        for run in found.runs
-    )
-    numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
-    force = CHANNELS[found.direction.force].word
-    return ascii_only(
-        f"Relaxation length of the {force}, from steps of {found.direction.word}: {lengths}. So {numbers}."
     )

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
-from mffit.fit.bands import BandOfCombined, BandsByPressure
-from mffit.fit.beside import BesideNumbers
+from mffit.fit.bands import Bands
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
@@ -53,14 +52,11 @@ class FitResult(Brief):
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
-    bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
-    band_of_combined: BandOfCombined | None = None  #: where slip was run at one sideslip only
-    bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
+    bands: Bands | None = None  #: where the 95 % bands are narrow
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
     relaxation: tuple[Relaxation, ...] = ()  #: what steps of the sideslip angle and of slip determine
-    beside: tuple[BesideNumbers, ...] = ()  #: coefficients fitted to readings of their own: radii, My, steps
     lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
     runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (

@@ -16,7 +16,6 @@ class Stage:
     channels: tuple[str, ...]  #: measured channels that show them
     where_measured: bool = False  #: listed only where its channels were measured
     where_run: bool = False  #: listed only where longitudinal slip was run
-    if_predicted: bool = False  #: free only if left-out sweeps are predicted better with its coefficients
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -39,20 +38,6 @@ STAGES = (
     Stage("spin", "Turn slip", ("Fy", "Mz")),
     Stage("shift", "Ply-steer and conicity", ("Fy", "Mz")),
     Stage("Mx", "Overturning moment", ("Mx",), where_measured=True),
-    Stage(
-        "Mx-arm",
-        "Overturning moment: arm of the side force",
-        ("Mx",),
-        where_measured=True,
-        if_predicted=True,
-    ),
-    Stage(
-        "Mx-load",
-        "Overturning moment: camber and load",
-        ("Mx",),
-        where_measured=True,
-        if_predicted=True,
-    ),
 )
 
 BY_STAGE = {stage.name: stage for stage in STAGES}

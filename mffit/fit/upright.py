@@ -1,15 +1,17 @@
-"""Friction and slip stiffnesses of the upright wheel on a straight path, traced by the coefficients."""
+"""Stiffnesses of the upright wheel on a straight path, traced by the coefficients, and coefficients read off measured values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from mffit.least_squares import FreeNumber, of_model, solve
 from tir.equations import normalise, stiffness
 from tir.equations.normalise import Inputs
+from tir.parameters import BY_NAME
 
 
 def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: Any) -> tuple[Any, Any]:
@@ -22,3 +24,21 @@ def upright(values: Mapping[str, Any], loads: Any, pressure: Any) -> tuple[Simpl
     """Coefficients and normalised inputs of the upright wheel without slip, for the equations."""
     p = SimpleNamespace(**values)
     return p, normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
+
+
+def nearest(
+    values: Mapping[str, Any],
+    names: Sequence[str],
+    of: Callable[[Mapping[str, Any]], Any],
+    measured: np.ndarray,
+    held: Collection[str] = (),
+) -> dict[str, float]:
+    """The coefficients with which a characteristic (n,) of the tyre passes through measured values (n,), or nearest to them.
+
+    At most one per value changes, in the order of ``names``, and none that is ``held`` by hand.
+    """
+    free = [name for name in names if name not in held][: len(measured)]
+    numbers = [FreeNumber(n, BY_NAME[n].inside(float(values[n])), *BY_NAME[n].bounds) for n in free]
+    u = 1e-4 * float(np.max(np.abs(measured), initial=0.0)) or 1.0
+    problem = of_model(lambda numbers: of({**values, **numbers}), free, measured, u)
+    return solve(problem, numbers, tolerance=1e-12).values

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,14 +12,7 @@ from scipy.special import ndtri
 from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE, PREDICTION_FALSE_ALARM
 from mffit.fit.agreement import Agreement
-from mffit.fit.bands import (
-    BandOfCombined,
-    BandOfOtherSide,
-    BandsByPressure,
-    band_of_combined,
-    band_of_other_side,
-    bands_by_pressure,
-)
+from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage, why_held
 from mffit.fit.fitted import Fitted
@@ -30,7 +22,6 @@ from mffit.fit.influences.nuisances import TEMPERATURE
 from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
-from mffit.fit.result import FitResult
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.fit.written.misfit import FileFigures
@@ -38,7 +29,6 @@ from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
-from mffit.rig import Simulation
 from mffit.rig_errors import UNITS, WORDS, ZEROS, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
@@ -57,13 +47,9 @@ def explanations(
     out = file_sentences(files, names)
     if hand.names:
         out.append(by_hand_sentence(hand, names["normal"] if files.lacking else ""))
-    if measured.epsilon_gamma is not None and "PECP1" in hand.held:
-        out.append(
-            f"PECP1 = {hand.held['PECP1']:.4f} is held by hand. The directly measured eps_gamma is "
-            f"{measured.epsilon_gamma.value:.4f}."
-        )
-    elif measured.epsilon_gamma is not None:
-        out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
+    if measured.epsilon_gamma is not None and "PECP1" not in hand.held:
+        said = PECP1_IS[config.spin.pecp1].format(measured=measured.epsilon_gamma.value)
+        out.append(f"PECP1 = {float(values['PECP1']):.4f} is {said}.")
     return out
 
 
@@ -199,64 +185,44 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
     return f"at sideslips of {', '.join(others)} and {last} deg" if others else f"at {last} deg of sideslip"
 
 
-def other_side_sentence(band: BandOfOtherSide) -> str:
-    """How well the side force is known on the side to which no sideslip was run, and what to run."""
-    alpha = round(float(np.degrees(band.sideslip)), 1)
-    return (
-        "sideslip was run to one side only: the file takes the tyre as symmetric where only both sides would show more; "
-        f"the 95 % band of Fy is +-{band.half:.0f} N at {alpha:.1f} deg (rms over load), and +-{band.half_opposite:.0f} N at "
-        f"{-alpha:.1f} deg; sweeps of sideslip of the other sign would narrow it"
-    )
-
-
-def combined_sentence(band: BandOfCombined) -> str:
-    """How far the fit interpolates where longitudinal slip was run at one sideslip only; empty where that is harmless."""
-    if not band.wider:
-        return ""
-    alpha = float(np.degrees(band.sideslip))
-    return (
-        f"longitudinal slip with sideslip was run at {alpha:.1f} deg only, which does not show how Fx falls on the way there: "
-        f"the 95 % band of Fx is +-{band.half_between:.0f} N at {alpha / 2:.1f} deg (rms over slip and load), and "
-        f"+-{band.half_at:.0f} N at {alpha:.1f} deg; sweeps of slip at a second sideslip, such as {alpha / 2:.0f} deg, would "
-        "narrow it"
-    )
-
-
-def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
-    """Where PECP1 comes from; ``source`` is ``spin.pecp1`` of tyre.toml, ``epsilon_gamma`` the measured value."""
-    if source == "debiased":
-        return (
-            f"PECP1 = {PECP1:.4f} is the measured eps_gamma {epsilon_gamma:.4f} less the bias that the finite spin of the "
-            "disc adds to it."
-        )
-    if source == "direct":
-        return (
-            f"PECP1 = {PECP1:.4f} is the measured eps_gamma itself. Because the spin of the disc is not small, the model's "
-            "turn-slip force differs slightly from the measured one."
+def beside_sentence(band: BandBesideSweeps) -> str:
+    """How well a force is known where no sweep is, and what to run; empty where that is harmless."""
+    at, beside = (round(float(np.degrees(alpha)), 1) for alpha in (band.sideslip, band.beside))
+    what, unknown = "sideslip was run to one side only", "what only both sides show"
+    if band.channel == "Fx":
+        what, unknown = (
+            f"longitudinal slip with sideslip was run at {at:.1f} deg only",
+            "how Fx falls on the way there",
         )
     return (
-        f"PECP1 = {PECP1:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise and every "
-        f"rig error with its declared uncertainty. The directly measured eps_gamma is {epsilon_gamma:.4f}."
+        f"{what}, so that {unknown} is expected, not measured: the 95 % band of {band.channel} is +-{band.half_beside:.0f} N "
+        f"at {beside:.1f} deg (rms), and +-{band.half_at:.0f} N at {at:.1f} deg; sweeps there would narrow it"
+        if band.wider
+        else ""
     )
 
 
-def bands_sentence(
-    bands: BandsByPressure, held: Mapping[str, float], values: Mapping[str, Any], why: str
-) -> str:
+PECP1_IS = {
+    "debiased": "the measured eps_gamma {measured:.4f} less the bias that the finite spin of the disc adds to it",
+    "direct": "the measured eps_gamma itself; because the spin of the disc is not small, the model's turn-slip force differs "
+    "slightly from the measured one",
+    "model": "the joint estimate of tyre and rig; the directly measured eps_gamma is {measured:.4f}",
+}
+"""By ``spin.pecp1`` of tyre.toml, where PECP1 comes from."""
+
+
+def bands_sentence(bands: Bands, held: Mapping[str, float], values: Mapping[str, Any], why: str) -> str:
     """Where the bands hold; ``held`` are standard uncertainties, ``why`` is what the sweeps lack for the widening coefficient.
 
     Empty where they are about as narrow at all pressures.
     """
     if not bands.wider:
         return ""
-    nominal = float(values["NOMPRES"])
     others = ", ".join(f"{p / 1e3:.0f}" for p in bands.others)
+    nominal = float(values["NOMPRES"]) / 1e3
     at_nominal = ""
-    if nominal in bands.others:
-        at_nominal = (
-            f". Coefficients are values at the nominal {nominal / 1e3:.0f} kPa: PKY1 and PKY2 share this uncertainty, which "
-            "cancels at the pressure of the sweeps"
-        )
+    if 1e3 * nominal in bands.others:
+        at_nominal = f". Coefficients are values at the nominal {nominal:.0f} kPa: PKY1 and PKY2 share this uncertainty"
     return (
         f"the 95 % bands of the side force are +-{bands.half:.0f} N (rms over the tested angles and loads) at the "
         f"{bands.main / 1e3:.0f} kPa of most sweeps, and +-{bands.half_of_others:.0f} N at {others} kPa: {bands.share:.0%} of "
@@ -265,12 +231,11 @@ def bands_sentence(
     )
 
 
-def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> str:
-    """What zeros without a measured eps_gamma changed: the force before, the measured one, and which number was moved."""
-    source = "the base file gives" if from_base else "the usual values give"
-    begins = f"the base file contradicts the zeros: at {zeros.load:.0f} N it gives"
-    if not (from_base and zeros.contradicted):
-        begins = f"at {zeros.load:.0f} N {source}"
+def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> tuple[str, bool]:
+    """What zeros without a measured eps_gamma changed; and whether they contradict a base file, which is a warning."""
+    contradicted = zeros.contradicted and from_base
+    begins = "the base file contradicts the zeros: " if contradicted else ""
+    source = "it gives" if contradicted else "the base file gives" if from_base else "the usual values give"
     moved = [
         f"{name} from {to_uncertainty(before, u)} to {to_uncertainty(fitted.values[name], u)} +- {to_uncertainty(u, u)}"
         for name, before in zeros.before.items()
@@ -282,21 +247,19 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
         ""
         if zeros.camber
         else (
-            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1, and the stiffness is "
-            "the one assumed before: a camber sweep separates the two"
+            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1: a camber sweep "
+            "separates the two"
         )
     )
     return (
-        f"{begins} a turn-slip force of {zeros.expected:.0f} N on this path, and {to_uncertainty(force.value, force.u)} +- "
-        f"{to_uncertainty(force.u, force.u)} N was measured; the fit moved {' and '.join(moved)}{rest}"
-    )
+        f"{begins}at {zeros.load:.0f} N {source} a turn-slip force of {zeros.expected:.0f} N on this path, and "
+        f"{to_uncertainty(force.value, force.u)} +- {to_uncertainty(force.u, force.u)} N was measured; the fit moved "
+        f"{' and '.join(moved)}{rest}"
+    ), contradicted
 
 
-def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: BandsByPressure) -> str:
-    """What the zeros of the rig on a flat track share with the tyre, how much of the bands this is, and what helps.
-
-    ``zeros`` are the fitted ones with their standard uncertainties.
-    """
+def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands) -> str:
+    """What the fitted zeros of the rig on a flat track share with the tyre, how much of the bands this is, and what helps."""
     found = ", ".join(
         f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
         for name, (value, u) in zeros.items()
@@ -304,11 +267,8 @@ def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands
     band, exact = (to_uncertainty(half, half) for half in (bands.half, bands.half_of_exact_zeros))
     return (
         f"on a flat track with one set-up, zeros of the rig ({found}) look almost like ply-steer, conicity and residual torque: "
-        "the fit divides their sum by what [rig] declares, and the coefficients PHY, PVY, QHZ, QDZ6 and QDZ7 are uncertain by "
-        f"the rest. The 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with these known exactly; the camber "
-        "zero is in the uncertainties as declared. Sweeps of the tyre turned on its rim (mount) separate conicity and residual "
-        "torque from the zeros of camber, Fy and Mz; further set-ups (setup) average all zeros, and smaller u_ keys in [rig] "
-        "state a better rig"
+        f"the 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with these known exactly. Turn the tyre on its rim "
+        "(mount), repeat set-ups (setup), or state a better rig (u_ keys of [rig])"
     )
 
 
@@ -431,32 +391,33 @@ def nuisance_sentences(
     temperature: AtTemperature | None,
     runs: BetweenRuns | None,
     plain: Mapping[str, Agreement],
-) -> list[str]:
-    """Which file is for whom, what was modelled and what it did to the coefficients, the most important first.
+) -> tuple[list[str], list[str]]:
+    """Which file is for whom and what was modelled; and what was not modelled, each with the reason.
 
     ``name`` is that of the tyre; ``plain`` the agreement of the plain file with the points, by channel.
     """
-    out = []
-    if temperature is not None:
-        out += [_files_sentence(name, temperature, plain), _moved_sentence(name, temperature)]
+    first = [] if temperature is None else [_files_sentence(name, temperature, plain)]
+    last = []
     for verdict in found.choice.verdicts:
-        if verdict.modelled and verdict.nuisance.key != TEMPERATURE:
-            out.append(
-                _runs_sentence(name, verdict, runs)
-                if runs is not None and verdict.nuisance.per_run
-                else _modelled_sentence(verdict, found.full.rig)
-            )
-    return out
-
-
-def unmodelled_sentences(found: NuisanceFit) -> list[str]:
-    """What was not modelled, and why."""
-    out = []
-    for verdict in found.choice.verdicts:
+        said = f"The {verdict.nuisance.name} is"
+        compared = f" ({_compared(verdict)})" if verdict.beside else ""
         if not verdict.modelled and _worth_telling(verdict, found):
-            said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"
-            out.append(said + (f" ({_compared(verdict)})." if verdict.beside else "."))
-    return out
+            last.append(f"{said} not modelled: {verdict.reason}{compared}.")
+        elif verdict.modelled and verdict.nuisance.key != TEMPERATURE:
+            first.append(f"{said} modelled: {_size(verdict, found, runs)}; {verdict.reason}{compared}.")
+    return first, last
+
+
+def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str:
+    """What was found of an influence, and that the files are without it."""
+    if runs is not None and verdict.nuisance.per_run:
+        sizes = " and ".join(f"{SCALED[n]} by {_percent(*value)}" for n, value in runs.scatter.items())
+        return (
+            f"between {len(runs.runs)} sweeps {sizes} (standard deviation), contained in the standard uncertainties; the files "
+            f"hold for the mean of the runs, and leave {_gaps(_rms(runs.alone))} rms"
+        )
+    stated = (f"{words_of(n)} {_stated(n, *found.full.rig[n])}" for n in verdict.nuisance.numbers)
+    return ascii_only(f"{', '.join(stated)}, and the files are without it")
 
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
@@ -472,37 +433,6 @@ def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreeme
         f"{_gaps(_rms(found.channels))}{_of_left_out(found.left_out)} with its temperature terms, which were measured from "
         f"{low:.0f} to {high:.0f} degC: {terms}. Without them it leaves {_gaps(_rms(found.alone))}, so take it to the "
         f"temperature of the simulation first, in Python by tyre.at_temperature({high:.0f})."
-    )
-
-
-def _moved_sentence(name: str, found: AtTemperature) -> str:
-    if not found.moved:
-        return f"The coefficients of {name}.tir do not depend on the warming beyond their uncertainty."
-    named = list(found.moved.items())[:NAMED_IN_SENTENCE]
-    changes = ", ".join(
-        f"{name} {rounded(there, u)[0]} instead of {rounded(here, u)[0]} +- {rounded(here, u)[1]}"
-        for name, (there, here, u) in named
-    )
-    more = f" and {len(found.moved) - len(named)} more" if len(found.moved) > len(named) else ""
-    return ascii_only(
-        f"The coefficients of {name}.tir contain the warming along these sweeps: {changes} at {found.T_ref:g} degC{more}. "
-        "Their standard uncertainties include this difference."
-    )
-
-
-def _modelled_sentence(verdict: Verdict, rig: Mapping[str, tuple[float, float]]) -> str:
-    numbers = ", ".join(f"{words_of(name)} {_stated(name, *rig[name])}" for name in verdict.nuisance.numbers)
-    return ascii_only(
-        f"The {verdict.nuisance.name} is modelled, {numbers}: {verdict.reason} ({_compared(verdict)}). The files are without it."
-    )
-
-
-def _runs_sentence(name: str, verdict: Verdict, found: BetweenRuns) -> str:
-    sizes = " and ".join(f"{SCALED[number]} by {_percent(*value)}" for number, value in found.scatter.items())
-    return (
-        f"The {verdict.nuisance.name} is modelled: between {len(found.runs)} sweeps {sizes} (standard deviation); "
-        f"{verdict.reason} ({_compared(verdict)}). {name}.tir holds for the mean of the runs and leaves "
-        f"{_gaps(_rms(found.alone))} rms without their own numbers; standard uncertainties contain this scatter."
     )
 
 
@@ -547,31 +477,20 @@ def _gaps(gaps: Gaps) -> str:
     )
 
 
-def with_remarks(
-    found: FitResult, config: Config, points: Points, zeros: TurningZeros | None, *, from_base: bool
-) -> FitResult:
-    """The result with what its bands and zeros without a measured eps_gamma have to say."""
-    fitted, values = found.search, found.tyre.values
-    assert fitted is not None
-    tyre = Simulation(values, turn_slip=config.rig.on_disc)
+def remarks(
+    config: Config, points: Points, fitted: Fitted, values: Mapping[str, Any], found: Bands
+) -> list[str]:
+    """What the bands of a fitted tyre with these values have to say."""
+    zeros = zeros_of_rig(fitted)
+    said = [
+        bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
+        *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
+        zeros_of_rig_sentence(zeros, found) if zeros and not config.rig.on_disc else "",
+    ]
+    return [f"{text[0].upper()}{text[1:]}." for text in said if text]
+
+
+def zeros_of_rig(fitted: Fitted) -> dict[str, tuple[float, float]]:
+    """The fitted zeros of the rig that show in Fy and Mz, with standard uncertainties."""
     sideways = (error.name for error in ZEROS if error.shows_in(SIDEWAYS))
-    zeros_of_rig = {name: fitted.rig[name] for name in sideways if name in fitted.rig}
-    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points, zeros_of_rig)
-    why = why_held(bands.unseen, points, config.tyre.side) or "these sweeps do not determine it"
-    note = bands_sentence(bands, fitted.held, values, why)
-    moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
-    warned = zeros is not None and zeros.contradicted and from_base
-    combined = band_of_combined(fitted.posterior, tyre, points)
-    between = combined_sentence(combined) if combined is not None else ""
-    opposite = band_of_other_side(fitted.posterior, tyre, points)
-    other = other_side_sentence(opposite) if opposite is not None else ""
-    of_rig = zeros_of_rig_sentence(zeros_of_rig, bands) if zeros_of_rig and not config.rig.on_disc else ""
-    remarks = [note, between, other, "" if warned else moved, of_rig]
-    return replace(
-        found,
-        bands=bands,
-        band_of_combined=combined,
-        bands_note=note,
-        explanations=(*found.explanations, *(f"{text[0].upper()}{text[1:]}." for text in remarks if text)),
-        warnings=(*([moved] if warned else []), *found.warnings),
-    )
+    return {name: fitted.rig[name] for name in sideways if name in fitted.rig}

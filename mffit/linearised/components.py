@@ -132,6 +132,6 @@ def _bounds(smooth: SmoothFunctions, misfit: float) -> list[tuple[float, float]]
     """Of the logarithms: a run differs by no more than the misfit, and no length is below the settings' distance."""
     tiny = 1e-4 * misfit
     missed = (tiny, 3.0 * misfit)
-    lengths = [(one.spacing, 20.0 * one.width) for one in smooth.inputs]
+    lengths = [(one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs]
     of_runs = [(tiny, misfit), (1e-6, float(constants.LARGEST_RUN_SCALE)), (tiny, misfit), (0.05, 1.0)]
     return [tuple(np.log(pair).tolist()) for pair in [missed, *lengths, *of_runs, (1e-3, 1e3)]]

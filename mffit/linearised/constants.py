@@ -49,6 +49,9 @@ WIDER_THAN_THE_FIT = Real(
     "-",
     "Variance of a coefficient beside what the formula misses, over that of the fit, which knows nothing of this.",
 )
+LONGEST_LENGTH = Real(
+    20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."
+)
 COMPONENT_STEPS = Count(60, "-", "Most steps of the search for the components.")
 COMPONENT_TOLERANCE = Real(0.05, "-", "Gain of log evidence at which the search for the components ends.")
 LONGEST_CHAIN = Count(

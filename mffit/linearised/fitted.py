@@ -76,9 +76,8 @@ class LinearisedChannel:
     def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
         """The same if runs did not differ but by noise; without what is ``missed``, all that usual readings miss is noise."""
         functions = len(self.missed)
-        own = np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
         noise = self.components.noise if missed else robust(self.model.residual)
-        given = self.variances._replace(own=own, noise=2.0 * float(np.log(max(noise, 1.0))))
+        given = self.variances._replace(own=self._alike, noise=2.0 * float(np.log(max(noise, 1.0))))
         if missed:
             return self._left_out(self.model, given, rows)
         plain = replace(self.model, common=self.model.common[:, functions:])
@@ -97,6 +96,44 @@ class LinearisedChannel:
         given, _, _ = variances(replace(self.components, lengths=lengths).logarithms, self.smooth)
         (found,) = self._left_out(self.model, with_further(given, np.zeros(self.turn.shape[1])), [rows])
         return found
+
+    @property
+    def _alike(self) -> np.ndarray:
+        """Logarithms of the variances of the numbers of each run, if runs do not differ."""
+        return np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
+
+    @cached_property
+    def proof(self) -> float:
+        """Gain of log evidence by what the formula misses, over a constant alone."""
+        return self.stride * (self._evidence(self.components.lengths) - self._without)
+
+    @cached_property
+    def missed_over(self) -> dict[str, float]:
+        """Gain of log evidence because what the formula misses changes over an input, by its name, largest first."""
+        own = self._evidence(self.components.lengths)
+        found = {}
+        for i, one in enumerate(self.smooth.inputs):
+            lengths = list(self.components.lengths)
+            lengths[i] = constants.LONGEST_LENGTH * one.width
+            found[one.name] = self.stride * (own - self._evidence(tuple(lengths)))
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+    def _evidence(self, lengths: tuple[float, ...]) -> float:
+        """Log evidence with other lengths."""
+        given, _, _ = variances(replace(self.components, lengths=lengths).logarithms, self.smooth)
+        return self.alone.evidence(with_further(given, self.declared)).value
+
+    @cached_property
+    def _without(self) -> float:
+        """Log evidence if the formula misses only a constant."""
+        constant = SmoothFunctions.over(())
+        model = replace(
+            self.alone,
+            common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]]),
+        )
+        found = _found(model, constant, self.unit, self.declared)
+        given, _, _ = variances(found.logarithms, constant)
+        return model.evidence(with_further(given, self.declared)).value
 
     def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         return [

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.linearised import constants
 from mffit.points import Points, levels
+from mffit.quantities import CONDITIONS
 
 LEVELS: Mapping[str, levels.LevelKind] = {
     "alpha": levels.SIDESLIP,
@@ -18,6 +19,21 @@ LEVELS: Mapping[str, levels.LevelKind] = {
     "p": levels.PRESSURE,
 }
 """Settings of a test plan and the tolerance of their levels."""
+COLUMNS: Mapping[str, str] = {
+    "alpha": "alpha_deg",
+    "kappa": "kappa",
+    "Fz": "Fz_N",
+    "gamma": "gamma_deg",
+    "p": "p_kPa",
+    "T": "T_degC",
+}
+"""Conditions by the column of a table."""
+OTHER_WORDS: Mapping[str, str] = {
+    "phi_t": "path curvature",
+    "direction": "direction of rolling",
+    "mount": "mount of the tyre",
+    "sense": "sense of the sweeps",
+}
 ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
 """Further conditions, each used where it varies."""
 
@@ -42,6 +58,11 @@ class Input:
     def is_held(self) -> bool:
         """Whether every sweep holds the condition, at one of few settings."""
         return self.spacing > 1.5 * self.width / constants.DIVISIONS_OF_A_SWEEP
+
+
+def word_of(name: str) -> str:
+    """A condition in words."""
+    return CONDITIONS[COLUMNS[name]].word if name in COLUMNS else OTHER_WORDS[name]
 
 
 def inputs_of(points: Points) -> tuple[Input, ...]:

@@ -112,6 +112,21 @@ class Mixed:
             + float(np.sum(np.linalg.slogdet(inner)[1])),
         )
 
+    def further(self, given: Variances, columns: np.ndarray) -> FurtherColumns:
+        """What the residuals say of the factors of further columns (n, j), beside all other numbers."""
+        found, w = self.posterior(given), float(np.exp(-given.noise))
+        j, m = columns.shape[1], self.common.shape[1]
+        information, pull, across = np.zeros((j, j)), np.zeros(j), np.zeros((j, m))
+        for k, g in enumerate(self.groups):
+            z = self.own[g]
+            here = w * (columns[g] - w * z @ (found.own[k] @ (z.T @ columns[g])))
+            information += columns[g].T @ here
+            pull += here.T @ (self.residual[g] - self.common[g] @ found.mean)
+            across += here.T @ self.common[g]
+        through = across @ found.root
+        outside = columns - self.common @ (found.root @ through.T)
+        return FurtherColumns(information - through @ through.T, pull, outside)
+
     def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         """Each set of rows as all other rows of the groups predict it; what is left of a group shows its own numbers.
 
@@ -180,6 +195,14 @@ class MixedPosterior(NamedTuple):
     own: np.ndarray  #: (groups, q, q) covariance of the groups' numbers if the shared ones were known
     through: np.ndarray  #: (groups, m, q)
     log_determinant: float
+
+
+class FurtherColumns(NamedTuple):
+    """What residuals say of the factors of further columns; those that explain most are the pull over the information."""
+
+    information: np.ndarray  #: (j, j)
+    pull: np.ndarray  #: (j,)
+    outside: np.ndarray  #: (n, j) the columns without what the shared numbers follow of them
 
 
 class LeftOutReadings(NamedTuple):

@@ -1,8 +1,6 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
 from mffit.measured.alignment import align
-from mffit.measured.axis import alignment_verdict
-from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
@@ -21,7 +19,6 @@ __all__ = [
     "KEYS",
     "Alignment",
     "Contribution",
-    "DirectInputs",
     "LoadResult",
     "Measured",
     "RadiusReading",
@@ -30,9 +27,7 @@ __all__ = [
     "SideslipZeros",
     "adding_to_camber",
     "align",
-    "alignment_verdict",
     "at_the_axis",
-    "direct_method",
     "measure",
     "measured_path_radius",
     "odd_alpha",

@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.config import Config
 from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
-from mffit.measured import constants, wording
-from mffit.measured.result import LoadResult, SideslipReading, SideslipZeros, usual_ply_steer
+from mffit.measured import constants
+from mffit.measured.result import SideslipReading, SideslipZeros, usual_ply_steer
 from mffit.measured.uncertain import combined, covariance, named, quantity
 
 
@@ -113,11 +112,6 @@ class ZeroSplit(NamedTuple):
     misalignment: UFloat
     ply_steer: UFloat
 
-    @property
-    def axis_is_clear(self) -> bool:
-        """Whether the misalignment differs clearly from zero."""
-        return _is_clear(self.misalignment.nominal_value, self.misalignment.std_dev)
-
 
 def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> ZeroSplit | None:
     """The parts by their priors; None without both directions in the set-up.
@@ -178,34 +172,3 @@ def camber_at_true_zero(C_alpha: float, bend: UFloat, split: ZeroSplit) -> UFloa
     """
     share = named(0.5, 1.0 / math.sqrt(12.0), "camber stiffness off true zero", "-")
     return 1.0 - share * (bend / C_alpha) * split.misalignment
-
-
-class AlignmentVerdict(NamedTuple):
-    """Whether the slip force at zero exceeds what the rig's own alignment leaves."""
-
-    beyond: bool  #: the force exceeds it, and the fit corrects the readings
-    misaligned: bool  #: the split supports that the axis, and not the tyre, causes it
-    sentence: str  #: empty where both sides of the disc make the misalignment cancel
-
-
-def alignment_verdict(config: Config, row: LoadResult) -> AlignmentVerdict:
-    """The verdict at one load with a turn-slip force."""
-    assert row.F_phit is not None
-    force, left = row.F_phit.value, config.rig.u("alpha_0_deg")
-    if row.alpha_M is None and min(row.paths) < 0.0 < max(row.paths):
-        return AlignmentVerdict(False, False, "")
-    if row.alpha_M is None:
-        angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
-        return AlignmentVerdict(False, False, wording.not_separable(force, angle, left))
-    slip = row.slip_force(row.alpha_M.value)
-    beyond = abs(slip) > left
-    axis, tyre = row.misalignment, row.ply_steer
-    assert axis is not None
-    assert tyre is not None
-    clear = beyond and _is_clear(axis.value, axis.u)
-    sentence = wording.misaligned if clear else wording.slip_beyond if beyond else wording.aligned
-    return AlignmentVerdict(beyond, clear, sentence(row.alpha_M, axis, tyre, slip, row.shift_by(slip)))
-
-
-def _is_clear(misalignment: float, u: float) -> bool:
-    return bool(abs(misalignment) > COVERAGE_FACTOR_95 * u)

@@ -10,13 +10,10 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import VISIBLE_TEMPERATURE
 from mffit.measured import wording
 from mffit.measured.axis import (
-    AlignmentVerdict,
     SetupAngle,
     ZeroAngle,
-    alignment_verdict,
     angles_of_setups,
     at_true_zero,
     camber_at_true_zero,
@@ -32,11 +29,11 @@ from mffit.measured.epsilon import (
 )
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
-from mffit.measured.result import CONICITY, LoadResult, Measured, SideslipZeros
-from mffit.measured.setups import excess_forces, of_setups, results_of_setups, setup_scatter
+from mffit.measured.result import LoadResult, Measured, SetupScatter, SideslipZeros
+from mffit.measured.setups import excess_forces, results_of_setups, setup_scatter, warnings_of_setups
 from mffit.measured.stiffnesses import LoadSlopes, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
-from mffit.measured.uncertain import Contribution, agreed, budget, quantity, quantity_if
+from mffit.measured.uncertain import agreed, budget, quantity, quantity_if
 from mffit.measured.zeros import LoadGroup, load_groups, zeros_by_path
 from mffit.parts import Parts
 from mffit.points import Points, levels, main_pressure
@@ -51,7 +48,6 @@ class _AtLoad:
 
     row: LoadResult
     epsilon: UFloat | None
-    warmer: float = 0.0  #: temperature of the camber sweep above that of the zeros [K]
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
@@ -75,40 +71,31 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         If the turn-slip force points towards the centre of the disc.
     """
     evidence = evidence_of(config, points, parts, base)
-    warnings: list[str] = []
+    warnings = [*parts.unpaired]
     rows = []
-    found_slopes = [(group, *load_slopes(evidence, group)) for group in load_groups(evidence.points)]
-    evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
-    stiffnesses = [(group, slopes.C_alpha, slopes.C_gamma) for group, slopes, _ in found_slopes]
+    stiffnesses = []
+    for group in load_groups(evidence.points):
+        slopes, troubles = load_slopes(evidence, group)
+        stiffnesses.append((group, slopes))
+        warnings += troubles
+    evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes in stiffnesses])
+    scatter: SetupScatter | None = None
+    zeros: tuple[SideslipZeros, ...] = ()
     if evidence.rig is not None:
-        scatter = setup_scatter(evidence.points, stiffnesses, evidence.rig, config)
-        evidence = replace(evidence, scatter=scatter, excess=excess_forces(scatter, evidence.rig))
-    axes, zeros = _sideslip_zeros(evidence, [(group, slopes) for group, slopes, _ in found_slopes])
-    evidence = replace(evidence, axes=axes)
-    for group, slopes, troubles in found_slopes:
+        scatter = setup_scatter(evidence, stiffnesses)
+        evidence = replace(evidence, excess=excess_forces(scatter, evidence.rig.of_setups))
+        axes, zeros = _sideslip_zeros(evidence, stiffnesses)
+        evidence = replace(evidence, axes=axes)
+    for group, slopes in stiffnesses:
         # Camber sweeps in both directions are free of it: their mean is the stiffness at true zero.
-        found, more = _at_load(
+        found, troubles = _at_load(
             evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes)
         )
         rows += [] if found is None else [found]
-        warnings += troubles + more
+        warnings += troubles
     measured, troubles = _assembled(evidence, rows, skew)
-    repeated = of_setups(points, measured, evidence.scatter, config)
-    return replace(
-        measured,
-        notes=(*measured.notes, *repeated.notes),
-        warnings=(*parts.unpaired, *warnings, *troubles, *repeated.warnings),
-        setup_scatter=evidence.scatter,
-        sideslip_zeros=zeros,
-    )
-
-
-def _of_other_loads(rows: Sequence[LoadResult]) -> list[str]:
-    """A sentence on the loads whose sideslip zero is that of the others."""
-    zeros = [row for row in rows if row.alpha_M is not None]
-    without = [row.load for row in zeros if not math.isfinite(row.F_backward)]
-    known = [row.load for row in zeros if math.isfinite(row.F_backward)]
-    return [wording.axis_of_other_loads(without, known)] if without and known else []
+    warnings += [*troubles, *warnings_of_setups(points, measured.nominal, scatter, config)]
+    return replace(measured, warnings=tuple(warnings), setup_scatter=scatter, sideslip_zeros=zeros)
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
@@ -120,10 +107,7 @@ def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSl
     split = split_of_zero(axis.at(group.load), C_alpha, evidence.config.rig.u("alpha_0_deg"))
     assert split is not None
     factor = camber_at_true_zero(C_alpha, slopes.bend, split)
-    C_gamma, slope, secant = (
-        None if C is None else C * factor for C in (slopes.C_gamma, slopes.slope, slopes.secant)
-    )
-    return replace(slopes, C_gamma=C_gamma, slope=slope, secant=secant)
+    return slopes.of_camber(lambda C_gamma: C_gamma * factor)
 
 
 def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[str, float]:
@@ -136,9 +120,9 @@ def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[st
 def _sideslip_zeros(
     evidence: DirectEvidence, found: Sequence[tuple[LoadGroup, LoadSlopes]]
 ) -> tuple[dict[str, SetupAngle], tuple[SideslipZeros, ...]]:
-    """alpha_M of every set-up from all its loads, and how well these agree; nothing on a straight path."""
+    """alpha_M of every set-up from all its loads, and how well these agree."""
     readings = []
-    for group, slopes in found if evidence.rig is not None else ():
+    for group, slopes in found:
         if slopes.C_alpha is None:
             continue
         stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
@@ -161,90 +145,59 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> tuple[Points, d
 def _at_load(
     evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes
 ) -> tuple[_AtLoad | None, list[str]]:
-    """Results and warnings at one load; None if nothing could be measured."""
-    if evidence.rig is None:
+    """Results and warnings at one load, with eps_gamma where everything that it needs was measured; None if nothing was."""
+    C_alpha, rig = slopes.C_alpha, evidence.rig
+    slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, C_alpha))
+    if rig is None:
         straight = _AtLoad(_row(evidence, group, slopes, None), None)
         return (straight if slopes.exists else None), []
     found, troubles = turning(evidence, group, slopes)
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
-    return _on_disc(evidence, group, slopes, found, r_e), troubles
-
-
-def _on_disc(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None, r_e: UFloat | None
-) -> _AtLoad:
-    """The record of one load of a disc, with eps_gamma where everything that it needs was measured."""
-    rig = evidence.rig
-    assert rig is not None
-    row = replace(
-        _row(evidence, group, slopes, found),
-        r_e=quantity_if(r_e, "m"),
-        R=quantity_if(rig.R, "m"),
-    )
-    C_gamma = corrected(evidence, slopes.C_gamma, slopes.C_alpha)
-    if found is None or C_gamma is None or r_e is None:
-        return _AtLoad(row, None)
-    C_alpha = float(slip_stiffness(slopes.C_alpha, None, group.load).C_alpha.nominal_value)
+    row = replace(_row(evidence, group, slopes, found), r_e=quantity_if(r_e, "m"), R=quantity_if(rig.R, "m"))
+    if found is None or slopes.C_gamma is None or r_e is None:
+        return _AtLoad(row, None), troubles
     warmer = warmer_in_camber(evidence, group)
-    epsilon = factor(evidence, C_gamma, found, r_e, warmer)
+    epsilon = factor(evidence, slopes.C_gamma, found, r_e, warmer)
     slope, secant = (
-        None if C is None else factor(evidence, C, found, r_e, warmer)
-        for C in (corrected(evidence, x, slopes.C_alpha) for x in (slopes.slope, slopes.secant))
+        None if C is None else factor(evidence, C, found, r_e, warmer) for C in (slopes.slope, slopes.secant)
     )
-    # The secant is larger by far more than finite spin, so only the slope can be corrected.
-    debiased = slope.debiased if slope is not None else None
     row = replace(
         row,
-        epsilon_gamma=quantity_if(epsilon.plain, "-"),
-        epsilon_debiased=quantity_if(debiased, "-"),
+        epsilon_gamma=quantity(epsilon.plain, "-"),
+        # The secant is larger by far more than finite spin, so only the slope can be corrected.
+        epsilon_debiased=None if slope is None else quantity(slope.debiased, "-"),
         epsilon_slope=None if slope is None else float(slope.plain.nominal_value),
         epsilon_secant=None if secant is None else float(secant.plain.nominal_value),
         epsilon_moment=epsilon_from_moments(evidence, group, found, r_e),
-        setups=results_of_setups(evidence, found, C_alpha, C_gamma, r_e),
+        setups=results_of_setups(evidence, found, C_alpha, slopes.C_gamma, r_e),
         budget=budget(epsilon.plain),
     )
-    return _AtLoad(_with_left_out(evidence, row), epsilon.plain, warmer)
-
-
-def _with_left_out(evidence: DirectEvidence, row: LoadResult) -> LoadResult:
-    """The row with the conicity that the budget of the published procedure leaves out, for a build to add."""
-    if not evidence.published:
-        return row
-    u = evidence.config.rig.u_conicity
-    shift = row.shift_by(u * row.load)
-    return replace(
-        row, left_out=(Contribution(CONICITY, u, "-", shift, sensitivity=shift / u if u else 0.0),)
-    )
+    return _AtLoad(row, epsilon.plain), troubles
 
 
 def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
     """The record of one load without eps_gamma."""
-    C_gamma, slope, secant = (
-        quantity_if(corrected(evidence, C, slopes.C_alpha), "N/rad")
-        for C in (slopes.C_gamma, slopes.slope, slopes.secant)
-    )
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
     C_alpha = float(slip_stiffness(slopes.C_alpha, slopes.bend, group.load).C_alpha.nominal_value)
     split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
     row = LoadResult(
         load=group.load,
         C_alpha=quantity_if(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),
-        C_gamma=C_gamma,
-        C_gamma_slope=slope,
-        C_gamma_secant=secant,
+        C_gamma=quantity_if(slopes.C_gamma, "N/rad"),
     )
     if found is None:
         return row
+    zeros = found.zeros
     return replace(
         row,
-        F_phit=quantity_if(found.force, "N"),
-        C_phit=quantity_if(found.stiffness.C_phit, "Nm"),
+        F_phit=quantity(found.force, "N"),
+        C_phit=quantity(found.C_phit, "Nm"),
         alpha_M=quantity_if(found.alpha_M, "rad"),
         misalignment=quantity_if(split.misalignment, "rad") if split else None,
         ply_steer=quantity_if(split.ply_steer, "rad") if split else None,
         conicity=quantity_if(found.conicity, "N"),
-        F_forward=float(found.zeros.forward.nominal_value),
-        F_backward=math.nan if found.zeros.backward is None else float(found.zeros.backward.nominal_value),
+        F_forward=float(zeros.forward.nominal_value),
+        F_backward=math.nan if zeros.backward is None else float(zeros.backward.nominal_value),
         paths=found.phi_t,
     )
 
@@ -279,24 +232,22 @@ def _assembled(
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
     nominal = known[at][0]
-    axis = alignment_verdict(evidence.config, nominal.row)
+    left = evidence.config.rig.u("alpha_0_deg")
+    said, off = wording.alignment(nominal.row, left), nominal.row.axis_off(left)
+    notes = _notes(evidence, nominal.row, skew, law.note)
     measured = replace(
         measured,
         nominal=nominal.row,
-        epsilon_gamma_debiased=nominal.row.epsilon_debiased,
         pecp1=law.pecp1,
         pecp2=law.pecp2,
         u_pecp2=law.u_pecp2,
-        misaligned=axis.beyond,
+        misaligned=nominal.row.slips_beyond(left),
         misaligned_setups=_misaligned_setups(evidence, nominal.row),
-        axis_off=axis.misaligned,
-        notes=(
-            *_remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
-            *_of_other_loads(per_load),
-        ),
+        axis_off=off,
+        notes=notes if off or not said else (said, *notes),
         load_note=law.note,
     )
-    return measured, [*([axis.sentence] if axis.misaligned else []), *_skew_warning(evidence, skew)]
+    return measured, [*([said] if off else []), *_skew_warning(evidence, skew)]
 
 
 def _with_measured_skew(
@@ -344,68 +295,16 @@ def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
     return tuple((error, declared) for error, declared in DECLARED if declared.camber_stiffness)
 
 
-def _remarks(
-    evidence: DirectEvidence,
-    row: LoadResult,
-    skew: Quantity | None,
-    warmer: float,
-    axis: AlignmentVerdict,
-    load_note: str,
+def _notes(
+    evidence: DirectEvidence, row: LoadResult, skew: Quantity | None, load_note: str
 ) -> tuple[str, ...]:
-    """Notes in addition to the numbers of the nominal load.
-
-    Parameters
-    ----------
-    evidence : with the declared uncertainties
-    row : the results at the nominal load
-    skew : camber skew from sweeps in both directions [deg]
-    warmer : temperature of the camber sweep above that of the zeros [K]
-    axis : verdict on the sideslip axis
-    load_note : about PECP2
-    """
-    one_setup = len({setup.name for setup in row.setups}) < 2
-    several = (
-        [wording.several_paths([-1.0 / phi_t for phi_t in row.paths], one_setup=one_setup)]
-        if len(row.paths) > 1
-        else []
-    )
-    return (
-        *([axis.sentence] if axis.sentence and not axis.misaligned else []),
-        *([wording.camber_skew(skew)] if skew else []),
-        *several,
-        *_conicity(evidence, row),
-        *_temperature(evidence, row, warmer),
-        *([] if row.secant_bias is None else [wording.secant_bias(row.secant_bias, evidence.published)]),
-        load_note,
-        wording.ON_THE_PATH,
-        *_pressure(evidence),
-        wording.STANDARD_UNCERTAINTIES,
-        wording.CONTACT_WANDERS,
-    )
-
-
-def _pressure(evidence: DirectEvidence) -> list[str]:
-    """At which pressure everything holds, if that is not the nominal one."""
+    """What the numbers and the budget of the nominal load do not say themselves."""
     used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
     nominal = 1e3 * evidence.config.tyre.nominal_pressure
     near = abs(used - nominal) < levels.PRESSURE.tolerance
-    return [] if near else [wording.off_nominal_pressure(used, nominal)]
-
-
-def _conicity(evidence: DirectEvidence, row: LoadResult) -> list[str]:
-    """The sentence on conicity; none where paths on both sides of the disc cancel it."""
-    if row.conicity is not None:
-        return [wording.conicity_measured(row.conicity)]
-    force = evidence.config.rig.u_conicity * row.load
-    shift = row.shift_by(force)
-    if min(row.paths) < 0.0 < max(row.paths) or not force:
-        return []
-    return [wording.conicity(evidence.config.rig.u_conicity, force, shift)]
-
-
-def _temperature(evidence: DirectEvidence, row: LoadResult, warmer: float) -> list[str]:
-    assert row.epsilon_gamma is not None
-    if abs(warmer) < VISIBLE_TEMPERATURE:
-        return []
-    spread = evidence.warming.std_dev
-    return [wording.temperature(warmer, spread, abs((1.0 - row.epsilon_gamma.value) * warmer * spread))]
+    return (
+        *([wording.camber_skew(skew)] if skew else []),
+        *([] if row.conicity is None else [wording.conicity_measured(row.conicity)]),
+        load_note,
+        *([] if near else [wording.off_nominal_pressure(used, nominal)]),
+    )

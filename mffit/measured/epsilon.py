@@ -18,8 +18,7 @@ from mffit.constants import (
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
-from mffit.measured.slopes import slope_at_zero
-from mffit.measured.stiffnesses import sweep
+from mffit.measured.stiffnesses import slope_at_zero, sweep
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros
@@ -48,18 +47,17 @@ def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloa
     -----
     A secant is the published procedure, whose budget has neither finite spin nor temperature.
     """
-    assert evidence.rig is not None
     if not evidence.published:
         C_gamma = C_gamma * (1.0 - warmer * evidence.warming)
-    ratio = camber_reduction(found.force, C_gamma, r_e, evidence.rig.R, found.sign).epsilon_gamma
+    ratio = camber_reduction(found.C_phit, C_gamma, r_e)
     spin = (1.0 - ratio.nominal_value) * found.phi_t[0] ** 2
     plain = ratio if evidence.published else ratio + spin * evidence.spin_left
     return Factor(plain, ratio - spin * evidence.spin_known)
 
 
-def corrected(evidence: DirectEvidence, C_gamma: UFloat | None, C_alpha: UFloat | None) -> UFloat | None:
+def corrected(evidence: DirectEvidence, C_gamma: UFloat, C_alpha: UFloat | None) -> UFloat:
     """A camber stiffness [N/rad] less what the rig errors add to it."""
-    if C_gamma is None or C_alpha is None or evidence.rig is None:
+    if C_alpha is None or evidence.rig is None:
         return C_gamma
     at = AtZero(C_alpha.nominal_value, C_gamma.nominal_value, 0.0)
     return true_camber_stiffness(C_gamma, evidence.rig.errors, at)
@@ -90,7 +88,13 @@ def epsilon_from_moments(
     i = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
     local, spread = CAMBER_OF_SLOPES.rad, float(constants.CURVATURE_SPREAD)
     slope = slope_at_zero(evidence.points.gamma[i], parts.Mz_odd[i], u[i], local=local, curvature=spread)
-    return None if slope is None else float(1.0 + r_e.n * slope.value / (found.sign * moment.n * rig.R.n))
+    return (
+        None
+        if slope is None
+        else float(
+            1.0 + r_e.n * slope.value / (math.copysign(moment.n * rig.R.n, moment.n * found.zeros.phi_t))
+        )
+    )
 
 
 class LoadDependence(NamedTuple):

@@ -19,7 +19,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants
 from mffit.measured.axis import SetupAngle
 from mffit.measured.radii import measured_effective_radius, measured_path_radius
-from mffit.measured.result import CONICITY, FINITE_SPIN, SetupScatter
+from mffit.measured.result import FINITE_SPIN
 from mffit.measured.uncertain import named
 from mffit.parts import Parts
 from mffit.points import Points
@@ -42,7 +42,6 @@ class DirectEvidence:
     spin_left: UFloat  #: bias of finite spin in a value that is not corrected for it, as :data:`constants.SPIN_LOSS` [m^2]
     spin_known: UFloat  #: the same with the usual value and its uncertainty, to correct with [m^2]
     warming: UFloat  #: relative change of stiffness with temperature [1/K]
-    scatter: SetupScatter | None = None  #: of repeated set-ups
     excess: Mapping[str, UFloat] = field(default_factory=dict)
     """Force by which each set-up scatters beyond what is declared [N]."""
     axes: Mapping[str, SetupAngle] = field(default_factory=dict)
@@ -73,7 +72,7 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
         rig=None if R is None else method.uncertain_rig(u, R, points.used_setups),
         radii=measured_effective_radius(config, R),
         base=base,
-        conicity=named(0.0, config.rig.u_conicity, CONICITY, "-"),
+        conicity=named(0.0, config.rig.u_conicity, "conicity", "-"),
         # JCGM 100, F.2.4.5: a known effect that is left uncorrected counts with its size.
         spin_left=named(0.0, math.hypot(loss, u_loss), FINITE_SPIN, "m^2"),
         spin_known=named(loss, u_loss, FINITE_SPIN, "m^2"),

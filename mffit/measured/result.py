@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.uncertain import Contribution, Expanded, expanded
@@ -19,8 +19,8 @@ from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 from tir.parameters import BY_NAME
 
-CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
-"""Names of sources in the budget."""
+FINITE_SPIN = "finite spin of the disc"
+"""Its name in the budget."""
 
 
 def usual_ply_steer() -> float:
@@ -71,7 +71,7 @@ def path_in_words(phi_t: float) -> str:
 
 
 class SetupScatter(NamedTuple):
-    """Scatter of the zeros of repeated set-ups on one path, beside what is declared; one-way analysis of variance."""
+    """Scatter of the zeros of repeated set-ups on one path, in addition to what is declared; one-way analysis of variance."""
 
     load: float  #: at which it was measured [N]
     setups: tuple[str, ...]  #: the repeated ones
@@ -79,12 +79,12 @@ class SetupScatter(NamedTuple):
     degrees_of_freedom: int
     declared: float  #: the same as the uncertainties in [rig] give it [N]
     chance: float  #: probability of so much scatter if the declaration holds
-    within: float | None  #: standard deviation of the force at zero from sweep to sweep within a set-up [N]
-    degrees_of_freedom_within: int
-    stated: float | None  #: the same as the stated uncertainties of the points give it [N]
-    between_alpha: float | None  #: standard deviation of the sideslip zero from set-up to set-up [rad]
-    declared_alpha: float | None  #: [rad]
-    excess: float  #: force by which a set-up scatters beyond what is declared and stated [N]
+    excess: float  #: force by which a set-up scatters beyond what is declared [N]
+
+
+def is_clear(misalignment: Quantity | None) -> bool:
+    """Whether a misalignment differs clearly from zero."""
+    return misalignment is not None and abs(misalignment.value) > COVERAGE_FACTOR_95 * misalignment.u
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -95,8 +95,6 @@ class LoadResult(Brief):
     C_alpha: Quantity | None = None  #: slope at zero on the path [N/rad]
     C_alpha_straight: Quantity | None = None  #: the same without spin, by the model of a build [N/rad]
     C_gamma: Quantity | None = None  #: the chosen estimate on the path, corrected for rig errors [N/rad]
-    C_gamma_slope: Quantity | None = None  #: corrected like it
-    C_gamma_secant: Quantity | None = None
     r_e: Quantity | None = None  #: [m]
     R: Quantity | None = None  #: [m]
     F_phit: Quantity | None = None  #: turn-slip force, corrected (23) [N]
@@ -113,7 +111,6 @@ class LoadResult(Brief):
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
-    left_out: tuple[Contribution, ...] = ()  #: lines that the published procedure leaves out of its budget
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
     setups: tuple[
         SetupResult, ...
@@ -123,6 +120,14 @@ class LoadResult(Brief):
         """Side force [N] of a small sideslip angle [rad], by the usual stiffness if none was measured."""
         C_alpha = -USUAL_CORNERING_STIFFNESS * self.load if self.C_alpha is None else self.C_alpha.value
         return C_alpha * angle
+
+    def slips_beyond(self, u_force: float) -> bool:
+        """Whether the side force of alpha_M exceeds what the alignment of the axis is declared to leave [N]."""
+        return self.alpha_M is not None and abs(self.slip_force(self.alpha_M.value)) > u_force
+
+    def axis_off(self, u_force: float) -> bool:
+        """Whether it does, and the axis, not the tyre, clearly causes it."""
+        return self.slips_beyond(u_force) and is_clear(self.misalignment)
 
     def shift_by(self, force: float) -> float:
         """Change of eps_gamma by a force [N] that is taken for turn slip."""
@@ -175,7 +180,6 @@ class Measured(Brief):
     axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
-    epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     made: Made | None = None  #: set by ``mffit spin``
     reasons: tuple[str, ...] = ()  #: against trusting it, set by ``mffit spin``; a build judges the whole
 
@@ -211,6 +215,11 @@ class Measured(Brief):
         return self.nominal.C_gamma if self.nominal else None
 
     @property
+    def epsilon_gamma_debiased(self) -> Quantity | None:
+        """Corrected for the finite spin of the disc."""
+        return self.nominal.epsilon_debiased if self.nominal else None
+
+    @property
     def C_alpha(self) -> Quantity | None:
         return self.nominal.C_alpha if self.nominal else None
 
@@ -231,9 +240,7 @@ class Measured(Brief):
         return self.nominal.budget if self.nominal else ()
 
     def by_load(self, key: str) -> dict[float, float]:
-        """One quantity by load [N]: "C_alpha", "C_gamma" or "r_e_measured"."""
-        if key == "r_e_measured":
-            return dict(self.r_e_loads)
+        """One quantity by load [N], such as "C_alpha"."""
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
@@ -247,28 +254,23 @@ class Measured(Brief):
         assert direct is not None
         u_bias = constants.SPIN_BIAS_OF_MODEL * abs(bias)
         before = math.hypot(*(line.contribution for line in row.budget if line.source == FINITE_SPIN))
-        rest = math.hypot(
-            math.sqrt(max(direct.u**2 - before**2, 0.0)), *(line.contribution for line in row.left_out)
-        )
+        rest = math.sqrt(max(direct.u**2 - before**2, 0.0))
         both = math.hypot(bias, u_bias)
         spin = Contribution(FINITE_SPIN, both, "-", both, value=0.0, sensitivity=1.0)
-        lines = [line for line in (*row.budget, *row.left_out) if line.source != FINITE_SPIN]
+        lines = [line for line in row.budget if line.source != FINITE_SPIN]
         whole, corrected = math.hypot(rest, both), direct.value - bias
         named = dataclasses.replace(
             row,
             epsilon_gamma=Quantity(direct.value, whole, direct.unit),
             epsilon_debiased=Quantity(corrected, math.hypot(rest, u_bias), direct.unit),
             budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
-            left_out=(),
         )
         return self.with_nominal(named)
 
     def with_nominal(self, row: LoadResult) -> Measured:
         """The record with another row at the nominal load."""
         rows = tuple(row if other is self.nominal else other for other in self.per_load)
-        return dataclasses.replace(
-            self, nominal=row, per_load=rows, epsilon_gamma_debiased=row.epsilon_debiased
-        )
+        return dataclasses.replace(self, nominal=row, per_load=rows)
 
     def quantities(self) -> dict[str, Quantity]:
         """What goes into the property file's structured comments."""
@@ -311,11 +313,6 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-
-    @property
-    def secant(self) -> bool:
-        """Whether C_alpha is from two iterations."""
-        return self.source == "secant"
 
 
 @dataclass(frozen=True, slots=True, repr=False)

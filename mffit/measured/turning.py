@@ -18,7 +18,7 @@ from mffit.measured import constants, wording
 from mffit.measured.axis import SlipStiffness, slip_stiffness
 from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.stiffnesses import LoadSlopes
-from mffit.measured.uncertain import agreed, combined, quantity
+from mffit.measured.uncertain import Combined, agreed, combined, quantity
 from mffit.measured.zeros import LoadGroup, PathZeros, flipped, unlike_zeros, zeros_by_path
 from mffit.rig_errors import AtZero
 
@@ -26,32 +26,22 @@ from mffit.rig_errors import AtZero
 class PathForce(NamedTuple):
     """The turn-slip force of one path in one set-up."""
 
-    sign: float  #: of phi_t
+    zeros: PathZeros
     R: UFloat  #: path radius [m]
     force: UFloat  #: corrected (23) [N]
 
-
-class TurnSlipStiffness(NamedTuple):
-    """The turn-slip stiffness and the weight of each path in it."""
-
-    C_phit: UFloat  #: [Nm]
-    weights: np.ndarray  #: (k,), sum 1
-    of_paths: tuple[UFloat, ...]  #: by each path alone [Nm]
-    chance: float  #: probability that paths of one stiffness differ by so much; 1 for one path
-
     @property
-    def contradictory(self) -> bool:
-        """Whether the paths differ beyond all known uncertainty."""
-        return self.chance < FALSE_ALARM
+    def stiffness(self) -> UFloat:
+        """C_phit = F/phi_t (21) by this path alone [Nm]."""
+        return math.copysign(1.0, self.zeros.phi_t) * self.force * self.R
 
 
 @dataclass(frozen=True, slots=True)
 class Turning:
     """Turn-slip force and stiffness of one load."""
 
-    found: tuple[PathZeros, ...]  #: of every path and set-up, the usual path first
-    paths: tuple[PathForce, ...]
-    stiffness: TurnSlipStiffness
+    paths: tuple[PathForce, ...]  #: every path and set-up, the usual path first
+    C_phit: UFloat  #: turn-slip stiffness [Nm]
     force: UFloat  #: on the usual path [N]
     conicity: UFloat | None  #: from both mounts [N]
     alpha_M: UFloat | None  #: sum of misalignment and ply-steer of the first set-up whose one is known [rad]
@@ -59,17 +49,12 @@ class Turning:
     @property
     def zeros(self) -> PathZeros:
         """The readings on the usual path."""
-        return self.found[0]
+        return self.paths[0].zeros
 
     @property
     def phi_t(self) -> tuple[float, ...]:
         """Turn slip of every path [1/m]."""
-        return tuple(dict.fromkeys(path.phi_t for path in self.found))
-
-    @property
-    def sign(self) -> float:
-        """Sign of the usual path's turn slip."""
-        return self.paths[0].sign
+        return tuple(dict.fromkeys(path.zeros.phi_t for path in self.paths))
 
 
 def turning(
@@ -97,7 +82,7 @@ def turning(
     assert usual is not None
     paths = tuple(
         PathForce(
-            sign=float(np.sign(zero.phi_t)),
+            zero,
             # The wheel is moved from path to path by known distances, so one error of R is common to all.
             R=rig.R + (1.0 / abs(zero.phi_t) - usual),
             force=_force(zero, stiffness, slopes.C_gamma, evidence, angles.get(zero.setup))
@@ -106,15 +91,17 @@ def turning(
         )
         for zero in found
     )
-    combined_paths = turn_slip_stiffness(paths)
-    if combined_paths.contradictory:
-        alone = [quantity(C, "Nm") for C in combined_paths.of_paths]
-        troubles.append(wording.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
-    force = paths[0].force if len(paths) == 1 else paths[0].sign * combined_paths.C_phit / rig.R
+    alone = [path.stiffness for path in paths]
+    radii = [-1.0 / path.phi_t for path in found]
+    both = turn_slip_stiffness(alone, radii)
+    (C_phit,) = both.numbers
+    if both.chance < FALSE_ALARM:
+        troubles.append(wording.paths_contradict(group.load, radii, [quantity(C, "Nm") for C in alone]))
+    force = math.copysign(1.0, found[0].phi_t) * C_phit / rig.R
     alpha_M = next((angles[path.setup] for path in found if path.setup in angles), None)
-    if combined_paths.C_phit.nominal_value <= 0.0:
+    if C_phit.nominal_value <= 0.0:
         raise _inward(force.nominal_value, group.load, alpha_M, config)
-    return Turning(tuple(found), paths, combined_paths, force, measured, alpha_M), troubles
+    return Turning(paths, C_phit, force, measured, alpha_M), troubles
 
 
 def _force(
@@ -142,17 +129,15 @@ def _force(
     return force - evidence.excess.get(zero.setup, 0.0)
 
 
-def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
-    """C_phit = F/phi_t (21), the paths weighted for the least uncertainty.
+def turn_slip_stiffness(of_paths: Sequence[UFloat], radii: Sequence[float]) -> Combined:
+    """C_phit of paths at these radii [m], weighted for the least uncertainty.
 
     The zeros are common to the paths of one set-up: a force of the same sign on both sides of the disc, or on two radii,
     cancels there. Between set-ups they are independent.
     """
-    single = [path.sign * path.force * path.R for path in paths]
-    spin = np.array([1.0 / path.R.nominal_value**2 for path in paths])
-    of_spin = constants.SPIN_LOSS * np.mean([C.nominal_value for C in single]) * (spin - spin[0])
-    found = combined(single, beside=np.outer(of_spin, of_spin))
-    return TurnSlipStiffness(found.numbers[0], found.weights[0], tuple(single), found.chance)
+    spin = np.array([1.0 / R**2 for R in radii])
+    of_spin = constants.SPIN_LOSS * np.mean([C.nominal_value for C in of_paths]) * (spin - spin[0])
+    return combined(of_paths, beside=np.outer(of_spin, of_spin))
 
 
 def _conicity(

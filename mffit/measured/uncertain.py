@@ -91,6 +91,15 @@ def _estimator(A: np.ndarray, errors: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.solve(A.T @ weighted, weighted.T))
 
 
+def polynomial(
+    x: np.ndarray, y: np.ndarray, u: np.ndarray, powers: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients (k,) of these powers through readings (n,), and their standard uncertainties."""
+    A = x[:, None] ** np.array(powers) / u[:, None]
+    errors = np.linalg.inv(A.T @ A)
+    return errors @ A.T @ (y / u), np.sqrt(np.diag(errors))
+
+
 def agreed(declared: UFloat, measurements: Sequence[UFloat]) -> UFloat:
     """The mean of a declared number and its measurements; of these alone if they contradict the declared uncertainty."""
     (found,) = combined(measurements).numbers

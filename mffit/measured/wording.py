@@ -5,17 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mffit.measured.result import Alignment, Measured, SetupScatter, usual_ply_steer
+from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, usual_ply_steer
 from mffit.rounding import to_uncertainty
 from tir import Quantity
 
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
-STANDARD_UNCERTAINTIES = "All uncertainties are standard uncertainties (k = 1)."
-ON_THE_PATH = (
-    "Cornering and camber stiffness are slopes at zero on the path of the measurement, and C_phit is the turn-slip force over "
-    "the curvature of that path."
-)
-CONTACT_WANDERS = "With camber the contact point moves over the crown and changes the path radius; R holds for the upright wheel."
 ONE_LOAD = "PECP2 is 0: one load was measured."
 EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
 
@@ -45,10 +39,36 @@ def slope_too_steep(largest: float) -> str:
     return f"PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
 
 
-def not_separable(force: float, angle_deg: float | None, u: float) -> str:
-    """Without backward runs; ``angle_deg`` is None without a sideslip sweep, which gives the angle of a force [N]."""
+def alignment(row: LoadResult, u: float) -> str:
+    """What the zeros say of the sideslip axis, declared to leave ``u`` [N]; empty if both sides of the disc cancel it."""
+    assert row.F_phit is not None
+    if row.alpha_M is None:
+        return "" if min(row.paths) < 0.0 < max(row.paths) else _not_separable(row, row.F_phit.value, u)
+    slip = row.slip_force(row.alpha_M.value)
+    whole, of_axis, of_tyre = (_angle(x) for x in (row.alpha_M, row.misalignment, row.ply_steer))
+    said = (
+        f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by "
+        f"{row.shift_by(slip):.2f}. By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
+    )
+    if row.axis_off(u):
+        return (
+            f"the sideslip axis is misaligned: {said}; forward and backward forces differ by {abs(2 * slip):.0f} N. The angles "
+            "are corrected for the sum"
+        )
+    end = (
+        "exceeds what the alignment is declared to leave, but usual ply-steer can explain it"
+        if row.slips_beyond(u)
+        else "is within what the alignment leaves"
+    )
+    return f"Forward and backward runs: {said}. The sum {end}."
+
+
+def _not_separable(row: LoadResult, force: float, u: float) -> str:
+    """Without backward runs; a sideslip sweep gives the angle of a force."""
     angle = (
-        "an unknown angle (no sideslip sweep gives C_alpha)" if angle_deg is None else f"{angle_deg:.2f} deg"
+        "an unknown angle (no sideslip sweep gives C_alpha)"
+        if row.C_alpha is None
+        else f"{math.degrees(abs(force / row.C_alpha.value)):.2f} deg"
     )
     return (
         f"Sideslip misalignment, turn slip and ply-steer cannot be separated here. If the force {force:.0f} N at (0, 0) were "
@@ -56,16 +76,8 @@ def not_separable(force: float, angle_deg: float | None, u: float) -> str:
     )
 
 
-def several_paths(radii: Sequence[float], *, one_setup: bool = True) -> str:
-    cancels = (
-        "a force that is the same on all of them cancels."
-        if one_setup
-        else "a force that is the same on all of them, such as conicity, cancels; the zeros of different set-ups do not."
-    )
-    return (
-        f"The turn-slip stiffness combines the zeros of {len(radii)} paths (disc's centre {', '.join(map(_centre, radii))}) so "
-        f"that its uncertainty is least: {cancels}"
-    )
+def _angle(x: Quantity | None) -> str:
+    return "unknown" if x is None else f"{math.degrees(x.value):.3f} +- {math.degrees(x.u):.3f}"
 
 
 def off_nominal_pressure(used: float, nominal: float) -> str:
@@ -91,46 +103,11 @@ def camber_skew_beyond(skew: Quantity, declared: float) -> str:
     )
 
 
-def aligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
-
-
-def slip_beyond(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return (
-        f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum exceeds what the alignment is declared "
-        "to leave, but usual ply-steer can explain it."
-    )
-
-
-def conicity(share: float, force: float, shift: float) -> str:
-    return (
-        f"Conicity is not measured: a plausible {force:.0f} N ({100 * share:.1f} % of the load, u_conicity) would move eps_gamma "
-        f"by {shift:.3f}. Zeros on a flipped mount or on the other side of the disc settle it."
-    )
-
-
 def conicity_measured(found: Quantity) -> str:
     return (
         f"Zeros on both mounts: the conicity force is {to_uncertainty(found.value, found.u)} +- "
         f"{to_uncertainty(found.u, found.u)} N. It is subtracted from the turn-slip force."
     )
-
-
-def temperature(warmer: float, spread: float, shift: float) -> str:
-    way = "warmer" if warmer > 0.0 else "colder"
-    return (
-        f"The tyre was {abs(warmer):.1f} K {way} in the camber sweep than at its zeros; with a usual change of stiffness of "
-        f"{100 * spread:.1f} % per K this counts with {shift:.3f} in u(eps_gamma). Run the zeros at the temperature of the sweep."
-    )
-
-
-def secant_bias(bias: float, used: bool) -> str:
-    end = (
-        "; the budget is that of the published procedure and does not contain it, nor finite spin and conicity"
-        if used
-        else ""
-    )
-    return f"eps_gamma by the secant is {bias:+.3f} from that by the slope at zero, as the camber curve bends{end}."
 
 
 def slope_not_possible(load: float, angle_deg: float) -> str:
@@ -142,25 +119,6 @@ def slope_not_possible(load: float, angle_deg: float) -> str:
 
 def secant_not_possible(load: float, angle_deg: float) -> str:
     return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
-
-
-def misaligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return (
-        f"the sideslip axis is misaligned: {_sum(alpha_M, axis, tyre, slip, shift)}; forward and backward forces differ by "
-        f"{abs(2 * slip):.0f} N. The angles are corrected for the sum"
-    )
-
-
-def axis_of_other_loads(loads: Sequence[float], known: Sequence[float]) -> str:
-    """Loads [N] without backward zeros, and those whose zeros give the sideslip zero of their set-up."""
-    return (
-        f"No backward zeros at {_loads(loads)}: its zeros are corrected with alpha_M of the zeros at {_loads(known)}, as the "
-        "axis is off by one angle at all loads of a set-up."
-    )
-
-
-def _loads(loads: Sequence[float]) -> str:
-    return f"{', '.join(f'{load:.0f}' for load in loads)} N"
 
 
 def axis_off(load: float, difference: float, limit: float, correction_deg: float) -> str:
@@ -194,34 +152,6 @@ def _centre(R: float) -> str:
     return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
 
 
-def _sum(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    whole, of_axis, of_tyre = (_angle(x) for x in (alpha_M, axis, tyre))
-    return (
-        f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}. "
-        f"By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
-    )
-
-
-def _angle(x: Quantity) -> str:
-    value, u = math.degrees(x.value), math.degrees(x.u)
-    return f"{value:.3f} +- {u:.3f}"
-
-
-def several_setups(names: Sequence[str]) -> str:
-    return (
-        f"The rig was set up {len(names)} times ({', '.join(names)}): each set-up has its own zeros of sideslip, camber and load "
-        "cell, each as uncertain as declared."
-    )
-
-
-def one_setup_on_paths(name: str, paths: int) -> str:
-    which = f"set-up {name}" if name else "one set-up"
-    return (
-        f"The {paths} paths of {which} share their zeros: the rig was not set up anew between them. If it was, give their sweeps "
-        "setups of different names."
-    )
-
-
 def setup_without_zeros(name: str) -> str:
     return (
         f"set-up {name} has no points at zero sideslip and camber: its zeros are known only as declared in [rig], and it adds "
@@ -241,31 +171,24 @@ def last_is_aligned(name: str) -> str:
 
 
 def setup_misaligned(name: str, alpha_M: Quantity) -> str:
-    angle, u = math.degrees(alpha_M.value), math.degrees(alpha_M.u)
     return (
-        f"set-up {name}: the sideslip axis is misaligned, alpha_M = {angle:.3f} +- {u:.3f} deg; the fit corrects the angles of "
+        f"set-up {name}: the sideslip axis is misaligned, alpha_M = {_angle(alpha_M)} deg; the fit corrects the angles of "
         "this set-up for it"
     )
 
 
 def setup_scatter(found: SetupScatter) -> str:
     n = found.degrees_of_freedom
-    said = (
+    end = (
+        f": the budget has a line of {found.excess:.1f} N in addition to the declared zeros."
+        if found.excess
+        else "."
+    )
+    return (
         f"Repeated set-ups ({', '.join(found.setups)}): from one to the next the force at zero scatters by {found.between:.1f} N "
         f"(standard deviation, {n} degree{'s' * (n > 1)} of freedom), declared in [rig] are {found.declared:.1f} N. "
-        "The larger one counts"
+        f"The larger one counts{end}"
     )
-    said += (
-        f": the budget has a line of {found.excess:.1f} N beside the declared zeros." if found.excess else "."
-    )
-    if found.between_alpha is not None and found.declared_alpha is not None:
-        said += (
-            f" The sideslip zero scatters by {math.degrees(found.between_alpha):.3f} deg, declared "
-            f"{math.degrees(found.declared_alpha):.3f} deg."
-        )
-    if found.within is not None and found.stated is not None:
-        said += f" Within a set-up the zeros scatter by {found.within:.1f} N, stated {found.stated:.1f} N."
-    return said
 
 
 def epsilon_values(measured: Measured) -> str:

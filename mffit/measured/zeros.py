@@ -19,7 +19,7 @@ from mffit.constants import (
     USUAL_U_MOMENT,
 )
 from mffit.measured import constants, wording
-from mffit.measured.uncertain import combined, named
+from mffit.measured.uncertain import combined, named, polynomial
 from mffit.points import Points, levels, main_pressure
 
 USUAL_U = {"Fy": USUAL_U_FORCE, "Mz": USUAL_U_MOMENT}
@@ -161,17 +161,10 @@ def _at_zero(
     x = points.alpha[near]
     angles = len(np.unique(np.round(x, 3)))
     if angles >= constants.POINTS_FOR_PARABOLA and x.min() < -reach / 2 and x.max() > reach / 2:
-        found, errors = polynomial(x, y[near], u[near], 2)
-        return named(found[0], math.sqrt(errors[0, 0]), source, unit, kind="A")
+        found, errors = polynomial(x, y[near], u[near], (0, 1, 2))
+        return named(found[0], errors[0], source, unit, kind="A")
     mean = float(np.mean(y[i] - slope * points.alpha[i]))
     return named(mean, float(np.linalg.norm(u[i])) / len(i), source, unit, kind="A")
-
-
-def polynomial(x: np.ndarray, y: np.ndarray, u: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients (degree + 1,) of rising powers through readings (n,), and their covariance."""
-    A = np.vander(x, degree + 1, increasing=True) / u[:, None]
-    errors = np.linalg.inv(A.T @ A)
-    return errors @ A.T @ (y / u), errors
 
 
 def forces_of_sweeps(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:

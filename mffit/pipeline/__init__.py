@@ -3,14 +3,12 @@
 from mffit.pipeline.building import build
 from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
-from mffit.pipeline.exporting import write_tydex
 from mffit.pipeline.fleets import fleet
-from mffit.pipeline.intake import init_from, project_of, write_sniffed
+from mffit.pipeline.intake import init_from, project_of
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
 from mffit.pipeline.showing import show
-from mffit.pipeline.verifying import verify
 from mffit.prediction import predict
 
 __all__ = [
@@ -26,7 +24,4 @@ __all__ = [
     "project_of",
     "show",
     "spin",
-    "verify",
-    "write_sniffed",
-    "write_tydex",
 ]

@@ -48,7 +48,7 @@ def write_build(
     with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
-        as_json.write(folder / "result.json", as_json.build(result))
+        as_json.write(folder / "result.json", result)
         as_json.write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
         if result.prediction is not None:

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
@@ -172,10 +171,6 @@ def _fitted(
 def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate) -> Iterator[Tyre]:
     """Tyres drawn from the posterior, each marked as a draw."""
     best = annotated(fitted.tyre, "turn-slip" if config.rig.on_disc else "normal")
-    assert fitted.search is not None
-    for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
-        random = np.random.default_rng((i, count))
-        for beside in fitted.beside:
-            values = values | beside.drawn({**best.values, **values}, best.values, random)
+    for i, values in enumerate(fitting.ensemble(fitted, count), 1):
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

@@ -84,7 +84,7 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
     from mffit import report
 
     with output_folder(out, by="compare", protected=[path for path in read if path.is_file()]) as folder:
-        as_json.write(folder / "compare.json", as_json.comparison(found))
+        as_json.write(folder / "compare.json", found)
         report.write_comparison(found, folder)
 
 

@@ -21,7 +21,6 @@ from mffit.effects import CATALOG, Effect
 from mffit.made import made
 from mffit.output import digest, output_folder, refuse_early
 from mffit.pipeline.building import build
-from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_diagnosis
 from mffit.pipeline.left_out import left_out_by_diagnosis
@@ -32,7 +31,7 @@ from mffit.progress import Progress, silent
 from mffit.results import as_json
 from tir import Tyre
 
-WRITTEN = ("diagnosis.json", "diagnosis.html", CORRECTED_TOML, CORRECTED_POINTS)
+WRITTEN = ("diagnosis.json", "diagnosis.html")
 """Files that every diagnosis writes beside its property file."""
 
 
@@ -109,7 +108,7 @@ def diagnose(
         with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, diagnosis.trust),
     )
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=read, config=config)
+        write_diagnosis(diagnosis, Path(out), protected=read)
     return diagnosis
 
 
@@ -158,23 +157,13 @@ def _redone(
     return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), corrected, base)),)
 
 
-def write_diagnosis(
-    diagnosis: Diagnosis,
-    out: Path,
-    protected: Iterable[Path] = (),
-    config: Config | None = None,
-) -> None:
-    """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
-
-    With ``config`` the corrected points and a configuration to build from them are written as well.
-    """
+def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = ()) -> None:
+    """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced."""
     from mffit import report
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
         if diagnosis.with_terms is not None:
             diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
-        as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
-        if config is not None:
-            write_corrected(diagnosis, config, out, folder)
+        as_json.write(folder / "diagnosis.json", diagnosis)
         report.write_diagnosis(diagnosis, folder)

@@ -134,7 +134,7 @@ def write_fleet(found: Fleet, out: Path) -> None:
     read = [row.specimen.folder / combining.INFORMATION for row in found.rows]
     with output_folder(out, by="fleet", protected=read, outdated=WRITTEN) as folder:
         write_csv(fleet_table(found), folder / "fleet.csv")
-        as_json.write(folder / "fleet.json", as_json.fleet(found))
+        as_json.write(folder / "fleet.json", found)
         if known is not None:
             as_json.write(folder / "priors.json", known)
         report.write_fleet(found, folder, priors=known is not None)

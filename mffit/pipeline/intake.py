@@ -123,12 +123,6 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
         )
 
 
-def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:
-    """Write ``tyre.toml`` without radius and load, ``stretches.csv`` and a picture of each recording."""
-    folder = Path(folder)
-    return _written(folder, sniffed, project_text(sniffed, folder))
-
-
 def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
     pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
     contents = {"tyre.toml": text}

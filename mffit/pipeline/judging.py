@@ -27,7 +27,6 @@ from mffit.suspicion import (
     Trust,
     judge,
 )
-from mffit.suspicion.constants import CERTAIN_SIGMA
 from tir import Tyre
 
 
@@ -42,7 +41,8 @@ def judged(
     full = fitted.full
     assert full is not None
     assert fitted.left_by_formula is not None
-    left = remains(full)
+    linear = fitted.left_by_formula
+    left = remains(full, linear)
     model = full.simulation.readings(points, fitted.model)
     finished = FinishedFit(
         points=points,
@@ -50,8 +50,7 @@ def judged(
         used=_used(points, model, fitted.outliers),
         r2={name: found.r2 for name, found in with_points(model, points).items()},
         left_out=left.left_out,
-        linear=fitted.left_by_formula,
-        structure=wording.structure(left.structure),
+        linear=linear,
         held=left.held,
         left=fitted.left,
         broken=tuple(_refused(files)),
@@ -60,8 +59,6 @@ def judged(
         sideslip_zeros=measured.sideslip_zeros,
     )
     effect = left.effect is not None and left.effect.significant
-    if effect and any(finished.of_the_formula(name) for name in finished.used):
-        effect = left.gain_over_the_formula(fitted.left_by_formula) > 0.5 * CERTAIN_SIGMA**2
     against = sorted(fitted.doubts, key=lambda doubt: -doubt.ratio)
     finished = replace(
         finished,

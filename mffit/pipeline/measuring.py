@@ -49,7 +49,7 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     )
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
-            as_json.write(folder / "spin.json", as_json.spin(measured))
+            as_json.write(folder / "spin.json", measured)
     return measured
 
 

@@ -101,9 +101,10 @@ def plan_of(
 
 def _direct_method(result: BuildResult) -> Direct:
     """The direct method as a build runs it, with the bias of finite spin of this build's model."""
-    base, model = read_base(result.config), undistorted(result.config, result.fit)
+    config = result.config
+    base, model = read_base(config), undistorted(config, result.fit)
 
-    def direct(config: Config, points: Points) -> DirectU | None:
+    def direct(points: Points) -> DirectU | None:
         try:
             measured = measure(config, points, base)[1]
         except InputError:
@@ -135,16 +136,15 @@ def write_plan(found: Plan, out: Path) -> None:
     from mffit import report
 
     with output_folder(out, by="plan", protected=inputs_of(found.config)) as folder:
-        as_json.write(folder / "plan.json", as_json.plan(found))
+        as_json.write(folder / "plan.json", found)
         runs = [step.run for step in found.steps]
         if runs:
             (folder / SHEETS).mkdir()
             text = additions(found.config, runs)
             (folder / SHEETS / "tyre-additions.toml").write_text(text, encoding="utf-8")
         for run in runs:
-            if run.points is not None:
-                table = sheet(found.config, run.points, run.addition.measures)
-                write_csv(table, folder / SHEETS / f"{run.name}.csv")
+            table = sheet(found.config, run.points, run.addition.measures)
+            write_csv(table, folder / SHEETS / f"{run.name}.csv")
         report.write_plan(found, folder)
 
 
@@ -165,17 +165,12 @@ def sheet(config: Config, points: Points, measures: Sequence[str] = ()) -> pd.Da
 
 
 def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
-    """TOML to append to tyre.toml for these runs; changes to tables that it already has are comments."""
+    """TOML to append to tyre.toml for these runs."""
     usual = configuration.path_curvature(config.rig)
-    lines = [
-        "# Append to tyre.toml once the sheets are filled in; the file names are those of this folder."
-        if any(run.points is not None for run in runs)
-        else "# Change in tyre.toml once this has been measured."
-    ]
+    lines = ["# Append to tyre.toml once the sheets are filled in; the file names are those of this folder."]
     for run in runs:
-        lines += ["", f"# {wording.title(run)}", *wording.instructions(run)]
-        if run.points is not None:
-            lines += ["[[sweep]]", f'file = "{run.name}.csv"', *_place(run.points, usual)]
+        lines += ["", f"# {wording.title(run)}"]
+        lines += ["[[sweep]]", f'file = "{run.name}.csv"', *_place(run.points, usual)]
     return "\n".join(lines) + "\n"
 
 

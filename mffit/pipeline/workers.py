@@ -6,22 +6,18 @@ import contextlib
 import multiprocessing
 import os
 import signal
-from collections import deque
-from collections.abc import Callable, Generator, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from mffit.errors import InputError
 from mffit.results import BuildOutcome
 
-CLUSTER_BUILDS_IN_FLIGHT = 1000
-"""Builds submitted to a Dask cluster at a time; more than any cluster works on at once."""
-START_METHOD = "spawn"
-"""A forked copy of a process with threads may hang, so worker processes start from scratch."""
+START_METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+"""Workers are copies of a process without threads, which has imported what a build needs; copies with threads may hang."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +37,34 @@ Outcomes = Generator[BuildOutcome, None, None]
 
 
 def in_processes(wanted: Sequence[Job], jobs: int, build_one: BuildOne) -> Outcomes:
-    """Outcomes of builds in ``jobs`` processes; builds in progress when a process died are repeated one at a time."""
-    left, suspects = deque(wanted), list[Job]()
-    while left:
-        suspects += yield from _pooled(left, jobs, build_one)
-    for job in suspects:
-        killed = yield from _pooled(deque([job]), 1, build_one)
-        for _ in killed:
-            yield _lost(job)
+    """Outcomes of builds as they finish, each in a process of its own, ``jobs`` of them at a time."""
+    context = cast(SpawnContext, multiprocessing.get_context(START_METHOD))  # all contexts make processes
+    if START_METHOD == "forkserver":
+        context.set_forkserver_preload(["mffit.pipeline.many"])
+    left = list(reversed(wanted))
+    running: dict[Connection, tuple[Job, SpawnProcess]] = {}
+    try:
+        while left or running:
+            while left and len(running) < jobs:
+                receiver, sender = context.Pipe(duplex=False)
+                process = context.Process(target=_in_process, args=(build_one, left[-1], sender))
+                process.start()
+                sender.close()
+                running[receiver] = (left.pop(), process)
+            ready = wait(list(running))
+            for ended in [receiver for receiver in running if receiver in ready]:
+                job, process = running.pop(ended)
+                try:
+                    outcome = ended.recv()
+                except EOFError:  # it was killed
+                    outcome = _lost(job)
+                process.join()
+                yield outcome
+    finally:
+        for _, process in running.values():
+            _interrupt(process.pid)
+        for _, process in running.values():
+            process.join()
 
 
 def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outcomes:
@@ -60,7 +76,7 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
         Dask is not installed, or no scheduler answers.
     """
     try:
-        from distributed import Client
+        from distributed import Client, as_completed
     except ImportError:
         raise InputError("--dask needs the package distributed: pip install 'mffit[dask]'") from None
     try:
@@ -70,83 +86,31 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
             f"no Dask scheduler answers at {address} ({type(error).__name__}): start one with `dask scheduler`, "
             "or correct --dask"
         ) from None
-    absolute = [replace(job, source=job.source.absolute()) for job in wanted]
-    given = {job.source.absolute(): job.source for job in wanted}
     with client:
-        executor = client.get_executor(pure=False)
-        for outcome in _submitted(executor, deque(absolute), CLUSTER_BUILDS_IN_FLIGHT, build_one):
-            yield replace(outcome, source=given[outcome.source])
+        jobs = {
+            client.submit(build_one, replace(job, source=job.source.absolute()), pure=False): job
+            for job in wanted
+        }
+        for future in as_completed(jobs):
+            job = jobs[future]
+            found = future.result() if future.status == "finished" else _lost(job)
+            yield replace(found, source=job.source)
 
 
-def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[BuildOutcome, None, list[Job]]:
-    """Build until nothing is left or a process dies; returns the jobs in progress at that moment."""
-    pool = ProcessPoolExecutor(
-        jobs, mp_context=multiprocessing.get_context(START_METHOD), initializer=_ignore_interrupts
-    )
-    others = set(multiprocessing.active_children())
-    try:
-        return (yield from _submitted(pool, left, jobs, partial(_interruptible, build_one)))
-    except (KeyboardInterrupt, GeneratorExit):
-        _interrupt(set(multiprocessing.active_children()) - others)
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
+def _in_process(build_one: BuildOne, job: Job, sender: Connection) -> None:
+    """Build in this process; an interrupted build removes its temporary files and says nothing."""
+    with contextlib.suppress(KeyboardInterrupt):
+        sender.send(build_one(job))
 
 
-def _submitted(
-    executor: Executor, left: deque[Job], at_once: int, build_one: BuildOne
-) -> Generator[BuildOutcome, None, list[Job]]:
-    """Outcomes as they arrive; returns the jobs in progress if a process died and the pool with it, else none.
-
-    At most ``at_once`` jobs are submitted, so that an interruption leaves none queued.
-    """
-    in_flight: dict[Future[BuildOutcome], Job] = {}
-    while left or in_flight:
-        try:
-            while left and len(in_flight) < at_once:
-                in_flight[executor.submit(build_one, left[0])] = left[0]
-                left.popleft()
-        except BrokenProcessPool:
-            return list(in_flight.values()) or [left.popleft()]
-        wait(in_flight, return_when=FIRST_COMPLETED)
-        ended = {future: future.exception() for future in in_flight if future.done()}
-        for future, error in ended.items():
-            if isinstance(error, KeyboardInterrupt):
-                raise error
-            if not isinstance(error, BrokenProcessPool):
-                job = in_flight.pop(future)
-                yield future.result() if error is None else _lost(job, error)
-        if any(isinstance(error, BrokenProcessPool) for error in ended.values()):
-            return list(in_flight.values())
-    return []
-
-
-def _lost(job: Job, error: BaseException | None = None) -> BuildOutcome:
+def _lost(job: Job) -> BuildOutcome:
     """The outcome of a job whose process ended."""
-    why = f" ({type(error).__name__})" if error is not None and not isinstance(error, CancelledError) else ""
-    sentence = f"its process ended early{why}, perhaps for lack of memory; build it again alone"
+    sentence = "its process ended early, perhaps for lack of memory; build it again alone"
     return BuildOutcome(job.source, job.name, job.out, "failed", sentence)
 
 
-def _ignore_interrupts() -> None:
-    """Make an idle worker ignore Ctrl-C; its parent ends it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def _interruptible(build_one: BuildOne, job: Job) -> BuildOutcome:
-    """Build with Ctrl-C enabled, so that an interrupted build removes its temporary files."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        return build_one(job)
-    finally:
-        _ignore_interrupts()
-
-
-def _interrupt(children: Iterable[Any]) -> None:
-    """Send the workers the signal of Ctrl-C, which may have reached only this process."""
-    for child in children:
-        if os.name == "nt" or child.pid is None:
-            child.terminate()
-        else:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(child.pid, signal.SIGINT)
+def _interrupt(pid: int | None) -> None:
+    """Send a worker the signal of Ctrl-C, which may have reached only this process."""
+    if pid is not None:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGTERM if os.name == "nt" else signal.SIGINT)

@@ -2,7 +2,7 @@
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal
-from mffit.planning.plan import Identified, Plan, PlanStep, Tie, Trial, plan
+from mffit.planning.plan import Identified, Plan, PlanStep, plan
 from mffit.planning.runs import PlannedRun, candidates
 
 __all__ = [
@@ -14,8 +14,6 @@ __all__ = [
     "Plan",
     "PlanStep",
     "PlannedRun",
-    "Tie",
-    "Trial",
     "addition_named",
     "candidates",
     "plan",

@@ -1,16 +1,14 @@
-"""What ``mffit plan`` may add to a programme: one record per kind of run or rig measurement."""
+"""What ``mffit plan`` may add to a programme: one record per kind of run."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.errors import InputError
 from mffit.planning import constants
-from mffit.quantities import CHANNELS
-from mffit.rig_errors import DECLARED
 
 
 class LineOfPoints(NamedTuple):
@@ -25,13 +23,13 @@ class LineOfPoints(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Addition:
-    """One kind of run, or one number of the rig to measure better."""
+    """One kind of run."""
 
     id: str  #: ``kind`` in plan.json, and the word for ``--without``
     title: str
     reason: str  #: what it measures and why that helps
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
-    lines: tuple[LineOfPoints, ...] = ()  #: none for a measurement of the rig
+    lines: tuple[LineOfPoints, ...]
     rig: Literal["any", "disc", "belt"] = "any"
     measures: tuple[str, ...] = ()  #: channels, added to those of the programme
     mount: Literal[1, -1] = 1
@@ -39,8 +37,6 @@ class Addition:
     held: Literal["alpha", "gamma"] = "gamma"  #: angle to which ``side`` of a line belongs
     held_deg: Sequence[float] = (0.0,)  #: its values, one run each
     pressures: Sequence[float] = (1.0,)  #: over the programme's pressure, one run each
-    declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
-    declares_unit: str = ""
 
 
 _NEW_SETUP = (
@@ -56,20 +52,6 @@ _SIDESLIP = (LineOfPoints("alpha", _SHARES),)
 _CAMBER = (LineOfPoints("gamma", _SHARES),)
 _DRIVE = (LineOfPoints("kappa", _SHARES),)
 _DRIVE_TO_BOTH_SIDES = tuple(LineOfPoints("kappa", _SHARES, side=side) for side in (-1, 1))
-
-_RIG_MEASUREMENTS = tuple(
-    Addition(
-        **asdict(declared.measurement),
-        loads="nominal",
-        rig="disc",
-        declares=declared.key,
-        declares_unit=error.unit
-        if declared.unit == error.unit
-        else f"{declared.unit} of {CHANNELS['Fy'].word}",
-    )
-    for error, declared in DECLARED
-    if declared.measurement is not None
-)
 
 ADDITIONS = (
     Addition(
@@ -116,7 +98,6 @@ ADDITIONS = (
         lines=_SMALL_CAMBERS,
         rig="disc",
     ),
-    *_RIG_MEASUREMENTS,
     Addition(
         id="backward-camber",
         title="camber sweep rolled backwards",

@@ -26,7 +26,6 @@ NEW_PRESSURE_FACTORS = Series((0.8, 1.2), "-", "Proposed new pressures over the 
 SECOND_RADIUS_FACTOR = Real(
     0.7, "-", "Second path radius over the usual one: still on the disc, but clearly different."
 )
-RIG_IMPROVEMENT = Real(1.0 / 3.0, "-", "Uncertainty of a remeasured rig number over the declared one.")
 
 # The list
 WORTHWHILE_FALL = Real(0.05, "-", "Share by which a run must lower the uncertainty of the goal.")

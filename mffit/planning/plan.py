@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 from mffit.brief import Brief
 from mffit.config import Config
-from mffit.diagnosis.constants import SEPARATING_CHI2
-from mffit.diagnosis.needs import missing
-from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution, Measured, adding_to_camber
@@ -27,49 +24,24 @@ U = Callable[[Sequence[PlannedRun]], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Tie:
-    """Two effects and how well the sweeps separate them."""
-
-    effect: str  #: id
-    other: str  #: id
-    chi2: float  #: expected chi-squared between them for an effect of the usual size
-
-    @property
-    def told(self) -> bool:
-        """Whether the sweeps separate them."""
-        return self.chi2 >= SEPARATING_CHI2
-
-
-@dataclass(frozen=True, slots=True)
 class Identified:
     """What the present sweeps identify."""
 
     cover: tuple[StageCoverage, ...]  #: per stage: what is freed, what is held and why
     from_prior: tuple[str, ...]  #: freed coefficients that the prior determines more than the data
     correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients and their correlation
-    ties: tuple[Tie, ...]
     budget: tuple[Contribution, ...]  #: of eps_gamma by the direct method; empty on a flat track
     unseen_skew: float | None = None
     """Change of eps_gamma by a camber skew of 1 deg, where no backward camber sweep shows the skew; else None."""
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
-    """A run made alone, and the uncertainty that it would leave."""
-
-    run: PlannedRun
-    u: float  #: of the goal, in its unit
-
-
-@dataclass(frozen=True, slots=True)
 class PlanStep:
-    """One run of the list."""
+    """A run, of the list or made alone."""
 
     run: PlannedRun
-    before: float  #: uncertainty of the goal without it
+    before: float  #: uncertainty of the goal without it, in its unit
     after: float  #: with it
-    direct: float | None  #: u(eps_gamma) of the direct method after it; None without a disc
-    joint: float | None  #: u(PECP1) of the joint fit of tyre and rig after it
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +52,8 @@ class Plan(Brief):
     goal: Goal
     identified: Identified
     now: float  #: present uncertainty of the goal; infinite if it is not measured
-    direct_now: float | None
-    joint_now: float | None
     steps: tuple[PlanStep, ...]  #: the list, in the order in which the runs are made
-    trials: tuple[Trial, ...]  #: every candidate made alone, best first
+    trials: tuple[PlanStep, ...]  #: every candidate made alone, best first
 
     @property
     def then(self) -> float:
@@ -121,47 +91,28 @@ def plan(
     without : additions that this rig cannot make
     progress : called with a sentence before each step
     """
-    pairs = list(tied_pairs(points))
-    effects = {effect.id: effect for pair in pairs for effect in pair}
-    prospect = Prospect(config, points, measured, found, direct, list(effects.values()))
+    prospect = Prospect(config, points, measured, found, direct)
     u = prospect.u_of(goal)
     possible = [run for run in candidates(config, points) if most and run.addition not in without]
     progress(f"trying {len(possible)} runs one by one")
-    trials = sorted((Trial(run, u([run])) for run in possible), key=lambda trial: trial.u)
+    trials = sorted((PlanStep(run, u([]), u([run])) for run in possible), key=lambda trial: trial.after)
     chosen = _without_superfluous(u, _chosen(u, possible, most, progress))
     after = [chosen[:k] for k in range(len(chosen) + 1)]
     return Plan(
         config=config,
         goal=goal,
-        identified=_identified(prospect, pairs),
+        identified=_identified(found, measured),
         now=u([]),
-        direct_now=prospect.direct([]),
-        joint_now=prospect.joint([]),
         steps=tuple(
-            PlanStep(run, u(before), u(then), prospect.direct(then), prospect.joint(then))
+            PlanStep(run, u(before), u(then))
             for run, before, then in zip(chosen, after, after[1:], strict=False)
         ),
         trials=tuple(trials),
     )
 
 
-def tied_pairs(points: Points) -> Iterator[tuple[Effect, Effect]]:
-    """Pairs of effects that may be confused with each other and are visible in the data, each with a single number."""
-    by_id = {
-        e.id: e for e in CATALOG if len(e.free) == 1 and e.kind != "environment" and not missing(e, points)
-    }
-    seen = set()
-    for effect in by_id.values():
-        for other in effect.confusable_with:
-            pair = frozenset((effect.id, other))
-            if other in by_id and pair not in seen:
-                seen.add(pair)
-                yield effect, by_id[other]
-
-
-def _identified(prospect: Prospect, pairs: Sequence[tuple[Effect, Effect]]) -> Identified:
-    """Coverage, correlations, ties and budget of a build."""
-    found, measured = prospect.found, prospect.measured
+def _identified(found: FitResult, measured: Measured) -> Identified:
+    """Coverage, correlations and budget of a build."""
     staged = {name for row in found.coverage for name in row.free}
     correlated: dict[frozenset[str], tuple[str, str, float]] = {}
     for name, row in found.coefficients.items():
@@ -174,9 +125,6 @@ def _identified(prospect: Prospect, pairs: Sequence[tuple[Effect, Effect]]) -> I
             n for n, row in found.coefficients.items() if row.status == "regularised" and n in staged
         ),
         correlated=tuple(correlated.values()),
-        ties=tuple(
-            Tie(a.id, b.id, (prospect.usual_size(a) / prospect.u_of_effect([], a, b)) ** 2) for a, b in pairs
-        ),
         budget=measured.budget,
         unseen_skew=_unseen_skew(measured),
     )

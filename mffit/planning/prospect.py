@@ -11,15 +11,14 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
-from mffit.effects import Effect
 from mffit.fit import FitResult, Posterior
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import beside_held, spread_through
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
-from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
+from mffit.fit.rig.rig_numbers import rig_numbers
 from mffit.least_squares import inverse
-from mffit.measured import Measured, alignment_verdict, measured_path_radius
+from mffit.measured import Measured
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, Goal
 from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.points import Points, levels, main_pressure, make_points
@@ -27,7 +26,6 @@ from mffit.points.points import concatenate
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN, ZEROS, error_of
 from mffit.scatter import rms
-from tir import Quantity
 
 PECP1 = "PECP1"
 
@@ -39,15 +37,14 @@ class DirectU(NamedTuple):
     held: float  #: with which the fit holds PECP1
 
 
-Direct = Callable[[Config, Points], DirectU | None]
+Direct = Callable[[Points], DirectU | None]
 """The direct method on some points; None where it fails."""
 
 
 class Prospect:
     """What a build of a longer programme would state, linearised at the present solution.
 
-    The build is assumed to free what its coverage allows, with the priors and weights of this build. ``effects`` are those of one
-    number that may be told apart.
+    The build is assumed to free what its coverage allows, with the priors and weights of this build.
     """
 
     def __init__(
@@ -57,7 +54,6 @@ class Prospect:
         measured: Measured,
         found: FitResult,
         direct: Direct,
-        effects: Sequence[Effect] = (),
     ) -> None:
         assert found.search is not None
         search = found.search
@@ -65,15 +61,13 @@ class Prospect:
         self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
-        self._held_rig = search.held_rig.keys()
         self._fitted = [n.name for n in search.numbers]
         self._shown_now = self._shown([])
         known = {n.name: n.spread for n in search.numbers} | {**search.held, **search.held_rig}
         unseen = self._spread_of_unseen(known)
         self.spread = unseen | known
         self._new_zeros = self._zeros_of_new_setups()
-        self._usual = {e.free[0].name: self.usual_size(e) for e in effects}
-        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self._usual, *self._new_zeros]))
+        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self._new_zeros]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
         self._sigma = {channel: _usual(s) for channel, s in search.problem.sigma.items()}
@@ -99,25 +93,15 @@ class Prospect:
         other than this build does.
         """
         free, held = free or {}, held or {}
-        spread = {**self._spread(runs), **free, **held}
+        new = {name: self._new_zeros[name] for name in self._new_of(runs)}
+        spread = {**self.spread, **new, **free, **held}
         names = [n for n in dict.fromkeys([*self._free(runs), *free]) if n not in held]
         beside = {n: u for n, u in spread.items() if n not in names and math.isfinite(u)}
-        return self._solved(runs, names, spread, beside)
-
-    def u_of_effect(self, runs: Sequence[PlannedRun], effect: Effect, *rivals: Effect) -> float:
-        """u of an effect's number from the data alone, with the fitted numbers and its rival effects free."""
-        name, partners = effect.free[0].name, [e.free[0].name for e in rivals]
-        spread = self._usual | self._spread(runs)
-        spread |= {n: self._usual[n] for n in partners if n not in self.rig}
-        spread |= {PECP1: math.inf, name: math.inf}
-        names = list(dict.fromkeys([*self._free(runs), PECP1, *partners, name]))
-        return self._solved(runs, names, spread, {}).stderr[name]
-
-    def usual_size(self, effect: Effect) -> float:
-        """Usual size of an effect's number, 1 sigma."""
-        number = effect.free[0]
-        size = abs(self.simulation.number(number.name, self.points)) if number.relative else 1.0
-        return number.spread * size
+        information = self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
+        f, h = ([self._row[n] for n in own] for own in (names, beside))
+        prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in names])
+        covariance = inverse(information[np.ix_(f, f)] + prior)
+        return beside_held(names, covariance, beside, information[np.ix_(f, h)])
 
     def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
         """Uncertainty of a goal in its unit after any runs; infinite if it is not measured at all."""
@@ -167,12 +151,11 @@ class Prospect:
         """The direct method on the present points and the predicted readings of the new ones, asked once."""
         if not self.config.rig.on_disc:
             return None
-        relevant = [r for r in runs if r.points is None or np.any(self._decides_epsilon(r.points))]
+        relevant = [r for r in runs if np.any(self._decides_epsilon(r.points))]
         key = _key(relevant)
         if key not in self._known_directly:
-            new = [self._with_readings(run.points, run) for run in relevant if run.points is not None]
-            declared = self._declared(relevant)
-            self._known_directly[key] = self._directly(declared, concatenate([self._near, *new]))
+            new = [self._with_readings(run) for run in relevant]
+            self._known_directly[key] = self._directly(concatenate([self._near, *new]))
         return self._known_directly[key]
 
     def _decides_epsilon(self, points: Points) -> np.ndarray:
@@ -182,18 +165,13 @@ class Prospect:
         deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
         return deciding
 
-    def _declared(self, runs: Sequence[PlannedRun]) -> Config:
-        """The configuration once the rig has been measured as the runs demand."""
-        better = {key: value for run in runs for key, value in run.rig.items()}
-        return self.config.model_copy(update={"rig": self.config.rig.model_copy(update=better)})
-
     def _channels_of(self, run: PlannedRun) -> tuple[str, ...]:
         """Channels that a run measures: those of the programme, and what it adds."""
         return tuple(c for c in self._sigma if c in (*self.problem.channels, *run.addition.measures))
 
-    def _with_readings(self, points: Points, run: PlannedRun) -> Points:
+    def _with_readings(self, run: PlannedRun) -> Points:
         """The set-points of a run with the readings that the fitted rig would give."""
-        return points.replace(**self.simulation.readings(points, self._channels_of(run)))
+        return run.points.replace(**self.simulation.readings(run.points, self._channels_of(run)))
 
     def _spread_of_unseen(self, known: Mapping[str, float]) -> dict[str, float]:
         """Standard deviation of the coefficients that only a run of longitudinal slip would free; empty once one was made."""
@@ -210,11 +188,7 @@ class Prospect:
     def _shown(self, runs: Sequence[PlannedRun]) -> dict[str, None]:
         """Coefficients that the coverage of a programme with some more runs allows to free, as keys."""
         # Coverage asks only whether there are readings, not which.
-        new = [
-            run.points.replace(**dict.fromkeys(run.addition.measures, 0.0))
-            for run in runs
-            if run.points is not None
-        ]
+        new = [run.points.replace(**dict.fromkeys(run.addition.measures, 0.0)) for run in runs]
         cover = coverage(concatenate([self.points, *new]), self.config.tyre.side, self.hand.held)
         return dict.fromkeys(name for row in cover for name in row.free)
 
@@ -233,59 +207,20 @@ class Prospect:
 
     def _new_of(self, runs: Sequence[PlannedRun]) -> list[str]:
         """Numbers of the zeros of the new set-ups that some runs are in."""
-        used = {name for run in runs if run.points is not None for name in run.points.used_setups}
+        used = {name for run in runs for name in run.points.used_setups}
         return [name for name in self._new_zeros if name.partition(OF_RUN)[2] in used]
-
-    def _spread(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
-        """Prior spread of each number once the rig has been measured as the runs demand."""
-        row = self.measured.nominal
-        new = {name: self._new_zeros[name] for name in self._new_of(runs)}
-        if row is None or not any(run.rig for run in runs):
-            return {**self.spread, **new}
-        config = self._declared(runs)
-        R = measured_path_radius(config)
-        if R is not None:
-            row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
-        # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
-        misaligned = alignment_verdict(config, row).beyond
-        setups = tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)]))
-        mounts = [self.points.mount, *(run.points.mount for run in runs if run.points is not None)]
-        turned = len(np.unique(np.concatenate(mounts))) > 1
-        measured = replace(self.measured, nominal=row, misaligned=misaligned)
-        numbers = rig_numbers(config, measured, setups, self.problem.channels, turned=turned)
-        held = held_rig(config, setups, turned=turned)
-        found = {n.name: n.spread for n in numbers} | held
-        separated = self._held_rig - held.keys()
-        known = {name: u for name, u in self.spread.items() if name not in separated} | new
-        return known | {name: u for name, u in found.items() if name in (*self.spread, *new)}
 
     def _added(self, run: PlannedRun) -> np.ndarray:
         """Information of the rows of one run."""
-        if run.points is None:
-            return np.zeros_like(self._base)
         if run.name not in self._of_run:
             sigma = {c: np.full(run.cost, self._sigma[c]) for c in self._channels_of(run)}
-            points = self._with_readings(run.points, run)
+            points = self._with_readings(run)
             seen = replace(self.problem, points=points, sigma=sigma, envelope=None, radii=())
             slope = seen.free(self.names).linear(self._at).slope
             if self._new_of([run]):  # zeros of its own instead of those without a set-up
                 slope[:, [self._row[e.name] for e in ZEROS if e.name in self.rig]] = 0.0
             self._of_run[run.name] = _information(slope)
         return self._of_run[run.name]
-
-    def _solved(
-        self,
-        runs: Sequence[PlannedRun],
-        free: Sequence[str],
-        spread: Mapping[str, float],
-        held: Mapping[str, float],
-    ) -> Posterior:
-        """Like :func:`mffit.fit.posterior.joint`, computed from the information matrix."""
-        information = self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
-        f, h = ([self._row[n] for n in names] for names in (free, held))
-        prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
-        covariance = inverse(information[np.ix_(f, f)] + prior)
-        return beside_held(free, covariance, held, information[np.ix_(f, h)])
 
     def _curves_of(self, goal: Goal) -> _Curves:
         """Curves over sideslip and camber at three loads on a straight path, and over slip where it counts."""

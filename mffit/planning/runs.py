@@ -1,9 +1,9 @@
-"""The runs and measurements that could be added to a programme, each of which a build can use."""
+"""The runs that could be added to a programme, each of which a build can use."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from mffit.config import Config, SweepTable, setup_names
 from mffit.constants import CAMBER_OF_SLOPES
-from mffit.measured import measured_path_radius
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
@@ -23,19 +22,18 @@ from mffit.scatter import finite_median
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """One entry of a plan: points to run, or a number of the rig to measure better."""
+    """One entry of a plan: points to run."""
 
     addition: Addition
     load: float  #: [N]
-    points: Points | None = None  #: set-points in ISO-W, without readings; None for a measurement
+    points: Points  #: set-points in ISO-W, without readings
     held_deg: float = 0.0  #: camber of coupled sweeps, sideslip of sweeps of combined slip
     pressure_kPa: float | None = None  #: where it differs from the programme's
-    rig: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] and their values from then on
 
     @property
     def cost(self) -> int:
         """Number of points."""
-        return 0 if self.points is None else len(self.points)
+        return len(self.points)
 
     @property
     def name(self) -> str:
@@ -60,21 +58,10 @@ def candidates(config: Config, points: Points) -> tuple[PlannedRun, ...]:
 
 def _runs_of(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:
     """The runs of an addition at one load."""
-    if addition.declares:
-        yield from _better_declared(programme.config, addition, load)
-        return
     for held_deg, factor in product(programme.held_deg(addition, load), addition.pressures):
         p = factor * programme.pressure
         lines = [programme.line(line, addition, load, p, held_deg) for line in addition.lines]
         yield PlannedRun(addition, load, concatenate(lines), held_deg, None if factor == 1.0 else 1e-3 * p)
-
-
-def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[PlannedRun]:
-    """A better measurement of a number of the rig whose uncertainty is declared."""
-    R = measured_path_radius(config) if addition.declares == "u_path_radius" else None
-    u = getattr(config.rig, addition.declares) if R is None else float(R.std_dev)
-    if u:
-        yield PlannedRun(addition, load, rig={addition.declares: constants.RIG_IMPROVEMENT * u})
 
 
 def swept(points: Points) -> Points:

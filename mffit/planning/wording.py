@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 
-from mffit.diagnosis.constants import SEPARATING_CHI2
-from mffit.effects import NAMES
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
-from mffit.planning.plan import Identified, Plan, Tie
+from mffit.planning.plan import Identified, Plan
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.rounding import decimals_of
@@ -20,9 +18,6 @@ LOAD = CONDITIONS["Fz_N"]
 
 def title(run: PlannedRun) -> str:
     """The run in a few words."""
-    if run.rig:
-        (value,) = run.rig.values()
-        return f"{run.addition.title}, known to {value:.2g} {run.addition.declares_unit}"
     more = f", {run.held_deg:g} deg" if run.held_deg else ""
     more += f", {CONDITIONS['p_kPa'].of(run.pressure_kPa)}" if run.pressure_kPa else ""
     return f"{run.addition.title}, {LOAD.of(run.load)}{more}"
@@ -33,13 +28,12 @@ def headline(plan: Plan) -> str:
     if not plan.steps:
         least = f"{100 * constants.WORTHWHILE_FALL:g} %"
         return (
-            f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget and "
-            f"the ties show what limits it."
+            f"None of the runs tried lowers {plan.goal.label} by {least} or more; it is {shown(plan, plan.now)}. The budget "
+            "shows what limits it."
         )
     count = len(plan.steps)
     runs = "1 addition" if count == 1 else f"{count} additions"
-    cost = f" with {plan.points} points" if plan.points else ""
-    return f"{runs}{cost}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
+    return f"{runs} with {plan.points} points: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
 
 
 def measure(plan: Plan) -> str:
@@ -48,11 +42,11 @@ def measure(plan: Plan) -> str:
 
 
 def shown(plan: Plan, u: float) -> str:
-    """An uncertainty of the goal with its unit."""
+    """An uncertainty of the goal with its unit; three digits, also if the last is 0, so that rows can be compared."""
     if not math.isfinite(u):
         return "not measured"
     unit = "" if plan.goal.unit in ("", "-") else f" {plan.goal.unit}"
-    return f"{_u(u)}{unit}"
+    return f"{u:.{decimals_of(u, 3)}f}{unit}"
 
 
 ESTIMATES = {
@@ -78,22 +72,6 @@ def promise(plan: Plan) -> str:
     return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 
-def estimates(plan: Plan) -> str:
-    """Both uncertainties of eps_gamma, now and after the list; empty without a disc."""
-    if plan.joint_now is None and plan.direct_now is None and not any(step.direct for step in plan.steps):
-        return ""
-    direct, joint = _u(plan.direct_now), _u(plan.joint_now)
-    if plan.steps:
-        direct += f" -> {_u(plan.steps[-1].direct)}"
-        joint += f" -> {_u(plan.steps[-1].joint)}"
-    return f"u({EPS}): direct method {direct}; joint fit {joint}."
-
-
-def _u(u: float | None) -> str:
-    """Three digits, also if the last is 0, so that the rows of a table can be compared."""
-    return "not measured" if u is None else f"{u:.{decimals_of(u, 3)}f}"
-
-
 def identified(found: Identified) -> list[str]:
     """What the sweeps identify, in words."""
     return [
@@ -103,8 +81,6 @@ def identified(found: Identified) -> list[str]:
             f"{a} and {b} are strongly correlated ({correlation:+.2f}): only their combination is determined."
             for a, b, correlation in found.correlated
         ),
-        *(tie(pair) for pair in found.ties if not pair.told),
-        *_separated(found),
         *_largest_contribution(found),
     ]
 
@@ -131,19 +107,6 @@ def _coverage(found: Identified) -> list[str]:
     return out
 
 
-def tie(pair: Tie) -> str:
-    """Two effects that the sweeps do not separate."""
-    return (
-        f"Not separated: {NAMES[pair.effect]} and {NAMES[pair.other]} (expected chi2 {pair.chi2:.1f} between them, "
-        f"{SEPARATING_CHI2:g} would suffice)."
-    )
-
-
-def _separated(found: Identified) -> list[str]:
-    pairs = [f"{NAMES[t.effect]} from {NAMES[t.other]}" for t in found.ties if t.told]
-    return [f"Separated, at their usual size: {'; '.join(pairs)}."] if pairs else []
-
-
 def _first_of_all(found: Identified) -> list[str]:
     """The run that shows an error which nothing else shows."""
     if found.unseen_skew is None:
@@ -163,12 +126,3 @@ def _largest_contribution(found: Identified) -> list[str]:
         f"The largest contribution to the uncertainty of {EPS} (direct method) is {largest.source}: "
         f"{abs(largest.contribution):.3f}."
     ]
-
-
-def instructions(run: PlannedRun) -> list[str]:
-    """Lines for tyre.toml, without the readings."""
-    if run.rig:
-        share = f"{constants.RIG_IMPROVEMENT:.2g} of the uncertainty declared now"
-        # Comments, because tyre.toml already has a [rig] table and TOML allows only one.
-        return [f"# change in [rig]: {key} = {value:.3g} ({share})" for key, value in run.rig.items()]
-    return []

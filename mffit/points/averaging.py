@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,7 @@ from mffit.constants import STRAIGHT
 from mffit.points import constants
 from mffit.points.mean import errors_of_means
 from mffit.points.points import Points, make_points
-from mffit.points.stretch import Stretch
+from mffit.points.stretch import PLATEAU, Stretch
 from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import Sweep
 
@@ -36,55 +36,70 @@ def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
     return _points(sweep, phi_t, rows, means, sweep.table.iloc[rows])
 
 
-def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.ndarray) -> Points:
-    """Means over the stretches without faulty samples, with their standard errors if the file states none."""
-    if not kept:
-        return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int))
-    parts = [sound_rows(stretch, faulty) for stretch in kept]
-    found = _means(sweep, phi_t, np.concatenate(parts), _begins([len(part) for part in parts]))
-    u = {}
-    for channel in CHANNELS:
-        values, stated = getattr(sweep, channel), found.u(channel)
-        if np.any(np.isfinite(values)):
-            errors = errors_of_means([values[part] for part in parts])
-            # A record without scatter does not show how exact it is.
-            stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
-        u[channel] = stated
-    table = found.table.assign(**{u_column(channel): values for channel, values in u.items()})
-    return found.replace(
-        **{f"u_{channel}": values for channel, values in u.items()},
-        table=table.dropna(axis="columns", how="all"),
-    )
-
-
 def sound_rows(stretch: Stretch, faulty: np.ndarray) -> np.ndarray:
     """The samples (m,) of a stretch that are not ``faulty`` (n,)."""
     return np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
 
 
-def along_sweeps(
-    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], faulty: np.ndarray
-) -> tuple[Points, np.ndarray]:
-    """Means over short blocks of sweeps, without faulty samples; and the samples (m,) that they average."""
+class Means(NamedTuple):
+    """Points from the stretches of a recording."""
+
+    points: Points
+    counts: tuple[int, ...]  #: of each stretch
+    used: np.ndarray  #: mask (n,) of the samples that are averaged
+
+
+def means(
+    sweep: Sweep, phi_t: float, stretches: Sequence[Stretch], labels: Sequence[str], faulty: np.ndarray
+) -> Means:
+    """Means over plateaus, with their standard errors if the file states none, and over short blocks of sweeps.
+
+    Parameters
+    ----------
+    sweep : samples (n,) of a recording
+    phi_t : turn slip of the path [1/m]
+    stretches : plateaus and sweeps that give points
+    labels : name of the sweep of each stretch
+    faulty : mask (n,) of samples that are left out
+    """
+    used = np.zeros(len(sweep), dtype=bool)
     if not stretches:
-        return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int)), np.zeros(0, dtype=int)
-    kept, sizes, numbers = [], [], []
-    for k, stretch in enumerate(stretches):
+        return Means(rows_as_points(sweep, phi_t, np.flatnonzero(used)), (), used)
+    kept, sizes = [], []
+    for stretch in stretches:
         rows = sound_rows(stretch, faulty)
-        first, usual = _blocks(sweep, rows)
+        first, usual = (np.zeros(1, dtype=int), 0) if stretch.kind == PLATEAU else _blocks(sweep, rows)
         counts = np.diff(np.r_[first, len(rows)])
         enough = 2 * counts >= usual  # most of its samples
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
-        numbers.append(np.full(int(enough.sum()), k))
-    averaged, first = np.concatenate(kept), _begins(np.concatenate(sizes))
-    found = _means(sweep, phi_t, averaged, first).replace(
-        continuous=True,
-        time=_mean(sweep.time, averaged, first),
-        sweep=np.concatenate(numbers),
-        sweep_names=tuple(labels),
+    counts = [len(one) for one in sizes]
+    rows, first = np.concatenate(kept), _begins(np.concatenate(sizes))
+    used[rows] = True
+    moving = np.repeat([stretch.kind != PLATEAU for stretch in stretches], counts)
+    names = tuple(dict.fromkeys(labels))
+    found = _means(sweep, phi_t, rows, first)
+    u = {}
+    for channel in CHANNELS:
+        values, stated = getattr(sweep, channel), found.u(channel)
+        if np.any(np.isfinite(values)) and not np.all(moving):
+            records = [values[part] for part, s in zip(kept, stretches, strict=True) if s.kind == PLATEAU]
+            errors = np.full(len(found), np.nan)
+            errors[~moving] = errors_of_means(records)
+            # A record without scatter does not show how exact it is.
+            stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
+        u[channel] = stated
+    points = found.replace(
+        **{f"u_{channel}": values for channel, values in u.items()},
+        continuous=moving,
+        time=np.where(moving, _mean(sweep.time, rows, first), np.nan),
+        sweep=np.repeat([names.index(label) for label in labels], counts),
+        sweep_names=names,
+        table=found.table.assign(
+            **{u_column(n): values for n, values in u.items() if not np.all(np.isnan(values))}
+        ),
     )
-    return found, averaged
+    return Means(points, tuple(counts), used)
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:

@@ -1,4 +1,4 @@
-"""Which stretches of a recording give points: without their transients, at rest, warm, under a held load; why others do not."""
+"""Which stretches of a recording give points: without their transients, at rest, under a held load; why others do not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mffit.points import constants
 from mffit.points.faulty import Fault
 from mffit.points.mean import mean_and_error
 from mffit.points.steady import Scale, SteadySettings, stretches
-from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
+from mffit.points.stretch import MOVE, PLATEAU, Stretch
 from mffit.scatter import beyond
 from mffit.sweeps import Sweep
 
@@ -50,19 +50,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
         k = int(reason[stretch.begin]) if sweep.point is None else -1
         found.append(stretch if k < 0 else Stretch(stretch.begin, stretch.end, ends[k].reason, MOVE))
-    return _merged(found)
-
-
-def _merged(found: list[Stretch]) -> list[Stretch]:
-    """The stretches, with neighbours that are dropped for the same reason joined."""
-    out: list[Stretch] = []
-    for stretch in sorted(found):
-        last = out[-1] if out else None
-        if last and stretch.dropped and stretch == last._replace(begin=last.end, end=stretch.end):
-            out[-1] = last._replace(end=stretch.end)
-        else:
-            out.append(stretch)
-    return out
+    return sorted(found)
 
 
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
@@ -83,7 +71,7 @@ def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
             if rolled.begin > stretch.begin:
                 tried.append(Stretch(stretch.begin, rolled.begin, ROLLING_IN, MOVE))
             tried.append(rolled)
-    return _without_cold(sweep, tried)
+    return tried
 
 
 def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
@@ -102,21 +90,6 @@ def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
     if high - low > constants.HELD_LOAD * middle:
         return stretch._replace(dropped=f"the load wanders from {low:.0f} to {high:.0f} N")
     return stretch._replace(begin=min(_rolled_from(begin, settings_of(sweep), end), end - 1))
-
-
-def _without_cold(sweep: Sweep, tried: list[Stretch]) -> list[Stretch]:
-    """The stretches, with the first sweeps dropped while the tread is much colder than later."""
-    swept = [k for k, s in enumerate(tried) if s.kind == SWEEP and not s.dropped]
-    if len(swept) <= constants.FEWEST_SWEEPS or sweep.T.strides == (0,):
-        return tried
-    heat = [float(np.nanmedian(sweep.T[tried[k].begin : tried[k].end])) for k in swept]
-    usual = float(np.median(heat))
-    out = list(tried)
-    for k, T in list(zip(swept, heat, strict=True))[: -constants.FEWEST_SWEEPS]:
-        if not usual - T > constants.COLD_TREAD:
-            break
-        out[k] = tried[k]._replace(dropped=f"the tread is cold: {T:.0f} degC, later {usual:.0f}")
-    return out
 
 
 def settled(

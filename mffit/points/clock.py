@@ -1,4 +1,4 @@
-"""Times of samples: rounded ones, and the clock that several recordings share."""
+"""Times of samples: rounded ones, the clock that several recordings share, and the distance rolled."""
 
 from __future__ import annotations
 
@@ -9,27 +9,16 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.sweeps import Sweep
-from mffit.sweeps.constants import RARE_SAMPLES
 
 
 def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
-    """The series with the samples of equal time spread over the time to the next, and a sentence about it.
-
-    A few samples that were written twice are no rounding; they are left out later.
-    """
-    if not sweep.is_series or len(sweep) < 2:
-        return sweep, ()
-    repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if len(repeated) <= RARE_SAMPLES * len(sweep):
-        return sweep, ()
-    time = spread(sweep.time)
+    """The series with the samples of equal time spread over the time to the next, and a sentence about it."""
+    time = spread(sweep.time) if sweep.is_series and len(sweep) > 1 else sweep.time
     if time is sweep.time:
         return sweep, ()
-    shared = len(sweep) / (len(sweep) - len(repeated))
+    repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
     place = f"{sweep.file}:{int(sweep.line[repeated[0]])}"
-    sentence = (
-        f"{place}: time is rounded, so that {shared:.2g} samples share one on average; they are spread evenly"
-    )
+    sentence = f"{place}: {len(repeated)} of {len(sweep)} samples have the time of the one before; they are spread evenly"
     return replace(sweep, time=time), (sentence,)
 
 
@@ -55,3 +44,8 @@ def with_common_clock(sweeps: Sequence[Sweep]) -> list[Sweep]:
         sweep if np.any(np.isfinite(sweep.t)) else replace(sweep, t=sweep.time - begins[0][0])
         for sweep in sweeps
     ]
+
+
+def rolled_distance(time: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """Distance (n,) rolled since the first sample [m], at speeds ``V`` (n,)."""
+    return np.asarray(np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))])

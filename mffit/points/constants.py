@@ -64,12 +64,8 @@ RETURNED_SHARE = Real(
 )
 GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")
-COLD_TREAD = Real(
-    10.0, "K", "First sweeps are dropped if the tread is this much colder than in the middle one."
-)
-FEWEST_SWEEPS = Count(3, "-", "Fewest sweeps that show what is usual and its scatter.")
 
-# Means and lag of moving sweeps
+# Means of moving sweeps
 LARGEST_ORDER_OF_NOISE = Count(
     4, "-", "Autoregressive order: two for noise, two for a ripple such as once per revolution."
 )
@@ -77,7 +73,7 @@ AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep, and shortest g
 NEAR_ZERO = Real(
     0.25,
     "-",
-    "Fy over the largest of its sweep, or Fx over the load, below which the curve is nearly straight.",
+    "Fx over the load below which its curve over slip is nearly straight.",
 )
 
 # Definition of slip

@@ -13,14 +13,12 @@ from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.loading import STAND_IN, as_declared
-from mffit.constants import COVERAGE_FACTOR_95
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import Lag, common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -70,9 +68,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     Returns
     -------
     Reading
-        On a straight path the means along continuous sweeps become points like any others: the lag behind the sideslip
-        angle is measured and taken off the angle, unless ``continuous`` asks for the samples as read. On a disc, which
-        needs pairs of steady points, they are left out.
+        On a straight path the means along continuous sweeps become points like any others, with the times within their
+        sweep; the fit has a number for the lag of the force. On a disc, which needs pairs of steady points, they are left out.
 
     Raises
     ------
@@ -100,13 +97,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         *(sentence for part in reduced for sentence in part.warnings),
     ]
     straight = config.rig.type == "flat-track"
-    is_known = "nominal_speed" in config.tyre.model_fields_set or all(
-        "V_mps" in sweep.table for sweep in sweeps if sweep.is_series
-    )
-    if straight and not continuous and np.any(points.continuous):
-        lag = common([one for part in reduced for one in part.lags])
-        points = settled_sweeps(points, lag)
-        warnings += _of_motion(reduced, lag, None if is_known else config.tyre.nominal_speed)
+    if straight and not continuous:
+        points = points.replace(continuous=False)
     steady = points if continuous and straight else points.select(~points.continuous)
     stretches = tuple(note for part in reduced for note in part.stretches)
     left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
@@ -173,46 +165,6 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
     if DRIVEN not in reasons:
         remedy += ", or leave out column time_s to take each row for a finished point"
     return f"no sweep rests long enough for a steady point{most}; {remedy}"
-
-
-def settled_sweeps(points: Points, lag: Lag) -> Points:
-    """Continuous sweeps as points, at the angle that the force answers to; they keep the times within their sweep.
-
-    ``lag`` is taken off where it is proven.
-    """
-    value, u, _ = lag
-    alpha, taken = points.alpha.copy(), np.zeros(len(points))
-    if np.isfinite(value) and abs(value) > COVERAGE_FACTOR_95 * u:
-        for k in np.unique(points.sweep[points.continuous]):
-            rows = np.flatnonzero(points.continuous & (points.sweep == k))
-            if len(rows) < 3:  # too few for a gradient
-                continue
-            rolled = rolled_distance(points.time[rows], points.V[rows])
-            taken[rows] = value * np.gradient(points.alpha[rows], rolled)
-    table = points.table.assign(alpha_lag_deg=np.degrees(taken)) if np.any(taken) else points.table
-    return points.replace(alpha=alpha - taken, continuous=False, table=table)
-
-
-def _of_motion(reduced: Sequence[Reduced], lag: Lag, assumed: float | None) -> list[str]:
-    """A sentence about the lag of the moving sweeps; a time if the speed is only ``assumed`` [m/s]."""
-    if not any(part.lags for part in reduced):
-        return []
-    known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
-    if not known:
-        return [
-            "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "
-            "unknown and not taken off; sweep up and down"
-        ]
-    value, u, _ = lag
-    proven = abs(value) > COVERAGE_FACTOR_95 * u
-    said = "taken off the angle" if proven else "not proven and not taken off"
-    size = f"{1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1)"
-    if assumed is not None:
-        size = (
-            f"{1e3 * value / assumed:.3g} +- {1e3 * u / assumed:.2g} ms (k = 1; a way only with a speed: name its column V_mps "
-            "under [columns], or give nominal_speed)"
-        )
-    return [f"the side force of {len(known)} continuous sweeps lags {size} behind the sideslip angle: {said}"]
 
 
 def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:

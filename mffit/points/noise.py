@@ -17,6 +17,7 @@ class OverNoise(NamedTuple):
 
     ratio: float  #: root mean square of (model - reading) / u; NaN if no reading has a noise
     n: int  #: number of readings that have one
+    of_noise: float = np.inf  #: readings that the noise itself is known from; infinite if it is stated
 
 
 def over_noise(

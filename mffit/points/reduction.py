@@ -7,17 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.points import averaging, constants, remarks
+from mffit.points import averaging, remarks
 from mffit.points.choice import chosen
 from mffit.points.faulty import DRIVEN, DRIVEN_RULE, Fault, driven, faults
-from mffit.points.lag import UNKNOWN, Lag, measure, rolled_distance
 from mffit.points.left_out import LeftOut, by_rule, of_recording
-from mffit.points.points import Points, concatenate
+from mffit.points.points import Points
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
-from mffit.sweeps.assembly import rows_of
-from mffit.sweeps.constants import RARE_SAMPLES
 
 
 class Reduced(NamedTuple):
@@ -26,7 +23,6 @@ class Reduced(NamedTuple):
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
-    lags: tuple[Lag, ...] = ()  #: of the moving sweeps of an angle that give points
     left_out: tuple[LeftOut, ...] = ()  #: by rules
 
 
@@ -40,42 +36,27 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     every stretch as a sweep of its own. An InputError says that the time of a series does not rise.
     """
     if not sweep.is_series:
-        free = np.flatnonzero(~driven(sweep))
+        lost = driven(sweep)
+        wrong = [Fault(lost, DRIVEN, ends_stretch=False)] if np.any(lost) else []
         return Reduced(
-            points=averaging.rows_as_points(sweep, phi_t, free),
-            warnings=remarks.driven(sweep, free),
-            left_out=by_rule(sweep, driven(sweep), DRIVEN_RULE, DRIVEN),
+            points=averaging.rows_as_points(sweep, phi_t, np.flatnonzero(~lost)),
+            warnings=remarks.faulty(sweep, wrong),
+            left_out=by_rule(sweep, lost, DRIVEN_RULE, DRIVEN),
         )
-    sweep, repeated, repeats = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)
     faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
     tried = _without_faulty_plateaus(chosen(sweep, wrong, scale), wrong, faulty)
     labels = _labels(sweep, tried)
-    plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
-    swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
-    steady = averaging.over_plateaus(sweep, phi_t, plateaus, faulty)
-    moving, averaged = averaging.along_sweeps(
-        sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
-    )
-    # A sweep of longitudinal slip shows no lag behind the sideslip angle.
-    lags = {
-        stretch: _lag(sweep, stretch, faulty)
-        for stretch in swept
-        if np.ptp(sweep.kappa[stretch.begin : stretch.end]) < constants.SMALLEST_SWEEP_OF_SLIP
-    }
-    counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
-    used = np.isin(np.arange(len(sweep)), averaged)
-    for plateau in plateaus:
-        used[averaging.sound_rows(plateau, faulty)] = True
-    number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
-    notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried)
+    giving = [s for kind in (PLATEAU, SWEEP) for s in tried if s.kind == kind and not s.dropped]
+    found = averaging.means(sweep, phi_t, giving, [labels[stretch] for stretch in giving], faulty)
+    number = dict(zip(giving, found.counts, strict=True))
+    notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0)) for s in tried)
     return Reduced(
-        points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
-        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried)),
+        points=found.points,
+        warnings=(*remarks.faulty(sweep, wrong), *remarks.dropped(sweep, tried)),
         stretches=notes,
-        lags=tuple(lags.values()),
-        left_out=(*repeats, *of_recording(sweep, wrong, tried, used)),
+        left_out=of_recording(sweep, wrong, tried, found.used),
     )
 
 
@@ -96,37 +77,6 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
         stretch: f"{sweep.name}:{k:02d}" if stretch.kind == SWEEP else sweep.name
         for stretch, k in zip(tried, numbers, strict=True)
     }
-
-
-def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
-    """The lag of a sweep of the sideslip angle."""
-    rows = averaging.sound_rows(stretch, faulty)
-    if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < max(
-        np.ptp(sweep.gamma[rows]), constants.SMALLEST_SWEEP.rad
-    ):
-        return UNKNOWN
-    if stretch.begin == 0:  # what was before is not known, and the force may still be building up
-        rolled = rolled_distance(sweep.time[rows], sweep.V[rows])
-        rows = rows[rolled >= min(constants.TRANSIENT_ROLL, 0.5 * rolled[-1])]
-    time = sweep.time[rows]
-    rolled = rolled_distance(time, sweep.V[rows])
-    if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
-        return UNKNOWN
-    return measure(
-        sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
-    )
-
-
-def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:
-    """The series without the few samples that a recorder wrote twice, and a sentence and an entry about them."""
-    repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if not len(repeated) or len(repeated) > RARE_SAMPLES * len(sweep):
-        return sweep, (), ()
-    kept = np.delete(np.arange(len(sweep)), repeated)
-    sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
-    which = np.isin(np.arange(len(sweep)), repeated)
-    left_out = by_rule(sweep, which, "repeated-time", "the time of the sample before")
-    return rows_of(sweep, kept, sweep.name), (sentence,), left_out
 
 
 def _check_time(sweep: Sweep) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points.choice import settings_of
-from mffit.points.faulty import DRIVEN, Fault
-from mffit.points.lag import Lag
+from mffit.points.faulty import Fault
 from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.scatter import finite_median
@@ -17,21 +18,30 @@ COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
 """Column of a setting."""
 
 
-def left_out(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
-    """Sentences about plateaus, samples and sweeps that are left out."""
-    return (*_of_plateaus(sweep, tried), *_of_samples_and_sweeps(sweep, wrong, tried))
+def faulty(sweep: Sweep, wrong: Sequence[Fault]) -> tuple[str, ...]:
+    """Sentences about faulty samples or finished points, with the first line."""
+    out = []
+    for fault in wrong:
+        first, number = int(np.argmax(fault.which)), int(np.sum(fault.which))
+        more = f" and {number - 1} more" if number > 1 else ""
+        out.append(f"{sweep.file}:{int(sweep.line[first])}: {fault.reason} here{more}; left out")
+    return tuple(out)
 
 
-def driven(sweep: Sweep, free: np.ndarray) -> tuple[str, ...]:
-    """A sentence about finished points that were driven or braked; ``free`` are the rows of the others."""
-    lost = np.setdiff1d(np.arange(len(sweep)), free)
-    if not len(lost):
-        return ()
-    rows = f"{len(lost)} of {len(sweep)} points are" if len(lost) > 1 else "one point is"
-    return (f"{sweep.file}:{int(sweep.line[lost[0]])}: {rows} {DRIVEN}; left out",)
+def dropped(sweep: Sweep, tried: Sequence[Stretch]) -> tuple[str, ...]:
+    """Sentences about plateaus and sweeps that are left out."""
+    out = []
+    for kind, what in ((PLATEAU, "steady stretches"), (SWEEP, "sweeps")):
+        of_kind = [stretch for stretch in tried if stretch.kind == kind]
+        lost = [f"at {sweep.time[s.begin]:.1f} s {s.dropped}" for s in of_kind if s.dropped]
+        if lost:
+            more = f" and {len(lost) - NAMED_IN_SENTENCE} more" if len(lost) > NAMED_IN_SENTENCE else ""
+            named = "; ".join(lost[:NAMED_IN_SENTENCE])
+            out.append(f"{sweep.file}: {len(lost)} of {len(of_kind)} {what} are left out: {named}{more}")
+    return tuple(out)
 
 
-def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> StretchNote:
+def note(sweep: Sweep, stretch: Stretch, label: str, points: int) -> StretchNote:
     """The row about a stretch."""
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
@@ -55,8 +65,6 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
         p_kPa=1e-3 * finite_median(sweep.p[part]),
         T_degC=finite_median(sweep.T[part]),
         points=points,
-        lag_m=lag.lag,
-        u_lag_m=float(np.hypot(lag.u, lag.u_shape)),
         dropped=stretch.dropped,
     )
 
@@ -66,43 +74,3 @@ def swept(sweep: Sweep, stretch: Stretch) -> str:
     part, settings = slice(stretch.begin, stretch.end), settings_of(sweep)
     ranges = {name: float(np.ptp(getattr(settings, name)[part])) / least for name, least in RANGE.items()}
     return COLUMN_OF[max(ranges, key=lambda name: ranges[name])]
-
-
-def _of_samples_and_sweeps(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
-    """Sentences about faulty samples, and about dropped sweeps with their reasons."""
-    out = []
-    for fault in wrong:
-        first, number = int(np.argmax(fault.which)), int(np.sum(fault.which))
-        out.append(
-            f"{sweep.file}:{int(sweep.line[first])}: {fault.reason} at {sweep.time[first]:.2f} s"
-            f"{f' and in {number - 1} more samples' if number > 1 else ''}; left out"
-        )
-    swept = [s for s in tried if s.kind == SWEEP]
-    lost = [s for s in swept if s.dropped]
-    if lost:
-        named = _named([f"at {sweep.time[s.begin]:.1f} s {s.dropped}" for s in lost])
-        out.append(f"{sweep.file}: {len(lost)} of {len(swept)} sweeps are left out: {named}")
-    return tuple(out)
-
-
-def _of_plateaus(sweep: Sweep, found: list[Stretch]) -> tuple[str, ...]:
-    """A sentence about the plateaus that were dropped."""
-    tried = [stretch for stretch in found if stretch.kind == PLATEAU]
-    dropped = [stretch for stretch in tried if stretch.dropped]
-    if not dropped:
-        return ()
-    named = _named(
-        [
-            f"at {sweep.time[stretch.begin]:.1f} s ({np.degrees(sweep.alpha[stretch.begin]):.2f} deg sideslip, "
-            f"{np.degrees(sweep.gamma[stretch.begin]):.2f} deg camber) {stretch.dropped}"
-            for stretch in dropped
-        ]
-    )
-    return (f"{sweep.file}: {len(dropped)} of {len(tried)} steady stretches give no point: {named}",)
-
-
-def _named(places: list[str]) -> str:
-    """The first places, and the number of the others."""
-    shown = NAMED_IN_SENTENCE
-    more = f" and {len(places) - shown} more" if len(places) > shown else ""
-    return "; ".join(places[:shown]) + more

@@ -101,42 +101,12 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
     masks = moves(settings, scale)
     changing = masks["Fz"] | masks["p"] | masks["V"]
     found = []
-    steady = _reaching(settings, scale, runs(~changing))
-    changing = np.ones(len(settings.time), dtype=bool)
-    for begin, end in steady:
-        changing[begin:end] = False
-    for begin, end in steady:
+    for begin, end in runs(~changing):
         part = SteadySettings(*(x[begin:end] for x in settings))
         inside = _of_condition(part, {name: masks[name][begin:end] for name in STEP})
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
-
-
-def _reaching(settings: SteadySettings, scale: Scale, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Runs of one condition, extended to where it begins and ends: a change also masks the samples near it."""
-    n = len(settings.time)
-    lag = _samples(settings, constants.COMPARED_APART)
-    out = []
-    width = _samples(settings, constants.AVERAGED_TIME)
-    smooth = {name: uniform_filter1d(getattr(settings, name), width, mode="nearest") for name in CONDITIONS}
-    for k, (begin, end) in enumerate(found):
-        least = found[k - 1][1] if k else 0
-        most = found[k + 1][0] if k + 1 < len(found) else n
-        least, most = max(least, begin - lag), min(most, end + lag)
-        inside = np.ones(most - least, dtype=bool)
-        for name, x in smooth.items():
-            for a, b, c, d in (
-                (least, begin, begin, min(begin + lag, end)),
-                (end, most, max(end - lag, begin), end),
-            ):
-                step = constants.CONDITION * max(scale[name], abs(float(np.median(x[c:d]))))
-                inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
-        before, behind = inside[: begin - least][::-1], inside[end - least :]
-        begin -= len(before) if before.all() else int(np.argmin(before))
-        end += len(behind) if behind.all() else int(np.argmin(behind))
-        out.append((begin, end))
-    return out
 
 
 def _samples(settings: SteadySettings, seconds: float) -> int:

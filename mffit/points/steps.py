@@ -11,7 +11,7 @@ import numpy as np
 from mffit.constants import STRAIGHT
 from mffit.points import constants
 from mffit.points.choice import settings_of
-from mffit.points.lag import rolled_distance
+from mffit.points.clock import rolled_distance
 from mffit.points.points import Points, concatenate, make_points
 from mffit.points.steady import Scale, stretches
 from mffit.points.stretch import PLATEAU, Stretch

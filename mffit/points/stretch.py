@@ -40,8 +40,6 @@ class StretchNote(NamedTuple):
     p_kPa: float
     T_degC: float
     points: int  #: that it gives
-    lag_m: float  #: rolled distance by which the side force lags behind the sideslip angle
-    u_lag_m: float
     dropped: str  #: why it gives no point; empty if it does
 
 
@@ -53,7 +51,7 @@ def runs(mask: np.ndarray) -> list[tuple[int, int]]:
 
 DIGITS = {
     "begin_s": 3, "end_s": 3, "alpha_from_deg": 2, "alpha_to_deg": 2, "kappa_from": 4, "kappa_to": 4, "gamma_deg": 2,
-    "Fz_N": 0, "p_kPa": 1, "T_degC": 1, "lag_m": 4, "u_lag_m": 4,
+    "Fz_N": 0, "p_kPa": 1, "T_degC": 1,
 }  # fmt: skip
 
 

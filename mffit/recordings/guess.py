@@ -12,10 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.config.models import Column
 from mffit.recordings import constants
-from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_recorded
-from mffit.recordings.unstated import Choice, FoundChannel, choices, customary, hot
+from mffit.recordings.slip_definition import SLIP, slip_definition
+from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices, customary, hot
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
@@ -37,39 +36,6 @@ ABOUT_LETTERS = {
     "H": "horizontal, about the wheel centre",
 }
 """Letters of TYDEX whose axes are not those of the contact."""
-
-
-class Guess(NamedTuple):
-    """The column of a file that is a channel."""
-
-    channel: Channel
-    heading: str
-    stated: str = ""  #: unit as the file states it, "" if it does not
-    unit: str = ""  #: unit to write to ``tyre.toml``; "" if the file or the heading states it
-    assumed: bool = False  #: neither the file nor the heading states the unit
-    lower: float = np.nan  #: range of the readings, in the file's unit
-    upper: float = np.nan
-    why: str = ""  #: reason for a unit that nothing states
-    scale: float = 1.0  #: -1 if the file has the other sign
-    against: str | None = (
-        None  #: what longitudinal slip is against; None for other channels, or if nothing shows it
-    )
-
-    @property
-    def unit_of_readings(self) -> str:
-        """The unit in which the file's readings are."""
-        return self.unit or self.stated or self.channel.unit
-
-    @property
-    def column(self) -> Column:
-        """The guess as an entry of ``[columns]``."""
-        given = {
-            "column": self.heading,
-            "unit": self.unit or None,
-            "scale": self.scale,
-            "against": self.against,
-        }
-        return Column.model_validate(given)
 
 
 class ColumnChoice(NamedTuple):
@@ -107,17 +73,14 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
         remarks.append(remark)
     if remark := hot(columns):
         remarks.append(remark)
-    found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
+    found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
-    defined = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
-    if defined is not None:
-        remarks += defined.remarks
-        if not wheel_not_recorded(defined.column):
-            found[SLIP] = _guess(
-                raw, defined.column, Choice(defined.unit, defined.why) if defined.unit else None
-            )._replace(scale=defined.scale, against=defined.against, why=defined.why)
+    slip, of_slip = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
+    remarks += of_slip
+    if slip is not None:
+        found[SLIP] = slip
     remarks += _without(raw, found)
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
@@ -133,18 +96,10 @@ def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]
     chosen = {}
     for choice in choices:
         if choice.channel:
-            values = numbers(raw.column(choice.heading))
-            seen = values[np.isfinite(values)]
-            chosen[choice.channel] = Guess(
-                BY_NAME[choice.channel],
-                choice.heading,
-                stated=raw.unit(choice.heading),
-                unit=choice.unit,
-                lower=float(seen.min()) if len(seen) else np.nan,
-                upper=float(seen.max()) if len(seen) else np.nan,
-                why="as chosen",
-                scale=-1.0 if choice.minus else 1.0,
-            )
+            channel, stated = BY_NAME[choice.channel], raw.unit(choice.heading)
+            column = FoundChannel(channel, choice.heading, stated, numbers(raw.column(choice.heading)))
+            guess = column.guess(Choice(choice.unit, "as chosen"))
+            chosen[channel.name] = guess._replace(assumed=False, scale=-1.0 if choice.minus else 1.0)
     kept = {name: guess for name, guess in guessed.found.items() if guess.heading not in touched}
     found = kept | chosen
     words = touched | chosen.keys()
@@ -199,7 +154,7 @@ def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | Non
     stated, values = raw.unit(heading), numbers(raw.column(heading))
     if not np.any(np.isfinite(values)) or (stated and not _is_of_kind(stated, channel)):
         return None
-    return FoundChannel(channel, heading, stated or (channel.unit if heading == channel.name else ""), values)
+    return FoundChannel(channel, heading, stated, values)
 
 
 def _is_of_kind(unit: str, channel: Channel) -> bool:
@@ -221,19 +176,6 @@ def _labels(raw: RawTable) -> dict[str, Guess]:
         if heading == channel.name or len(np.unique(np.asarray(raw.column(heading)))) > 1:
             found[channel.name] = Guess(channel, heading)
     return found
-
-
-def _guess(raw: RawTable, column: FoundChannel, choice: Choice | None) -> Guess:
-    return Guess(
-        channel=column.channel,
-        heading=column.heading,
-        stated=raw.unit(column.heading),
-        unit="" if choice is None else choice.unit,
-        assumed=choice is not None,
-        lower=float(np.nanmin(column.values)),
-        upper=float(np.nanmax(column.values)),
-        why="" if choice is None else choice.why,
-    )
 
 
 def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str, Guess]) -> str:

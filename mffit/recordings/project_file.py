@@ -14,8 +14,8 @@ import tomli_w
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
-from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from, rolls_backward
+from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
 from mffit.sweeps import formats
 from mffit.sweeps.formats import stem
@@ -49,7 +49,7 @@ SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 
 
 class Stated(NamedTuple):
-    """What a user says of tyre and rig; None where the recordings decide, or where nothing is known."""
+    """What a user, or recordings, say of tyre and rig; None where nothing is said."""
 
     unloaded_radius: float | None = None  #: [m]
     nominal_load: float | None = None  #: [N]
@@ -70,28 +70,18 @@ class Stated(NamedTuple):
 NOTHING_STATED = Stated()
 
 
-class TyreFound(NamedTuple):
-    """What recordings say of their tyre, in the digits that are written; None where they say nothing."""
-
-    name: str
-    size: str | None
-    width: float | None  #: [m]
-    rim_radius: float | None  #: [m]
-    nominal_pressure: float | None  #: [kPa]
-    nominal_speed: float | None  #: [m/s]
-
-
-def tyre_found(sniffed: Sniffed, folder: Path) -> TyreFound:
-    """What recordings, and the name of the folder of their project, say of the tyre."""
+def tyre_found(sniffed: Sniffed, folder: Path) -> Stated:
+    """What recordings, and the name of the folder of their project, say of the tyre, in the digits that are written."""
     size = next((tyre for r in sniffed.recordings if (tyre := named_tyre(r.about))), "")
     width, rim_radius = _of_size(size)
-    return TyreFound(
-        _name(sniffed.recordings, folder),
-        size[:MOST_OF_SIZE] or None,
-        width,
-        rim_radius,
-        _pressure(sniffed),
-        _speed(sniffed),
+    several = len(sniffed.recordings) > 1 and folder.name
+    return Stated(
+        name=slug(folder if several else sniffed.recordings[0].path),
+        size=size[:MOST_OF_SIZE] or None,
+        width=width,
+        rim_radius=rim_radius,
+        nominal_pressure=_pressure(sniffed),
+        nominal_speed=_speed(sniffed),
     )
 
 
@@ -131,7 +121,7 @@ def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
             yield f"{key} = {_value(value)}" + (f"  # {unit}" if unit else "")
 
     title = next((title for r in sniffed.recordings if (title := title_of(r.about))), "")
-    yield f"name = {quoted(stated.name or found.name)}"
+    yield f"name = {quoted(stated.name or str(found.name))}"
     if title and not (stated.size or found.size):
         yield f'# size = ""  # the title of the recording is: {_one_line(title)[:MOST_OF_SIZE]}'
     yield from line("size", "", "as the recording names the tyre")
@@ -149,10 +139,6 @@ def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
 
 def _value(value: str | float) -> str:
     return quoted(value) if isinstance(value, str) else f"{value:g}"
-
-
-def _name(recordings: Sequence[SniffedRecording], folder: Path) -> str:
-    return slug(folder if len(recordings) > 1 and folder.name else recordings[0].path)
 
 
 def _of_size(tyre: str) -> tuple[float | None, float | None]:

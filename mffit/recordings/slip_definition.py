@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero
-from mffit.recordings.unstated import FoundChannel
+from mffit.recordings.unstated import Choice, FoundChannel, Guess
 from mffit.sweeps.units import converted
 
 SLIP = "kappa"
 
 
-class SlipDefinition(NamedTuple):
-    """A column of slip, and how it becomes slip as a ratio, positive when driven, against free rolling."""
-
-    column: FoundChannel
-    unit: str = ""  #: to write to ``tyre.toml``; "" if the file states it or the readings are ratios
-    scale: float = 1.0  #: -1 if braking is positive
-    against: str | None = None  #: None if Fx does not show it
-    why: str = ""
-    remarks: tuple[str, ...] = ()
-
-
 def slip_definition(
     candidates: Sequence[FoundChannel], found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
-) -> SlipDefinition | None:
-    """The column to take as slip: the one against free rolling, else one that can be shifted; None if none holds slip.
+) -> tuple[Guess | None, tuple[str, ...]]:
+    """The column to take as slip, None if none holds slip, with remarks: the one against free rolling, else one to be shifted.
 
     Parameters
     ----------
@@ -37,35 +25,29 @@ def slip_definition(
     found : columns of the other channels
     unit_of : unit of the readings of a channel, by its name
     """
-    silent = [column for column in candidates if wheel_not_recorded(column)]
-    remarks = [
-        f"{column.heading} is {np.nanmedian(column.values):.3g} throughout, as of a wheel at rest, so the speed of the wheel "
-        "was not recorded: left out"
-        for column in silent
-    ]
-    readable = [column for column in candidates if column not in silent]
-    if not readable:
-        return None if not remarks else SlipDefinition(candidates[0], remarks=tuple(remarks))
-    judged = [_judged(column, found, unit_of) for column in readable]
-    known = [(definition, zero) for definition, zero in judged if zero is not None]
-    if not known:
-        return judged[0][0]._replace(remarks=tuple(remarks))
-    chosen, zero = min(known, key=lambda pair: pair[1].largest)
-    for definition, other in known:
-        if definition is not chosen:
+    remarks, judged = [], []
+    for column in candidates:
+        if _wheel_not_recorded(column):
+            usual = f"{np.nanmedian(column.values):.3g} throughout, as of a wheel at rest"
             remarks.append(
-                f"{chosen.column.heading} is taken, not {definition.column.heading}: in the latter {_zero_said(other)}"
+                f"{column.heading} is {usual}, so the speed of the wheel was not recorded: left out"
             )
-    said = sentence(chosen.column.heading, chosen.against, zero)
-    why = "; ".join(part for part in (chosen.why, said) if part)
-    return chosen._replace(why=why, remarks=tuple(remarks))
+        else:
+            judged.append(_judged(column, found, unit_of))
+    known = [(guess, zero) for guess, zero in judged if zero is not None]
+    if not known:
+        return (judged[0][0] if judged else None), tuple(remarks)
+    chosen, nearest = min(known, key=lambda pair: pair[1].largest)
+    remarks += [
+        f"{chosen.heading} is taken, not {guess.heading}: in the latter Fx = 0 lies at slip {zero.said}"
+        for guess, zero in known
+        if guess is not chosen
+    ]
+    said = sentence(chosen.heading, chosen.against, nearest)
+    return chosen._replace(why="; ".join(filter(None, (chosen.why, said)))), tuple(remarks)
 
 
-def _zero_said(zero: SlipZero) -> str:
-    return f"Fx = 0 lies at slip {zero.said}"
-
-
-def wheel_not_recorded(column: FoundChannel) -> bool:
+def _wheel_not_recorded(column: FoundChannel) -> bool:
     """Whether the slip is that of a wheel at rest in every sample: -1 or -100 % but for the noise of the road speed."""
     seen = column.values[np.isfinite(column.values)]
     return any(
@@ -76,32 +58,27 @@ def wheel_not_recorded(column: FoundChannel) -> bool:
 
 def _judged(
     column: FoundChannel, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
-) -> tuple[SlipDefinition, SlipZero | None]:
-    """One candidate with unit, sign and zero."""
-    ratio = converted(column.values, column.unit, "") if column.unit else column.values
-    zero = _zero(ratio, found, unit_of)
-    unit = why = ""
+) -> tuple[Guess, SlipZero | None]:
+    """One candidate with unit, sign and what it is against; and its zero."""
+    zero = _zero(converted(column.values, column.unit, "") if column.unit else column.values, found, unit_of)
+    choice = None
     if not column.unit:
         if column.size > column.channel.upper:
-            unit, why = "%", f"{column.range} look like %"
+            choice = Choice("%", f"{column.range} look like %")
         elif zero is not None and abs(zero.slope) < SOFTEST_SLIP_STIFFNESS:
-            unit, why = (
-                "%",
-                f"Fx rises by {abs(zero.slope):.2g} times the load per unit of {column.heading}, so {column.range} are in %",
-            )
-    if unit:
+            rises = f"Fx rises by {abs(zero.slope):.2g} times the load per unit of {column.heading}"
+            choice = Choice("%", f"{rises}, so {column.range} are in %")
+    if choice is not None:
         zero = _zero(0.01 * column.values, found, unit_of)
+    guess = column.guess(choice)
     if zero is None:
-        return SlipDefinition(column, unit, why=why), None
-    scale = 1.0
+        return guess, None
     if zero.slope < 0.0:
-        scale = -1.0
-        why = "; ".join(
-            part for part in (why, "braking is positive in the file, as Fx falls with it") if part
-        )
+        why = "braking is positive in the file, as Fx falls with it"
+        guess = guess._replace(scale=-1.0, why="; ".join(filter(None, (guess.why, why))))
         zero = zero.reversed
     against = FREE if zero.is_free_rolling else LOADED if zero.falls else None
-    return SlipDefinition(column, unit, scale, against, why), zero
+    return guess._replace(against=against), zero
 
 
 def _zero(

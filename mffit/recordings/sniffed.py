@@ -21,8 +21,9 @@ from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import ColumnChoice, Guess, corrected, guesses
+from mffit.recordings.guess import ColumnChoice, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
+from mffit.recordings.unstated import Guess
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
+from mffit.config.lines import ranges_text
 from mffit.errors import InputError
 from mffit.recordings import constants
 from mffit.recordings.guess import candidates, simplified
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME
+from mffit.sweeps.columns import text_of
 from mffit.sweeps.raw_table import RawTable
 
 RUN = {
@@ -42,16 +42,9 @@ class SummaryRow(NamedTuple):
     """What a summary says of one recording."""
 
     recording: Path
-    line: int
+    place: str  #: file and line of the summary
     bad: str  #: why the run is bad; "" if nothing says so
     specimen: str  #: "" if none is named
-
-
-class RunSummary(NamedTuple):
-    """One table with a row per run."""
-
-    path: Path
-    rows: tuple[SummaryRow, ...]
 
 
 class BadRun(NamedTuple):
@@ -62,46 +55,40 @@ class BadRun(NamedTuple):
     why: str
 
 
-def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[RunSummary, ...]]:
-    """Recordings among the files, and the summaries of their runs among the files and beside them."""
+def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:
+    """Recordings among the files, and what summaries among the files and beside them say of these."""
     given = [file for file in files if _may_be_summary(file) and _raw_summary(file) is not None]
     recordings = [file for file in files if file not in given] or list(files)
     folders = dict.fromkeys(file.absolute().parent for file in recordings)
     known = {file.absolute() for file in files}
-    beside = [
-        file
-        for folder in folders
-        for file in sorted(folder.iterdir())
-        if file.absolute() not in known and _may_be_summary(file)
-    ]
-    found = (_summary(file, recordings) for file in (*given, *beside))
-    return recordings, tuple(summary for summary in found if summary is not None)
+    inside = [file for folder in folders for file in sorted(folder.iterdir())]
+    beside = [file for file in inside if file.absolute() not in known and _may_be_summary(file)]
+    rows = [row for file in (*given, *beside) for row in _rows(file, recordings)]
+    return recordings, tuple(row for row in rows if row.bad or row.specimen)
 
 
-def bad_runs(summaries: Iterable[RunSummary]) -> tuple[BadRun, ...]:
+def bad_runs(rows: Iterable[SummaryRow]) -> tuple[BadRun, ...]:
     """Every recording that a summary calls bad, with all its lines, to be excluded."""
     found: dict[Path, BadRun] = {}
-    for summary in summaries:
-        for row in summary.rows:
-            if row.bad and row.recording not in found:
-                lines = formats.read(row.recording).lines
-                whole = f"{int(lines[0])}-{int(lines[-1])}" if len(lines) > 1 else f"{int(lines[0])}"
-                why = f"{summary.path.name}, line {row.line}: {row.bad}"
-                found[row.recording] = BadRun(row.recording, whole, why)
+    for row in rows:
+        if row.bad and row.recording not in found:
+            lines = formats.read(row.recording).lines
+            whole = ranges_text([(int(lines[0]), int(lines[-1]))])
+            found[row.recording] = BadRun(row.recording, whole, f"{row.place}: {row.bad}")
     return tuple(found.values())
 
 
-def two_specimens(summaries: Iterable[RunSummary]) -> str:
+def two_specimens(rows: Iterable[SummaryRow]) -> str:
     """That recordings are of two tyres, if a summary names two specimens; "" otherwise."""
-    for summary in summaries:
-        named = [row for row in summary.rows if row.specimen]
-        other = next((row for row in named if row.specimen != named[0].specimen), None)
-        if other is not None:
-            return (
-                f"{named[0].recording} and {other.recording} are of two tyres: {summary.path.name} names the specimens "
-                f'"{named[0].specimen}" (line {named[0].line}) and "{other.specimen}" (line {other.line}); make a project of each'
-            )
-    return ""
+    named = [row for row in rows if row.specimen]
+    other = next((row for row in named if row.specimen != named[0].specimen), None)
+    if other is None:
+        return ""
+    first = named[0]
+    return (
+        f'{first.recording} and {other.recording} are of two tyres: specimens "{first.specimen}" ({first.place}) and '
+        f'"{other.specimen}" ({other.place}); make a project of each'
+    )
 
 
 def _may_be_summary(file: Path) -> bool:
@@ -130,32 +117,22 @@ def _columns(raw: RawTable) -> dict[str, str]:
     return {simplified(heading.strip()).rstrip("."): heading for heading in reversed(raw.headings)}
 
 
-def _summary(file: Path, recordings: Sequence[Path]) -> RunSummary | None:
-    """The rows of a summary that are about these recordings; None if they say nothing of them."""
+def _rows(file: Path, recordings: Sequence[Path]) -> Iterator[SummaryRow]:
+    """The rows of a summary that are about these recordings."""
     raw = _raw_summary(file)
     if raw is None:
-        return None
+        return
     columns = _columns(raw)
-    run = next(heading for heading in raw.headings if heading in {columns[n] for n in columns.keys() & RUN})
-    rows = []
-    for k, cell in enumerate(raw.column(run)):
-        recording = _recording(cell, recordings)
-        if recording is not None:
-            rows.append(_row(raw, columns, k, recording))
-    return RunSummary(file, tuple(rows)) if any(row.bad or row.specimen for row in rows) else None
 
-
-def _row(raw: RawTable, columns: dict[str, str], k: int, recording: Path) -> SummaryRow:
-    def text(names: Iterable[str]) -> str:
+    def text(names: Iterable[str], row: int) -> str:
         heading = next((columns[name] for name in reversed(columns) if name in names), None)
-        return "" if heading is None else _text(raw.column(heading)[k])
+        return "" if heading is None else text_of(raw.column(heading)[row])
 
-    return SummaryRow(
-        recording=recording,
-        line=int(raw.lines[k]),
-        bad=_bad(text(QUALITY), text(GOOD_IF_TRUE), text(REMARK)),
-        specimen=text(SPECIMEN),
-    )
+    for row, line in enumerate(raw.lines):
+        recording = _recording(text(RUN, row), recordings)
+        if recording is not None:
+            bad = _bad(text(QUALITY, row), text(GOOD_IF_TRUE, row), text(REMARK, row))
+            yield SummaryRow(recording, f"{file.name}, line {int(line)}", bad, text(SPECIMEN, row))
 
 
 def _bad(quality: str, good: str, remark: str) -> str:
@@ -168,9 +145,8 @@ def _bad(quality: str, good: str, remark: str) -> str:
     return ", ".join(filter(None, [*flagged, remark])) if flagged else ""
 
 
-def _recording(cell: str | float, recordings: Sequence[Path]) -> Path | None:
+def _recording(name: str, recordings: Sequence[Path]) -> Path | None:
     """The recording that a cell names, by its file or by the number of the run; None if none or several fit."""
-    name = _text(cell)
     stems = {path: formats.stem(path.name).lower() for path in recordings}
     exact = [path for path in recordings if name.lower() in (path.name.lower(), stems[path])]
     if exact:
@@ -185,9 +161,3 @@ def _recording(cell: str | float, recordings: Sequence[Path]) -> Path | None:
             if name and re.search(rf"{re.escape(name.lower())}(?!\d)", stem)
         ]
     return found[0] if len(found) == 1 else None
-
-
-def _text(cell: str | float) -> str:
-    if isinstance(cell, str):
-        return cell.strip()
-    return "" if not np.isfinite(cell) else f"{float(cell):g}"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.config.models import Column
 from mffit.constants import HOTTEST_TREAD
 from mffit.points import levels
 from mffit.points.clock import spread
@@ -20,13 +21,60 @@ from mffit.sweeps.columns import implausible
 from mffit.sweeps.units import converted, spelt
 
 
+class Choice(NamedTuple):
+    """A unit that no file states."""
+
+    unit: str
+    why: str  #: follows "the file states no unit: "
+
+
+class Guess(NamedTuple):
+    """The column of a file that is a channel."""
+
+    channel: Channel
+    heading: str
+    stated: str = ""  #: unit as the file states it, "" if it does not
+    unit: str = ""  #: unit to write to ``tyre.toml``; "" if the file or the heading states it
+    assumed: bool = False  #: neither the file nor the heading states the unit
+    lower: float = np.nan  #: range of the readings, in the file's unit
+    upper: float = np.nan
+    why: str = ""  #: reason for a unit that nothing states
+    scale: float = 1.0  #: -1 if the file has the other sign
+    against: str | None = (
+        None  #: what longitudinal slip is against; None for other channels, or if nothing shows it
+    )
+
+    @property
+    def unit_of_readings(self) -> str:
+        """The unit in which the file's readings are."""
+        return self.unit or self.stated or self.channel.unit
+
+    @property
+    def column(self) -> Column:
+        """The guess as an entry of ``[columns]``."""
+        given = {"column": self.heading, "unit": self.unit or None, "scale": self.scale}
+        return Column.model_validate({**given, "against": self.against})
+
+
 class FoundChannel(NamedTuple):
     """A column of numbers that is a channel."""
 
     channel: Channel
     heading: str
-    unit: str  #: as stated, or the contract's unit under the contract's heading; "" if neither gives it
+    stated: str  #: unit as the file states it, "" if it does not
     values: np.ndarray  #: (n,), NaN where there is no reading
+
+    @property
+    def unit(self) -> str:
+        """The stated unit, or the contract's under the contract's heading; "" if neither gives it."""
+        return self.stated or (self.channel.unit if self.heading == self.channel.name else "")
+
+    def guess(self, choice: Choice | None) -> Guess:
+        """The column with the unit that was chosen where none is stated."""
+        unit, why = choice or ("", "")
+        seen = self.values[np.isfinite(self.values)]
+        lower, upper = (float(seen.min()), float(seen.max())) if len(seen) else (np.nan, np.nan)
+        return Guess(self.channel, self.heading, self.stated, unit, choice is not None, lower, upper, why)
 
     @property
     def size(self) -> float:
@@ -43,20 +91,6 @@ class FoundChannel(NamedTuple):
     def range(self) -> str:
         """Lowest and highest reading, for a sentence."""
         return f"{np.nanmin(self.values):.3g} to {np.nanmax(self.values):.3g}"
-
-
-class Choice(NamedTuple):
-    """A unit that no file states."""
-
-    unit: str
-    why: str  #: follows "the file states no unit: "
-
-
-class Choices(NamedTuple):
-    """What is decided about the columns of a file, by channel."""
-
-    chosen: dict[str, Choice]
-    left_out: dict[str, str]  #: why a column is left out
 
 
 class Kind(NamedTuple):
@@ -86,8 +120,10 @@ AMERICAN = frozenset(
 )
 
 
-def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
-    """Units of the columns for which nothing states one, and optional columns that are implausible in any unit.
+def choices(
+    found: Mapping[str, FoundChannel], radius: float | None
+) -> tuple[dict[str, Choice], dict[str, str]]:
+    """Units of the columns for which nothing states one, and why optional columns are left out; both by channel.
 
     Parameters
     ----------
@@ -107,7 +143,7 @@ def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
     for name in found:
         if name not in left_out and (reason := _implausible(name, known)):
             left_out[name] = reason
-    return Choices({name: chosen[name] for name in chosen if name not in left_out}, left_out)
+    return {name: chosen[name] for name in chosen if name not in left_out}, left_out
 
 
 class _Known(NamedTuple):

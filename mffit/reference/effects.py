@@ -26,7 +26,7 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
     """
     names = {other.id: other.name for other in catalog}
     alike = [f"[{names[i]}]({i}.md)" if i in names else f"`{i}`" for i in effect.confusable_with]
-    facts = [f"`{effect.id}`", effect.kind, f"under reversed angles {effect.parity or 'no symmetry'}"]
+    facts = [f"`{effect.id}`", effect.kind]
     facts += [f"needs {listed([NEEDS[need] for need in effect.needs])}"] if effect.needs else []
     lines = [f"# {effect.name[:1].upper()}{effect.name[1:]}", "", " · ".join(facts), "", effect.physics, ""]
     lines += [_item(free) for free in effect.free]

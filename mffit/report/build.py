@@ -23,7 +23,6 @@ from mffit.report.figures import (
     residuals,
     slip,
     spin,
-    structure,
 )
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
@@ -114,14 +113,6 @@ BUILD: tuple[Picture[BuildView], ...] = (
         "the model misses; mffit diagnose looks for its cause. Of readings at one place the worst is on top; a small dot marks "
         "a point that was run backwards.",
         draw=residuals.residual_maps,
-    ),
-    Picture(
-        name="structure",
-        title="Mean residuals over the conditions over which they are not random",
-        shows="Mean of measured minus model over bins of each condition, in units of the point's uncertainty; bars show one "
-        "standard deviation of what a sound fit leaves. The side of the other angle, or the sign of the force, splits each bin. "
-        "Only what chance does not explain is drawn, the number of comparisons accounted for.",
-        draw=lambda view: structure.residual_means(view.build.remains.structure),
     ),
 )
 """Every picture of the report, in its order."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +18,6 @@ from mffit.rig_errors import AFTER, BEFORE, RigError
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.evaluate import turned_on_rim
 from tir.outputs import outputs_of
-
-
-class _AtAngles(NamedTuple):
-    """Outputs of the tyre at known sideslip angles, with their derivatives."""
-
-    alpha: Traced  #: (n,) [rad], on which nothing else depends
-    outputs: dict[str, Any]
 
 
 class Chain:
@@ -57,8 +50,6 @@ class Chain:
         self.points, self.numbers = points, numbers
         self._history, self._rows = History(points) if history is None else history, rows
         self.true: dict[str, Any] = {}  #: channels (n,) of the tyre before their readings
-        self._wanted: tuple[str, ...] = ()  #: outputs of the tyre that the readings need
-        self._known: _AtAngles | None = None
         self._usual_radius, self._modes = usual_radius, {"turn_slip": turn_slip, "star": star}
         if np.any(points.mount < 0):
             coefficients = vars(turned_on_rim(SimpleNamespace(**coefficients), points.mount))
@@ -74,9 +65,9 @@ class Chain:
     def readings(self, channels: tuple[str, ...]) -> list[Any]:
         """Readings (n,) of some channels, in their units."""
         read = (name for error in AFTER if self._acts(error) for name in error.reads)
-        self._wanted = tuple(dict.fromkeys((*channels, *read)))
+        wanted = tuple(dict.fromkeys((*channels, *read)))
         self._pass(BEFORE)
-        self.true = self._true(self._quantities["alpha"])
+        self.true = dict(zip(wanted, self._tyre(wanted, self._quantities["alpha"]), strict=True))
         self._quantities.update({name: self.true[name] for name in channels})
         self._pass(AFTER)
         return [self._quantities[channel] for channel in channels]
@@ -98,8 +89,6 @@ class Chain:
                     continue
                 owner = self._quantities if name in self._quantities else self._coefficients
                 owner[name] = error.formula(number, owner[name], self)
-                if name != "alpha":
-                    self._known = None  # it holds for other conditions
 
     def _acts(self, error: RigError) -> bool:
         """Whether an error may change anything: it has another number than without the error, or is traced."""
@@ -191,32 +180,15 @@ class Chain:
         return plain(Mz), gradient(Mz, [at])[..., 0]
 
     def _following_root(self, alpha: np.ndarray) -> Any:
-        """Angles without moment (n,) that move with the traced numbers so that the moment stays zero.
-
-        Where a stop holds the wheel, ``alpha`` is its angle there: the outputs at these angles are then those of the readings.
-        """
+        """Angles without moment (n,) that move with the traced numbers so that the moment stays zero."""
         tape = self._tape
         if tape is None:
             return alpha
         at = Traced(alpha, tape)
-        names = tuple(dict.fromkeys((*self._wanted, "Mz")))
-        self._known = _AtAngles(at, dict(zip(names, self._tyre(names, at), strict=True)))
-        Mz = self._known.outputs["Mz"]
+        Mz = self._moment(at)
         slope = gradient(Mz, [at])[..., 0]
         by_moment = np.divide(-1.0, slope, out=np.zeros_like(slope), where=slope != 0.0)
         return alpha + by_moment * (Mz - plain(Mz))
-
-    def _true(self, alpha: Any) -> dict[str, Any]:
-        """What the tyre itself gives at its true sideslip angle ``alpha`` [rad], without computing what is known already."""
-        known = self._known
-        if known is None or not np.array_equal(known.alpha.value, plain(alpha)):
-            return dict(zip(self._wanted, self._tyre(self._wanted, alpha), strict=True))
-        out = {}
-        for name in self._wanted:
-            found = known.outputs[name]
-            history = tuple((alpha if x is known.alpha else x, slope) for x, slope in found.parents)
-            out[name] = Traced(found.value, found.tape, history)
-        return out
 
     def _moment(self, alpha: Any, rows: np.ndarray | None = None) -> Any:
         return self._tyre(("Mz",), alpha, rows)[0]

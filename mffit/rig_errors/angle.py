@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
 
 _of_angle = partial(RigError, kind="rig", place=Place.ANGLE, acts_on=("alpha",))
 
@@ -27,7 +27,6 @@ RELAXATION = RigError(
             id="relaxation",
             name="relaxation length",
             physics="Side force builds up over a rolled distance, so a moving sweep lags behind its angle.",
-            parity="depends on the sense of the sweep",
             needs=("continuous",),
         ),
     ),
@@ -45,7 +44,6 @@ SIDESLIP_ZERO = _of_angle(
             id="sideslip-misalignment",
             name="sideslip axis misaligned",
             physics="The steering axis reads zero while the wheel runs at a small sideslip angle.",
-            parity="even in alpha; turns with the direction",
             confusable_with=("ply-steer",),
             remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
             "to all readings of the sideslip angle",
@@ -55,7 +53,6 @@ SIDESLIP_ZERO = _of_angle(
             id="run-offsets-alpha",
             name="sideslip zero that differs from run to run",
             physics="The steering axis is set up again before every run, each time at a slightly different angle.",
-            parity="even in alpha, the same within a run",
             needs=("runs",),
             confusable_with=("sideslip-misalignment",),
             remedy="set the steering axis up against a stop before every run; or add the values of the table to the "
@@ -71,11 +68,6 @@ SIDESLIP_ZERO = _of_angle(
         source="sideslip alignment",
         force_at_zero=lambda force, at: force,
         turns_with_direction=True,
-        measurement=Measurement(
-            id="sideslip-zero",
-            title="better zero of the sideslip axis",
-            reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-        ),
     ),
 )
 HYSTERESIS = _of_angle(
@@ -90,7 +82,6 @@ HYSTERESIS = _of_angle(
             id="hysteresis",
             name="hysteresis of sideslip sweeps",
             physics="The force lags behind the angle as read, by a fixed angle in either sense of the sweep.",
-            parity="changes sign with the sense of the sweep",
             needs=("senses",),
             confusable_with=("relaxation",),
             remedy="free the sideslip drive; or subtract {value} deg from its readings where they rise and add it where "
@@ -110,7 +101,6 @@ COMPLIANCE = _of_angle(
             id="steering-compliance",
             name="compliance of the steering axis",
             physics="The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
-            parity="odd",
             needs=("moment", "slip"),
             confusable_with=("backlash", "pressure"),
             remedy="stiffen the steering; or add {value} deg for every Nm of the reported moment to its readings",
@@ -132,7 +122,6 @@ BACKLASH = _of_angle(
             name="backlash of the sideslip axis",
             physics="The moment on the wheel takes up the play of the steering, so the angle is off by half the play "
             "against the moment.",
-            parity="partly odd",
             needs=("moment",),
             remedy="take the play of {value} deg out of the steering axis, or declare it as backlash_deg under [rig]",
         ),
@@ -158,7 +147,6 @@ CAMBER_SKEW = _of_angle(
             id="camber-skew",
             name="camber axis not square to the steering axis",
             physics="Leaning the wheel also steers it a little, as the camber axis is not square to the steering axis.",
-            parity="odd in gamma; turns with the direction",
             needs=("camber",),
             confusable_with=("camber-stiffness",),
             remedy="square the camber axis to the steering axis; or add {value} deg times the sine of the camber angle to all "
@@ -172,11 +160,6 @@ CAMBER_SKEW = _of_angle(
         default=constants.CAMBER_SKEW,
         source="camber skew",
         camber_stiffness=lambda skew, at: RADIANS * at.C_alpha * skew,
-        measurement=Measurement(
-            id="camber-squareness",
-            title="better squareness of the camber axis",
-            reason="Sideslip that leaning adds is taken for camber stiffness, and so for camber reduction.",
-        ),
     ),
 )
 

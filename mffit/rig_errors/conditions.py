@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
 
 CAMBER_ZERO = RigError(
     name="gamma_0_deg",
@@ -25,7 +25,6 @@ CAMBER_ZERO = RigError(
             id="camber-misalignment",
             name="camber axis misaligned",
             physics="The camber axis reads zero while the wheel leans a little.",
-            parity="even in gamma",
             confusable_with=("camber-reduction", "path-radius"),
             remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
             "to all readings of the camber angle",
@@ -38,11 +37,6 @@ CAMBER_ZERO = RigError(
         default=constants.CAMBER_ZERO,
         source="camber alignment",
         force_at_zero=lambda zero, at: RADIANS * at.C_gamma * zero,
-        measurement=Measurement(
-            id="camber-zero",
-            title="better zero of the camber axis",
-            reason="A camber error makes a force like turn slip; it is often the largest line in the budget of eps_gamma.",
-        ),
     ),
 )
 LOAD_CAMBER = RigError(
@@ -62,7 +56,6 @@ LOAD_CAMBER = RigError(
             name="load that changes with camber",
             physics="The load on the tyre falls, or rises, as the wheel leans, because its cell leans with it or is no longer "
             "above the contact point.",
-            parity="odd in alpha and gamma",
             needs=("camber",),
             confusable_with=("camber-grip", "camber-thrust-curvature"),
             remedy="hold the load constant over camber by a cell under the disc; or multiply the reported load by 1 + {value} "
@@ -88,7 +81,6 @@ PATH_RADIUS = RigError(
             id="path-radius",
             name="path radius",
             physics="The contact point runs on another radius than declared.",
-            parity="as turn slip",
             needs=("curved",),
             confusable_with=("camber-reduction",),
             remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
@@ -100,11 +92,6 @@ PATH_RADIUS = RigError(
         default=None,
         source="path radius",
         value="radius",
-        measurement=Measurement(
-            id="path-radius",
-            title="better path radius",
-            reason="The curvature of the path is known as well as its radius.",
-        ),
     ),
 )
 SLIP_ZERO = RigError(
@@ -124,7 +111,6 @@ SLIP_ZERO = RigError(
             name="zero of longitudinal slip",
             physics="The slip reads zero while the wheel is driven or braked a little, because its rolling radius or a speed is "
             "not exactly known.",
-            parity="even in slip",
             needs=("drive",),
             confusable_with=("slip-shift",),
             remedy="count slip from the speed of the freely rolling wheel; or add {value} to all readings of the slip, "

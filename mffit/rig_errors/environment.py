@@ -30,7 +30,6 @@ _of_run = partial(
     spread=0.02,
     limits=(-0.5, 0.5),
 )
-_appearance = partial(Appearance, parity="as the forces")
 
 TEMPERATURE_GRIP = _of_temperature(
     name="k_T_grip_per_K",
@@ -40,7 +39,7 @@ TEMPERATURE_GRIP = _of_temperature(
     acts_on=(SCALED_BY["k_T_grip_per_K"],),
     spread=0.002,
     seen_as=(
-        _appearance(
+        Appearance(
             id="temperature-grip",
             name="friction with tyre temperature",
             physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
@@ -71,7 +70,7 @@ TEMPERATURE_STIFFNESS = _of_temperature(
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
     spread=0.002,
     seen_as=(
-        _appearance(
+        Appearance(
             id="temperature-stiffness",
             name="cornering stiffness with tyre temperature",
             physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
@@ -111,7 +110,7 @@ TEMPERATURE = _of_temperature(
     acts_on=("Fy", "Mz"),
     spread=0.001,
     seen_as=(
-        _appearance(
+        Appearance(
             id="temperature",
             name="tyre temperature",
             physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
@@ -151,7 +150,7 @@ SPEED = _of_forces(
     spread=0.005,
     limits=(-0.2, 0.2),
     seen_as=(
-        _appearance(
+        Appearance(
             id="speed",
             name="speed",
             physics="Friction and carcass depend on speed: forces scale with it.",
@@ -168,7 +167,7 @@ DRIFT = _of_forces(
     spread=1e-6,
     limits=(-1e-3, 1e-3),
     seen_as=(
-        _appearance(
+        Appearance(
             id="drift",
             name="drift over the test",
             physics="Wear and ageing change the forces with time.",
@@ -186,7 +185,7 @@ WEAR = _of_forces(
     spread=3e-4,
     limits=(-0.1, 0.1),
     seen_as=(
-        _appearance(
+        Appearance(
             id="wear",
             name="wear over the distance rolled",
             physics="The tread wears with every kilometre, which changes the forces.",
@@ -204,7 +203,7 @@ WARM_UP = _of_forces(
     spread=0.03,
     limits=(-0.5, 0.5),
     seen_as=(
-        _appearance(
+        Appearance(
             id="warm-up",
             name="warm-up at the start",
             physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import Appearance, Declared, Measurement, Place, RigError
+from mffit.rig_errors.record import Appearance, Declared, Place, RigError
 
 _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 _zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)
@@ -48,7 +48,6 @@ GAIN = _of_reading(
             id="loadcell-gain",
             name="calibration of Fy",
             physics="The side-force channel reads a few per cent too much or too little.",
-            parity="as Fy",
             remedy="calibrate the side-force channel; or divide its readings by {value}",
         ),
     ),
@@ -67,7 +66,6 @@ NONLINEARITY = _of_reading(
             id="loadcell-nonlinearity",
             name="nonlinearity of the Fy load cell",
             physics="The side-force channel reads large forces a little larger, or smaller, than in proportion.",
-            parity="as Fy",
             needs=("slip",),
             confusable_with=("loadcell-gain",),
             remedy="calibrate the side-force channel at large forces: its readings grow by {value} per kN too much",
@@ -88,7 +86,6 @@ CROSSTALK = _of_reading(
             id="crosstalk-fz-fy",
             name="crosstalk of Fz into Fy",
             physics="Part of the vertical load appears in the side-force channel.",
-            parity="even, proportional to load",
             needs=("loads",),
             confusable_with=("conicity", "loadcell-offset-fy"),
             remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
@@ -108,7 +105,6 @@ FORCE_ZERO = _zero_of(
             id="loadcell-offset-fy",
             name="load-cell zero of Fy",
             physics="The side-force load cell was zeroed while the tyre was still deformed.",
-            parity="even, the same at every load",
             confusable_with=("conicity", "crosstalk-fz-fy"),
             remedy="zero the side-force channel with the tyre off the ground; or subtract {value} N from its readings",
             axes=("Fy",),
@@ -117,7 +113,6 @@ FORCE_ZERO = _zero_of(
             id="run-offsets-fy",
             name="load-cell zero of Fy that differs from run to run",
             physics="The side-force load cell is zeroed before every run, each time a little differently.",
-            parity="even, the same within a run",
             needs=("runs",),
             confusable_with=("loadcell-offset-fy",),
             remedy="zero the side-force channel in the same state before every run; or subtract the value of the table from "
@@ -132,11 +127,6 @@ FORCE_ZERO = _zero_of(
         default=constants.LOADCELL_ZERO,
         source="load-cell offset",
         force_at_zero=lambda zero, at: zero,
-        measurement=Measurement(
-            id="loadcell-zero",
-            title="better zero of the side-force cell",
-            reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-        ),
     ),
 )
 MOMENT_ZERO = _zero_of(
@@ -151,7 +141,6 @@ MOMENT_ZERO = _zero_of(
             id="loadcell-offset-mz",
             name="load-cell zero of Mz",
             physics="The moment load cell was zeroed while the tyre was still twisted.",
-            parity="even, the same at every load",
             needs=("moment",),
             confusable_with=("residual-torque",),
             remedy="zero the moment channel with the tyre off the ground; or subtract {value} Nm from its readings",
@@ -161,7 +150,6 @@ MOMENT_ZERO = _zero_of(
             id="run-offsets-mz",
             name="load-cell zero of Mz that differs from run to run",
             physics="The moment load cell is zeroed before every run, each time a little differently.",
-            parity="even, the same within a run",
             needs=("runs", "moment"),
             confusable_with=("loadcell-offset-mz",),
             remedy="zero the moment channel in the same state before every run; or subtract the value of the table from "
@@ -183,7 +171,6 @@ LONGITUDINAL_ZERO = _zero_of(
             id="loadcell-offset-fx",
             name="load-cell zero of Fx",
             physics="The longitudinal load cell was zeroed while a force acted on it.",
-            parity="even in slip, the same at every load and in both directions",
             needs=("drive",),
             confusable_with=("longitudinal-drag", "rolling-force"),
             remedy="zero the longitudinal channel with the tyre off the ground; or subtract {value} N from its readings",
@@ -207,7 +194,6 @@ OVERTURNING_ZERO = _zero_of(
             name="load-cell zero of Mx",
             physics="The reading of the overturning moment has a constant offset: its load cell has a wrong zero, or the wheel "
             "is not centred in the rig.",
-            parity="even in alpha and gamma, the same at every load",
             needs=("overturning",),
             confusable_with=("overturning-offset",),
             remedy="zero the channel of the overturning moment with the tyre off the ground; or subtract {value} Nm from its "
@@ -242,7 +228,6 @@ LONGITUDINAL_GAIN = _of_reading(
             id="loadcell-gain-fx",
             name="calibration of Fx",
             physics="The longitudinal channel reads a few per cent too much or too little.",
-            parity="as Fx",
             needs=("drive",),
             confusable_with=("longitudinal-grip", "slip-stiffness"),
             remedy="calibrate the longitudinal channel; or divide its readings by {value}",
@@ -264,7 +249,6 @@ LONGITUDINAL_DRAG = _of_reading(
             name="drag of brake and bearings",
             physics="A dragging brake, bearings or seals between wheel and load cell add a force against the rolling, which "
             "turns with the direction.",
-            parity="even in slip, the same at every load; turns with the direction",
             needs=("drive",),
             confusable_with=("loadcell-offset-fx", "rolling-force"),
             remedy="free the brake and warm up the bearings, or measure Fx between them and the wheel; or add {value} N to the "
@@ -281,7 +265,6 @@ FX_INTO_MZ = _crosstalk(
         id="crosstalk-fx-mz",
         name="crosstalk of Fx into Mz",
         physics="Part of the longitudinal force appears in the moment channel, as if it had an arm.",
-        parity="odd in slip",
         needs=("drive", "moment"),
         confusable_with=("longitudinal-arm",),
         remedy="calibrate the cross terms of the load cell or move its origin to the middle of the wheel; or subtract "
@@ -298,7 +281,6 @@ FX_INTO_MX = _crosstalk(
         name="crosstalk of Fx into Mx",
         physics="Part of the longitudinal force appears in the overturning moment, as if the axes of the load cell were turned "
         "against those of the wheel, so that it reads a share of the drive or brake torque.",
-        parity="odd in slip",
         needs=("drive", "overturning"),
         remedy="calibrate the cross terms of the load cell or turn its axes into those of the wheel; or subtract {value} m "
         "times Fx from Mx",
@@ -314,7 +296,6 @@ FY_INTO_MX = _crosstalk(
         name="crosstalk of Fy into Mx",
         physics="Part of the side force appears in the overturning moment, as if the origin of the load cell were above or "
         "below the road.",
-        parity="as Fy",
         needs=("overturning", "slip"),
         confusable_with=("overturning-arm", "overturning-side-force"),
         remedy="calibrate the cross terms of the load cell or correct the height of its origin; or subtract {value} m times "

@@ -44,15 +44,6 @@ class AtZero(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Measurement:
-    """A better measurement of the error by itself, as ``mffit plan`` proposes it."""
-
-    id: str  #: of the addition to the plan
-    title: str
-    reason: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Declared:
     """How ``[rig]`` declares an error, and what a declared error does to the direct method.
 
@@ -68,7 +59,6 @@ class Declared:
     force_at_zero: Callable[[Any, AtZero], Any] | None = None  #: force at zero angles [N]
     camber_stiffness: Callable[[Any, AtZero], Any] | None = None  #: slope over camber, forwards [N/rad]
     turns_with_direction: bool = False  #: the force changes sign with the direction of rolling
-    measurement: Measurement | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +68,6 @@ class Appearance:
     id: str  #: of the effect
     name: str
     physics: str  #: one sentence
-    parity: str  #: under alpha, gamma, phi_t -> reversed
     needs: tuple[str, ...] = ()  #: what the data must vary; keys of effects.needs
     confusable_with: tuple[str, ...] = ()  #: ids of effects
     remedy: str = ""  #: at the rig; {value}, {opposite}: the number in the rig's axes, and its negative

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from mffit.config import Config
 from mffit.points import Points, levels
@@ -42,28 +43,22 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
     """Radii of two files at one load, pressure and speed, upright and rolling freely; worn or warm tyres differ by less."""
     upright = points.select(_rolls_upright(points))
     for radius in RADII:
-        values = radius.of(upright)
-        known = np.isfinite(values)
-        found = upright.select(known)
-        cells = _cells(found, values[known])
-        for one, other in itertools.combinations(sorted({cell[0] for cell in cells}), 2):
-            pairs = {
-                key[1:]: (cell, cells[other, key[1], key[2], key[3]])
-                for key, cell in cells.items()
-                if key[0] == one and (other, *key[1:]) in cells
-            }
-            apart = [abs(a.radius / b.radius - 1.0) for a, b in pairs.values()]
-            if not apart or np.median(apart) <= constants.RADIUS_OF_ANOTHER_TYRE:
+        cells = _cells(upright.select(np.isfinite(radius.of(upright))), radius)
+        for one, other in itertools.combinations(cells.index.unique("file"), 2):
+            both = cells.loc[one].merge(
+                cells.loc[other], left_index=True, right_index=True, suffixes=("_a", "_b")
+            )
+            apart = np.abs(both.median_a / both.median_b - 1.0)
+            if both.empty or apart.median() <= constants.RADIUS_OF_ANOTHER_TYRE:
                 continue
-            load, *_ = key = max(pairs, key=lambda key: min(cell.points for cell in pairs[key]))
-            a, b = (cell.radius for cell in pairs[key])
+            best = both.loc[both[["size_a", "size_b"]].min(axis=1).idxmax()]
             facts = {
                 "first": points.files[one],
                 "second": points.files[other],
                 "words": radius.words,
-                "load": CONDITIONS["Fz_N"].of(load),
-                "a": 1e3 * a,
-                "b": 1e3 * b,
+                "load": CONDITIONS["Fz_N"].of(best.name[0]),
+                "a": 1e3 * best.median_a,
+                "b": 1e3 * best.median_b,
             }
             yield Finding(facts, file=config.path)
             return
@@ -102,21 +97,9 @@ def _rolls_upright(points: Points) -> np.ndarray:
     return np.asarray(points.free_rolling & at_zero(points))
 
 
-class _Cell(NamedTuple):
-    """Points of one file at one condition."""
-
-    radius: float  #: median [m]
-    points: int
-
-
-def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, float], _Cell]:
-    """Median of the radii (n,) by file, load [N], pressure [Pa] and speed [m/s] of their levels."""
-    settings = [
-        levels.level_values(getattr(points, name), kind)
-        for name, kind in (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
-    ]
-    keys = list(zip(points.file.tolist(), *(x.tolist() for x in settings), strict=True))
-    own: dict[tuple[int, float, float, float], list[float]] = {}
-    for key, value in zip(keys, values.tolist(), strict=True):
-        own.setdefault(key, []).append(value)
-    return {key: _Cell(float(np.median(radii)), len(radii)) for key, radii in own.items()}
+def _cells(points: Points, radius: MeasuredRadius) -> pd.DataFrame:
+    """Median and number of the radii by file and by load [N], pressure [Pa] and speed [m/s] of their levels."""
+    settings = (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
+    keys = {name: levels.level_values(getattr(points, name), kind) for name, kind in settings}
+    table = pd.DataFrame({"file": points.file, **keys, "radius": radius.of(points)})
+    return table.groupby(["file", *keys]).radius.agg(["median", "size"])

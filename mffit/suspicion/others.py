@@ -7,7 +7,7 @@ sweeps is judged by one to the others: its numbers, what it misses, and what its
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -55,44 +55,48 @@ class Error(NamedTuple):
     chance: float  #: probability that a sound sweep is as far off
     vague: float  #: standard error of the prediction, noise included, as a share of the usual size
 
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Facts for the sentences."""
+        return {**self._asdict(), "unit": CHANNELS[self.channel].unit, "percent": 100 * self.share}
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Doubt:
-    """A sweep that does not fit the others, without being impossible."""
+    """A sweep, or one condition of it, that the others do not predict."""
 
-    sweep: str  #: its name, with the conditions where only these are meant
+    sweep: str  #: its name, with the condition where only that is meant
     file: str
     index: np.ndarray  #: (m,) rows of the points
-    channel: str  #: the worst one
-    rms: float  #: error of the prediction [N] or [Nm]
-    ratio: float  #: over what noise, runs and the prediction leave open
-    share: float  #: of the channel's usual size at this load
-    looks: str  #: what would explain it; empty if no known cause does
-    channels: tuple[str, ...] = ()  #: in which chance does not explain it
-
-    @property
-    def sentence(self) -> str:
-        """The warning about it."""
-        facts = {
-            "unit": CHANNELS[self.channel].unit,
-            "percent": 100 * self.share,
-            "explained": f"; it looks like {self.looks}" if self.looks else "",
-        }
-        return doubtful_sweep.said(asdict(self) | facts)
-
-
-class View(NamedTuple):
-    """One sweep as seen from the fit to all others."""
-
-    group: Group
     errors: tuple[Error, ...]  #: the worst first
-    looks: str  #: what would explain where it contradicts the others
-    mistake: Mistake | None  #: that explains it
-    left: float  #: share of the usual size that is left when the mistake is undone
+    whole: bool = True  #: False if one condition is meant
+    looks: str = ""  #: what would explain it; empty if no known cause does
+    mistake: Mistake | None = None  #: that explains a gross error
+    left: float = 1.0  #: share of the usual size that is left when the mistake is undone
 
     @property
-    def off(self) -> tuple[str, ...]:
-        """Channels in which it contradicts the others."""
+    def channel(self) -> str:
+        """The worst one."""
+        return self.errors[0].channel
+
+    @property
+    def rms(self) -> float:
+        """Error of its prediction [N] or [Nm]."""
+        return self.errors[0].rms
+
+    @property
+    def ratio(self) -> float:
+        """The same over what noise, runs and the prediction leave open."""
+        return self.errors[0].ratio
+
+    @property
+    def share(self) -> float:
+        """The same over the channel's usual size at this load."""
+        return self.errors[0].share
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Those in which chance does not explain it."""
         certain = float(ndtr(-constants.CERTAIN_SIGMA))
         return tuple(
             e.channel for e in self.errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain
@@ -104,27 +108,21 @@ class View(NamedTuple):
         return max(self.errors, key=lambda e: e.share)
 
     @property
-    def facts(self) -> dict[str, Any]:
-        """Facts for the sentences."""
-        return {
-            "channel": self.gross.channel,
-            "unit": CHANNELS[self.gross.channel].unit,
-            "rms": self.gross.rms,
-            "percent": 100 * self.gross.share,
-            "condition": "" if self.group.whole else f" ({self.group.name})",
-        }
+    def sentence(self) -> str:
+        """The warning about it."""
+        explained = f"; it looks like {self.looks}" if self.looks else ""
+        return doubtful_sweep.said({"sweep": self.sweep, "explained": explained, **self.errors[0].facts})
 
 
 def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict; one beyond plausibility is refused."""
-    seen = views(campaign)
-    for beyond in (known_mistake, implausible_sweep):
-        for finding in beyond.find(seen):
-            raise beyond.refusal(finding)
+    seen = doubts(campaign)
+    for finding in contradicting_sweep.find(seen):
+        raise contradicting_sweep.refusal(finding)
     return tuple(doubtful_sweep.find(seen))
 
 
-def views(campaign: JudgedSweeps) -> tuple[View, ...]:
+def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
 
     The search ends at the first sweep that a known mistake explains.
@@ -137,18 +135,18 @@ def views(campaign: JudgedSweeps) -> tuple[View, ...]:
         c: usual_size((points.channel(c) / points.Fz)[g.index] for g in found)
         for c in campaign.fitted.left.channels
     }
-    out: list[View] = []
+    out: list[Doubt] = []
     for group in _suspects(campaign, found, size):
-        view = _view(campaign, group, size)
-        if view is not None:
-            out.append(view)
-            if view.mistake is not None:
+        doubt = _doubt(campaign, group, size)
+        if doubt is not None:
+            out.append(doubt)
+            if doubt.mistake is not None:
                 break
     return tuple(out)
 
 
 @rule(
-    id="known-mistake",
+    id="contradicting-sweep",
     when=When.AFTER,
     limits=(
         PREDICTION_FALSE_ALARM,
@@ -157,38 +155,33 @@ def views(campaign: JudgedSweeps) -> tuple[View, ...]:
         constants.IMPLAUSIBLE_SHARE,
     ),
     sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
-    "of its usual size{condition}; it looks like {looks}, which leaves {left:.2g} %: {remedy}",
+    "of its usual size{condition}{looks}",
 )
-def known_mistake(seen: Sequence[View]) -> Iterator[Finding]:
+def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
     """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found."""
-    explained = [v for v in seen if v.mistake is not None]
-    if explained:
-        v = max(explained, key=lambda v: v.gross.share)
-        assert v.mistake is not None
-        facts = {**v.facts, "looks": v.mistake.looks, "left": 100 * v.left, "remedy": v.mistake.remedy}
-        yield Finding(facts, file=v.group.file, column=v.mistake.column)
-
-
-@rule(
-    id="implausible-sweep",
-    when=When.AFTER,
-    limits=(PREDICTION_FALSE_ALARM, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
-    sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
-    "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
-    "file{perhaps}, or leave it out",
-)
-def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
-    """Error of the prediction from all other sweeps, and uncertainty of the prediction; the worst sweep is found."""
-    refused = [
-        v
-        for v in seen
-        if v.gross.share > constants.IMPLAUSIBLE_SHARE and v.gross.vague < constants.GROSS_SHARE
+    refused = [d for d in seen if d.mistake is not None] or [
+        d
+        for d in seen
+        if d.gross.share > constants.IMPLAUSIBLE_SHARE and d.gross.vague < constants.GROSS_SHARE
     ]
-    if refused:
-        v = max(refused, key=lambda v: v.gross.share)
-        others = dict.fromkeys(other.group.file for other in refused if other.group.file != v.group.file)
+    if not refused:
+        return
+    worst = max(refused, key=lambda d: d.gross.share)
+    if worst.mistake is not None:
+        remedy = worst.mistake.remedy
+        looks = f"; it looks like {worst.mistake.looks}, which leaves {100 * worst.left:.2g} %: {remedy}"
+    else:
+        others = dict.fromkeys(other.file for other in refused if other.file != worst.file)
         perhaps = f", or {' or '.join(others)}, which contradicts it" if others else ""
-        yield Finding({**v.facts, "perhaps": perhaps}, file=v.group.file)
+        looks = (
+            ", and no reversed sign, exchanged column or unit explains it; check this "
+            f"file{perhaps}, or leave it out"
+        )
+    condition = "" if worst.whole else f" ({worst.sweep})"
+    column = worst.mistake.column if worst.mistake else None
+    yield Finding(
+        {**worst.gross.facts, "condition": condition, "looks": looks}, file=worst.file, column=column
+    )
 
 
 @rule(
@@ -200,27 +193,16 @@ def implausible_sweep(seen: Sequence[View]) -> Iterator[Finding]:
     "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
     "or repeat it",
 )
-def doubtful_sweep(seen: Sequence[View]) -> Iterator[Doubt]:
+def doubtful_sweep(seen: Sequence[Doubt]) -> Iterator[Doubt]:
     """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open.
 
     Conditions of a sweep are named only if it is sound as a whole.
     """
     named: list[set[int]] = []
-    for v in sorted(seen, key=lambda v: (not v.group.whole, -v.errors[0].ratio)):
-        if v.off and not any(set(v.group.index) <= rows for rows in named):
-            named.append(set(v.group.index))
-            worst = v.errors[0]
-            yield Doubt(
-                sweep=v.group.name,
-                file=v.group.file,
-                index=v.group.index,
-                channel=worst.channel,
-                rms=worst.rms,
-                ratio=worst.ratio,
-                share=worst.share,
-                looks=v.looks,
-                channels=v.off,
-            )
+    for doubt in sorted(seen, key=lambda d: (not d.whole, -d.ratio)):
+        if doubt.channels and not any(set(doubt.index) <= rows for rows in named):
+            named.append(set(doubt.index))
+            yield doubt
 
 
 def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
@@ -266,7 +248,7 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
     )
 
 
-def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> View | None:
+def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Doubt | None:
     """The group against a fit without it; None if the other points are too few for a fit."""
     try:
         fitted = campaign.refit(group.index)
@@ -288,12 +270,12 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Vi
     away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
     best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
-    view = View(
-        group, tuple(errors), "", None if best is None else best.mistake, 1.0 if best is None else best.left
-    )
-    if not view.off:
-        return view
-    return view._replace(looks=explanation(part, found, fitted.simulation, campaign.signs))
+    doubt = Doubt(group.name, group.file, group.index, tuple(errors), group.whole)
+    if best is not None:
+        doubt = replace(doubt, mistake=best.mistake, left=best.left)
+    if not doubt.channels:
+        return doubt
+    return replace(doubt, looks=explanation(part, found, fitted.simulation, campaign.signs))
 
 
 def _part(points: Points, group: Group, found: Errors) -> Points:

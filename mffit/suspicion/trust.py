@@ -16,21 +16,23 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtr, chdtrc, ndtr
+from scipy.special import chdtr, chdtrc, fdtrc, ndtr
 
 from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
+from mffit.linearised.inputs import word_of
 from mffit.measured import LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
 from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig import Readings
-from mffit.scatter import finite_median, rms
+from mffit.scatter import EFFICIENCY, finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, When, rule
 from mffit.suspicion.unpublished import causes
+from tir.errors import listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +76,6 @@ class FinishedFit(JudgedMeasurement):
     linear: LinearisedFit | None = None
     """What the fit leaves; None if all that the model misses counts as noise."""
     against: tuple[Doubt, ...] = ()  #: sweeps that contradict the others, the worst first
-    structure: str = ""  #: where residuals are not random, in words
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
     held: tuple[HeldNumber, ...] = ()
@@ -124,6 +125,7 @@ class FinishedFit(JudgedMeasurement):
         Readings that miss the model by far less than their stated noise are in another unit.
         """
         stated, seen = self.misfit(channel), self.over_scatter(channel)
+        seen = seen._replace(of_noise=EFFICIENCY * seen.n)  # what neighbours show is uncertain itself
         if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
         return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
@@ -149,8 +151,12 @@ class FinishedFit(JudgedMeasurement):
 
 def far(found: OverNoise, limit: float, sigma: float) -> bool:
     """Whether a misfit over the noise exceeds a limit, by more than chance explains."""
-    ratio, n = found
-    return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
+    if not found.n or not found.ratio > limit:
+        return False
+    square = found.ratio**2
+    if np.isinf(found.of_noise):
+        return bool(chdtrc(found.n, found.n * square) < ndtr(-sigma))
+    return bool(fdtrc(found.n, found.of_noise, square) < ndtr(-sigma))
 
 
 @dataclass(frozen=True, slots=True)
@@ -383,7 +389,7 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, where it is smaller than chance and the numbers of the fit explain."""
     numbers = 0 if fit.linear is None else len(fit.linear.numbers)
     for name in fit.used:
-        ratio, n = fit.misfit(name)
+        ratio, n, _ = fit.misfit(name)
         few = n <= numbers or chdtr(n - numbers, n * ratio**2) > FALSE_ALARM
         if not few and ratio < constants.MISFIT_OF_ANOTHER_UNIT:
             yield {"channel": name, "ratio": ratio, "column": column(name)}
@@ -404,13 +410,18 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="structure-in-the-residuals",
+    limits=(constants.CERTAIN_SIGMA,),
     outcome=Outcome.WARNED,
-    sentence="the residuals are not random: {structure}; see plots/structure.png",
+    sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
 )
 def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Means of residuals over each condition and their neighbours along sweeps, where the noise is stated."""
-    if fit.structure and _noise_is_stated(fit):
-        yield {"structure": fit.structure}
+    """Evidence of a smooth miss, where the noise is stated and the miss is no more than it."""
+    for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():
+        enough = 0.5 * constants.CERTAIN_SIGMA**2
+        over = [word_of(one) for one, gain in channel.missed_over.items() if gain > enough]
+        if channel.proof > enough and over:
+            facts = {"channel": name, "over": listed(over), "size": channel.size}
+            yield {**facts, "unit": CHANNELS[name].unit}
 
 
 @of_model(

@@ -20,6 +20,7 @@ from mffit.sweeps.raw_table import (
     RawTable,
     has_decimal_comma,
     is_spreadsheet_error,
+    is_summary,
     with_decimal_point,
 )
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -99,9 +100,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     """
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
-    warnings = [f"{raw.path}: {sentence}" for sentence in raw.skipped]
-    raw, sentences = _without_spreadsheet_errors(raw, headings)
-    warnings += sentences
+    raw, warnings = _without_rows_that_are_none(raw, headings)
     for channel in SWEEP_CHANNELS:
         if channel.name not in headings:
             continue
@@ -120,26 +119,35 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     return Columns(raw, table, direction, tuple(warnings), {name: headings[name] for name in order})
 
 
-def _without_spreadsheet_errors(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:
-    """The rows to read, and sentences about cells such as ``#NV``: missing in a recording, else their row is skipped."""
+def _without_rows_that_are_none(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:
+    """The rows to read, and sentences about what a spreadsheet added: rows of means, and cells such as ``#NV``.
+
+    Such a cell is missing in a recording; in a table of points its row is skipped.
+    """
     out = np.zeros(len(raw), dtype=bool)
     sentences = []
-    for heading in dict.fromkeys(headings.values()):
-        cells = raw.column(heading)
+    for heading, cells in zip(raw.headings, raw.cells, strict=True):
         if isinstance(cells, np.ndarray):
             continue
-        wrong = np.array([isinstance(cell, str) and is_spreadsheet_error(cell) for cell in cells], dtype=bool)
-        if not np.any(wrong):
-            continue
-        out |= wrong
-        first = int(wrong.argmax())
-        also = f" and {int(wrong.sum()) - 1} more of this kind" if wrong.sum() > 1 else ""
-        done = "treated as missing" if "time_s" in headings else "the row is skipped"
-        place = f"{raw.path}:{int(raw.lines[first])}: column {heading}"
-        sentences.append(f'{place}: "{cells[first]}"{also} is no reading; {done}')
-    if "time_s" in headings or not np.any(out) or np.all(out):
-        return raw, sentences if not np.all(out) else []
-    return raw.of_rows(~out), sentences
+        texts = {cell for cell in cells if isinstance(cell, str)}
+        means = set(filter(is_summary, texts)) if _is_of_numbers(cells) else set()
+        errors = set(filter(is_spreadsheet_error, texts)) if heading in headings.values() else set()
+        for words, costs_its_row in ((means, True), (errors, "time_s" not in headings)):
+            wrong = np.array([cell in words for cell in cells], dtype=bool)
+            if not np.any(wrong):
+                continue
+            out |= wrong & costs_its_row
+            first = int(wrong.argmax())
+            also = f" and {int(wrong.sum()) - 1} more of this kind" if wrong.sum() > 1 else ""
+            done = "the row is skipped" if costs_its_row else "treated as missing"
+            place = f"{raw.path}:{int(raw.lines[first])}: column {heading}"
+            sentences.append(f'{place}: "{cells[first]}"{also} is no reading; {done}')
+    return (raw, []) if np.all(out) else (raw.of_rows(~out) if np.any(out) else raw, sentences)
+
+
+def _is_of_numbers(cells: Cells) -> bool:
+    """Whether most cells of a column are numbers."""
+    return bool(2 * np.sum(np.isfinite(numbers(cells))) > len(cells))
 
 
 def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str]) -> dict[str, str]:
@@ -214,7 +222,7 @@ def _read(source: _Source) -> _Read | None:
         return None
     if channel.kind == "label":
         different, where = np.unique(np.asarray(cells), return_inverse=True)
-        return _Read(np.array([_text(cell) for cell in different.tolist()], dtype=object)[where])
+        return _Read(np.array([text_of(cell) for cell in different.tolist()], dtype=object)[where])
     if channel.kind == "direction":
         return _Read(_directions(source))
     read = _in_range(source, _in_contract_unit(source, _numbers(source)))
@@ -224,12 +232,12 @@ def _read(source: _Source) -> _Read | None:
 def _directions(source: _Source) -> np.ndarray:
     cells = source.cells
     different, where = np.unique(np.asarray(cells), return_inverse=True)
-    words = [_text(cell).lower() for cell in different.tolist()]
+    words = [text_of(cell).lower() for cell in different.tolist()]
     wrong = np.array([word not in DIRECTIONS for word in words])[where]
     if np.any(wrong):
         row = int(wrong.argmax())
         raise source.refusal(
-            f'"{shortened(_text(cells[row]))}" is not a direction; write forward or backward', row
+            f'"{shortened(text_of(cells[row]))}" is not a direction; write forward or backward', row
         )
     return np.array([DIRECTIONS.get(word, 0) for word in words])[where]
 
@@ -247,7 +255,7 @@ def _numbers(source: _Source) -> np.ndarray:
         bad &= np.array([not _is_blank(cell) for cell in cells])
     if np.any(bad):
         row = int(bad.argmax())
-        raise source.refusal(_bad_cell(_text(cells[row]), source.channel), row)
+        raise source.refusal(_bad_cell(text_of(cells[row]), source.channel), row)
     return values
 
 
@@ -291,8 +299,9 @@ def _is_gap(cell: str | float) -> bool:
     return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING or is_spreadsheet_error(cell)
 
 
-def _text(cell: str | float) -> str:
-    return cell if isinstance(cell, str) else f"{cell:g}"
+def text_of(cell: str | float) -> str:
+    """A cell as a text, "" if it is empty."""
+    return cell.strip() if isinstance(cell, str) else "" if np.isnan(cell) else f"{cell:.15g}"
 
 
 def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:

@@ -8,13 +8,10 @@ SMALLEST_LOAD_IN_NEWTONS = Real(20.0, "N", "If all loads of a file are below thi
 RARE_SAMPLES = Real(
     0.01,
     "-",
-    "Share of samples that spikes spoil or a recorder writes twice; more have a cause, such as a wrong unit.",
+    "Share of samples that spikes spoil; more have a cause, such as a wrong unit.",
 )
 LIKENESS_OF_UNUSED_HEADING = Real(
     0.8, "-", "Similarity to a channel's name from which an unused column is pointed out."
-)
-LARGE_TEXT_FILE = Count(
-    500_000, "bytes", "Larger files are read by pandas, which is fifty times as fast but names no bad cell."
 )
 LARGEST_UNPACKED = Count(
     600_000_000,

@@ -1,7 +1,6 @@
 """The reader of text tables: CSV of any dialect, tab-separated ``.dat`` with title and unit lines, columns between blanks.
 
-Separator, decimal comma and encoding are found from the first lines. A small file is read cell by cell, so that an
-error can name the cell. A large file is read by pandas, which is fifty times as fast, and cell by cell if pandas fails.
+Encoding, separator, decimal comma and headings are found from the first lines; pandas reads the rows below them.
 """
 
 from __future__ import annotations
@@ -9,9 +8,8 @@ from __future__ import annotations
 import csv
 import io
 import re
-import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,16 +17,15 @@ import numpy as np
 import pandas as pd
 
 from mffit.errors import InputError
-from mffit.sweeps import constants
-from mffit.sweeps.extras import first_bytes, is_packed, opened
-from mffit.sweeps.grid import Head, head_of, is_summary, table_of
+from mffit.sweeps.channels import SWEEP_CHANNELS
+from mffit.sweeps.extras import content_of
+from mffit.sweeps.grid import head_of, ragged, without_data
 from mffit.sweeps.raw_table import (
     SPREADSHEET_ERRORS,
     THOUSANDS_WITH_POINT,
     Cells,
     RawTable,
     has_decimal_comma,
-    is_spreadsheet_error,
     without_commas,
 )
 
@@ -37,13 +34,16 @@ SEPARATORS = ("\t", ";", "|", ",")
 """Sorted by priority: a comma is last, because it may also be a decimal comma."""
 BLANKS = " "
 HEAD = 65_536
-"""Bytes at the start of a file that show separator, decimal comma and encoding."""
+"""Bytes at the start of a file that show separator, decimal comma and headings."""
 COMMENT = re.compile(
     rb"^[ \t]*#(?!(?:%s)[\t;|, ])[^\n]*"
     % "|".join(re.escape(error[1:]) for error in sorted(SPREADSHEET_ERRORS)).encode(),
     re.MULTILINE | re.IGNORECASE,
 )
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
+OPEN_QUOTE = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
+LABELS = frozenset(channel.name for channel in SWEEP_CHANNELS if channel.kind == "label")
+"""Columns that are texts even if they look like numbers."""
 
 
 class Dialect(NamedTuple):
@@ -51,7 +51,6 @@ class Dialect(NamedTuple):
 
     separator: str
     has_comma: bool  #: decimal comma instead of point
-    encoding: str
 
 
 def read_csv(path: Path) -> RawTable:
@@ -62,58 +61,69 @@ def read_csv(path: Path) -> RawTable:
     InputError
         The file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
     """
-    dialect = _dialect(path)
-    if _size(path) > constants.LARGE_TEXT_FILE:
-        found = _fast(path, dialect)
-        if found is not None:
-            return found
-    rows, lines = [], []
-    try:
-        for line, cells in _rows(_text(path, dialect), dialect):
-            rows.append(cells)
-            lines.append(line)
-    except csv.Error as error:
-        line = lines[-1] + 1 if lines else 1
-        raise InputError(f"is not valid CSV ({error}); correct it", file=path, line=line) from None
-    return table_of(rows, lines, path)
+    content = _utf8(path)
+    if b"#" in content:
+        content = COMMENT.sub(b"", content)
+    end = len(content) if len(content) <= HEAD else content.rfind(b"\n", 0, HEAD)
+    text = content[:end].decode(errors="replace")
+    dialect = _dialect(text)
+    first = list(_rows(text, dialect))
+    head = head_of([row for _, row in first], [line for line, _ in first], path)
+    heading_line = first[head.at][0]
+    if len(first) == head.rows:
+        raise without_data(path, heading_line)
+    above = first[head.rows][0] - 1
+    body = content.split(b"\n", above)[above]
+    widest = max(len(head.headings), *(len(row) for _, row in first[head.rows :]))
+    table = _table(body, (*head.headings, *range(widest - len(head.headings))), dialect, path, above)
+    filled = np.flatnonzero(table.notna().any(axis=1).to_numpy())
+    _check_widths(body, table, filled, len(head.headings), dialect, path, above)
+    table = table.iloc[filled] if len(filled) < len(table) else table
+    return RawTable(
+        headings=head.headings,
+        units=head.units,
+        cells=tuple(_cells(table.pop(name), dialect) for name in head.headings),
+        lines=filled + above + 1,
+        path=path,
+        heading_line=heading_line,
+        about={"title": head.title} if head.title else {},
+    )
 
 
-def _dialect(path: Path) -> Dialect:
-    head = first_bytes(path, HEAD)
-    encoding = _encoding(head)
-    if encoding is None:
+def _utf8(path: Path) -> bytes:
+    """The text in UTF-8, with ``\\n`` at the end of its lines."""
+    content = content_of(path)
+    if content.startswith(UTF16_MARKS):
+        content = content.decode("utf-16", errors="replace").encode()
+    if b"\0" in content:
         raise InputError("is binary, not plain text; save it as CSV in UTF-8", file=path)
-    text = head.decode(encoding, errors="replace")
-    if len(head) == HEAD:
-        text = text[: text.rfind("\n")] if "\n" in text else text
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    lines = lines[:200]
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        content = content.decode("latin-1").encode()
+    return content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+
+
+def _dialect(text: str) -> Dialect:
+    lines = [line for line in text.split("\n") if line.strip()][:200]
     separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
     has_comma = separator != "," and any(map(has_decimal_comma, cells))
     with_point = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
     if any("." in cell for cell in cells if has_decimal_comma(cell)):
         with_point = [cell for cell in with_point if not THOUSANDS_WITH_POINT.fullmatch(cell)]
-    return Dialect(separator, has_comma and not with_point, encoding)
+    return Dialect(separator, has_comma and not with_point)
 
 
 def _separator(lines: list[str]) -> str:
     """The first separator that makes rows of equal length, else blanks, else a comma."""
-    for mark in SEPARATORS:
-        if _fits(lines, mark):
+    for mark in (*SEPARATORS, BLANKS):
+        counts = Counter(len(_split(line, mark)) for line in lines)
+        usual, number = counts.most_common(1)[0] if counts else (0, 0)
+        if usual > 1 and (2 * number >= len(lines) if mark != BLANKS else "," not in lines[0]):
             return mark
-    counts = Counter(len(line.split()) for line in lines)
-    has_columns = bool(counts) and counts.most_common(1)[0][0] > 1
-    return BLANKS if has_columns and "," not in lines[0] else ","
-
-
-def _fits(lines: list[str], separator: str) -> bool:
-    """Whether most lines have the same number of cells, two or more."""
-    if not lines:
-        return False
-    counts = Counter(len(_split(line, separator)) for line in lines)
-    usual, number = counts.most_common(1)[0]
-    return usual > 1 and 2 * number >= len(lines)
+    return ","
 
 
 def _split(line: str, separator: str) -> list[str]:
@@ -125,34 +135,15 @@ def _split(line: str, separator: str) -> list[str]:
         return line.split(separator)
 
 
-def _encoding(head: bytes) -> str | None:
-    """Encoding of a text; None for binary data."""
-    if head.startswith(UTF16_MARKS):
-        return "utf-16"
-    if b"\0" in head[:4096]:
-        return None
-    try:
-        # The excerpt may end within a character.
-        head[: max(len(head) - 4, 0) if len(head) == HEAD else len(head)].decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return "latin-1"
-    return "utf-8-sig"
-
-
-def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Line and stripped cells of every row that is neither blank nor a comment."""
-    if dialect.separator == BLANKS:
-        for number, words in enumerate(text.splitlines(), start=1):
-            if words.strip() and not words.lstrip().startswith("#"):
-                yield number, tuple(_point(cell, dialect) for cell in words.split())
-        return
+def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, list[str]]]:
+    """First line and stripped cells of every row that is not blank; a quoted heading may span lines."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=dialect.separator)
     before = 0
-    for cells in reader:
-        # A quoted cell may span lines, so a row begins one line after the end of the row before it.
+    for found in reader:
         line, before = before + 1, reader.line_num
-        row = tuple(_point(cell.strip(), dialect) for cell in cells)
-        if any(row) and (not row[0].startswith("#") or is_spreadsheet_error(row[0])):
+        cells = " ".join(found).split() if dialect.separator == BLANKS else found
+        row = [_point(cell.strip(), dialect) for cell in cells]
+        if any(row):
             yield line, row
 
 
@@ -160,85 +151,57 @@ def _point(cell: str, dialect: Dialect) -> str:
     return without_commas(cell) if dialect.has_comma else cell
 
 
-def _fast(path: Path, dialect: Dialect) -> RawTable | None:
-    """The table as read by pandas; None if pandas fails or the line of each row is not certain."""
-    head, line = _head(path, dialect)
-    separator = r"\s+" if dialect.separator == BLANKS else dialect.separator
+def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path, above: int) -> pd.DataFrame:
+    """The rows below the headings, a row per line; ``above`` is the number of lines above them."""
     try:
-        source, count = _source(path)
         table = pd.read_csv(
-            source,
-            sep=separator,
+            io.BytesIO(body),
+            sep=r"\s+" if dialect.separator == BLANKS else dialect.separator,
             decimal="," if dialect.has_comma else ".",
             header=None,
-            names=list(head.headings),
+            names=list(names),
+            dtype=dict.fromkeys(LABELS.intersection(names), str),
             index_col=False,
-            skiprows=line,
             skip_blank_lines=False,
             skipinitialspace=True,
-            encoding=dialect.encoding,
+            keep_default_na=False,
+            na_values=[""],
             encoding_errors="replace",
-            engine="c",
-            on_bad_lines="error",
-            compression="gzip" if source is path and is_packed(path) else None,
+            low_memory=False,
         )
-        filled = table.iloc[:, 0].notna().to_numpy()
-        if not filled.all():
-            filled = np.asarray(table.notna().to_numpy().any(axis=1))
-        if not filled.any() or line + len(filled) != count:
-            return None
-    except (ValueError, OSError, EOFError, zlib.error, MemoryError):
-        return None
-    table = table if filled.all() else table.loc[filled]
-    columns = tuple(_column(table.pop(name), dialect) for name in head.headings)
-    if any(not isinstance(cells, np.ndarray) and any(map(is_summary, set(cells))) for cells in columns):
-        return None
-    return RawTable(
-        headings=head.headings,
-        units=head.units,
-        cells=columns,
-        lines=np.flatnonzero(filled) + line + 1,
-        path=path,
-        heading_line=line - (head.rows - head.at) + 1,
-        about={"title": head.title} if head.title else {},
-    )
+    except ValueError as error:  # pandas counts lines from 1 and rows from 0
+        found = re.search(r"in line (\d+), saw (\d+)", str(error))
+        if found:
+            width = sum(isinstance(name, str) for name in names)
+            raise ragged(int(found[2]), width, path, above + int(found[1])) from None
+        line = above + 1 + int((re.findall(r"row (\d+)", str(error)) or ["0"])[0])
+        sentence = (
+            OPEN_QUOTE if "EOF inside string" in str(error) else f"is not valid CSV ({error}); correct it"
+        )
+        raise InputError(sentence, file=path, line=line) from None
+    if len(table) != body.count(b"\n") + (not body.endswith(b"\n")):
+        lines = body.split(b"\n")
+        line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
+        raise InputError(OPEN_QUOTE, file=path, line=line)
+    return table
 
 
-def _head(path: Path, dialect: Dialect) -> tuple[Head, int]:
-    """The head of a large file and the number of its last line."""
-    text = first_bytes(path, HEAD).decode(dialect.encoding, errors="replace")
-    found = list(_rows(text[: text.rfind("\n")], dialect))
-    head = head_of([row for _, row in found], [line for line, _ in found], path)
-    return head, found[head.rows - 1][0]
+def _check_widths(
+    body: bytes, table: pd.DataFrame, filled: np.ndarray, width: int, dialect: Dialect, path: Path, above: int
+) -> None:
+    """Refuse a row with fewer or more cells than headings; empty cells at its end do not count as more."""
+    missing = table.iloc[filled, width - 1].isna().to_numpy()
+    more = table.iloc[filled, width:].notna().any(axis=1).to_numpy()
+    if not np.any(missing | more):
+        return
+    lines = body.split(b"\n")
+    for row in filled[missing | more].tolist():
+        cells = _split(lines[row].decode(errors="replace"), dialect.separator)
+        if len(cells) < width or any(cell.strip() for cell in cells[width:]):
+            raise ragged(len(cells), width, path, above + row + 1)
 
 
-def _column(column: pd.Series, dialect: Dialect) -> Cells:
+def _cells(column: pd.Series, dialect: Dialect) -> Cells:
     if pd.api.types.is_numeric_dtype(column) and not pd.api.types.is_bool_dtype(column):
         return column.to_numpy(dtype=float)
     return [_point(cell, dialect) for cell in column.fillna("").astype(str).str.strip()]
-
-
-def _source(path: Path) -> tuple[Path | io.BytesIO, int]:
-    """What pandas reads, with a blank line in place of every comment, and the number of its lines."""
-    count, last, has_marks = 0, b"\n", False
-    with opened(path) as file:
-        while chunk := file.read(1 << 20):
-            count, last = count + chunk.count(b"\n"), chunk[-1:]
-            has_marks |= b"#" in chunk
-    if not has_marks:
-        return path, count + (last != b"\n")
-    text = COMMENT.sub(b"", first_bytes(path))
-    return io.BytesIO(text), text.count(b"\n") + (text[-1:] != b"\n")
-
-
-def _text(path: Path, dialect: Dialect) -> str:
-    raw = first_bytes(path)
-    try:
-        return raw.decode(dialect.encoding)
-    except UnicodeDecodeError:
-        return raw.decode("utf-16" if dialect.encoding == "utf-16" else "latin-1", errors="replace")
-
-
-def _size(path: Path) -> float:
-    """Size of the unpacked file in bytes; of a packed one, estimated as four times its size."""
-    return path.stat().st_size * (4.0 if is_packed(path) else 1.0)

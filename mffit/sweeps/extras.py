@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from mffit.errors import InputError, readable, shortened
+from mffit.sweeps import constants
 
 
 def needed(module: str, what: str, path: Path) -> Any:
@@ -48,27 +49,37 @@ def undamaged(path: Path, kind: str) -> Iterator[None]:
         raise damaged(path, kind, str(error) or type(error).__name__) from None
 
 
-def is_packed(path: Path) -> bool:
-    """Whether the file is compressed, by the ending of its name."""
-    return path.name.lower().endswith(".gz")
-
-
 def opened(path: Path) -> IO[bytes]:
     """The file, open for reading its unpacked bytes."""
-    return gzip.open(path, "rb") if is_packed(path) else path.open("rb")  # type: ignore[return-value]
+    is_packed = path.name.lower().endswith(".gz")
+    return gzip.open(path, "rb") if is_packed else path.open("rb")  # type: ignore[return-value]
 
 
-def first_bytes(path: Path, most: int = -1) -> bytes:
-    """The file's first unpacked bytes; all by default.
+BYTES_OF_A_NUMBER = 8
+
+
+def content_of(path: Path) -> bytes:
+    """The file's unpacked bytes, read no further than the largest recording.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is not a complete gzip file.
+        The file cannot be read, is not a complete gzip file, or holds more.
     """
     with readable(path):
         try:
             with opened(path) as file:
-                return file.read(most)
+                content = file.read(int(constants.LARGEST_UNPACKED) + 1)
         except (gzip.BadGzipFile, EOFError, zlib.error):
             raise InputError("is not a complete gzip file; compress it again", file=path) from None
+    check_size(len(content), path)
+    return content
+
+
+def check_size(size: int, path: Path) -> None:
+    """Refuse a file that holds more bytes than any recording once it is unpacked; a small file may claim to."""
+    if size > constants.LARGEST_UNPACKED:
+        most = f"{constants.LARGEST_UNPACKED / 1e6:.0f} MB"
+        raise InputError(
+            f"holds more than {most} when unpacked; split it, or export fewer channels", file=path
+        )

@@ -9,15 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from mffit.errors import InputError, readable
-from mffit.sweeps import constants
+from mffit.errors import readable
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.spreadsheet import read_xlsx
 from mffit.sweeps.tydex import read_tydex
-from mffit.sweeps.unpacked import of_mat, of_parquet, of_text, of_zip, too_large
 
 
 class Format(NamedTuple):
@@ -26,15 +24,14 @@ class Format(NamedTuple):
     name: str  #: for messages
     endings: tuple[str, ...]  #: of file names, in lower case
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
-    unpacked: Callable[[Path], int] = of_text  #: bytes of its content; raises OSError
     axes: str = ""  #: that the format prescribes; "" if it leaves them open
 
 
 FORMATS = (
     Format("CSV", (".csv", ".csv.gz", ".txt", ".txt.gz", ".tsv", ".tsv.gz", ".dat", ".dat.gz"), read_csv),
-    Format("MATLAB", (".mat",), read_mat, of_mat),
-    Format("Excel", (".xlsx", ".xlsm"), read_xlsx, of_zip),
-    Format("Parquet", (".parquet",), read_parquet, of_parquet),
+    Format("MATLAB", (".mat",), read_mat),
+    Format("Excel", (".xlsx", ".xlsm"), read_xlsx),
+    Format("Parquet", (".parquet",), read_parquet),
     Format("TYDEX", (".tdx", ".tdx.gz", ".tda", ".tdb"), read_tydex, axes="iso"),
 )
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
@@ -54,15 +51,9 @@ def read(path: Path) -> RawTable:
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
-    kind = format_of(path)
     with readable(path):
-        size = kind.unpacked(path)
-    if too_large(size):
-        raise InputError(
-            f"holds more than {constants.LARGEST_UNPACKED / 1e6:.0f} MB when unpacked; split it, or export fewer channels",
-            file=path,
-        )
-    found = kind.read(path)
+        path.open("rb").close()
+    found = format_of(path).read(path)
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found

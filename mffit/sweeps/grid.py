@@ -16,11 +16,6 @@ Row = Sequence[str | float]
 
 WITH_UNIT = re.compile(r"^(.*\S)\s*[\[(]\s*([^\[\]()]*)\s*[\])]$")
 """A heading followed by its unit: ``FY [N]``, ``Fz (kN)``."""
-SUMMARIES = frozenset({
-    "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
-    "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",
-})  # fmt: skip
-"""Words, in lower case, at the beginning of rows that spreadsheets add below the readings."""
 
 
 class Head(NamedTuple):
@@ -50,21 +45,12 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
     filled = [(row, line) for row, line in zip(rows, lines, strict=True) if any(cell != "" for cell in row)]
     head = head_of([row for row, _ in filled], [line for _, line in filled], path)
     heading_line = filled[head.at][1]
-    data, skipped = _without_summaries(filled[head.rows :])
-    width = len(head.headings)
+    data, width = filled[head.rows :], len(head.headings)
     if not data:
-        raise InputError(
-            "has headings but no data; add one row per point",
-            file=path,
-            line=heading_line,
-        )
+        raise without_data(path, heading_line)
     for row, line in data:
-        if len(row) != width and (len(row) < width or any(cell != "" for cell in row[width:])):
-            remedy = "complete or remove this row"
-            if len(row) > width:
-                remedy = "remove the cells too many, or the decimal comma that splits a number, or the row"
-            sentence = f"has {len(row)} cells under {width} headings; {remedy}"
-            raise InputError(sentence, file=path, line=line)
+        if len(row) < width or any(cell != "" for cell in row[width:]):
+            raise ragged(len(row), width, path, line)
     return RawTable(
         headings=head.headings,
         units=head.units,
@@ -73,31 +59,20 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
         path=path,
         heading_line=heading_line,
         about={"title": head.title} if head.title else {},
-        skipped=skipped,
     )
 
 
-def _without_summaries(data: Sequence[tuple[Row, int]]) -> tuple[list[tuple[Row, int]], tuple[str, ...]]:
-    """Rows without means and the like, and a sentence for each of these: a word such as "Mittelwert" in a column of numbers."""
-    kept, sentences = [], []
-    for row, line in data:
-        k, word = next(((k, cell) for k, cell in enumerate(row) if cell != ""), (0, ""))
-        if is_summary(word) and _is_of_numbers([row for row, _ in data], k):
-            sentences.append(f'line {line} is skipped: it holds no reading, but is headed "{word}"')
-        else:
-            kept.append((row, line))
-    return kept, tuple(sentences)
+def without_data(path: Path, line: int) -> InputError:
+    """The error about a table without rows."""
+    return InputError("has headings but no data; add one row per point", file=path, line=line)
 
 
-def is_summary(cell: str | float) -> bool:
-    """Whether a cell says that its row is computed from the others."""
-    return isinstance(cell, str) and cell.lower().rstrip(".: ") in SUMMARIES
-
-
-def _is_of_numbers(rows: Sequence[Row], k: int) -> bool:
-    """Whether most cells of a column are numbers."""
-    cells = [row[k] for row in rows if k < len(row) and row[k] != ""]
-    return 2 * sum(map(is_number, cells)) > len(cells)
+def ragged(count: int, width: int, path: Path, line: int) -> InputError:
+    """The error about a row with another number of cells than headings."""
+    remedy = "complete or remove this row"
+    if count > width:
+        remedy = "remove the cells too many, or the decimal comma that splits a number, or the row"
+    return InputError(f"has {count} cells under {width} headings; {remedy}", file=path, line=line)
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:

@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.sweeps import matlab_apart
-from mffit.sweeps.extras import damaged, needed, undamaged
-from mffit.sweeps.matlab_apart import LARGEST_TEXT, TEXTS, TROUBLE
+from mffit.sweeps import constants, matlab_apart
+from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, damaged, needed, undamaged
+from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE
 from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.unpacked import is_hdf5
 
 KIND = "MATLAB file"
+HDF5_MARK = b"\x89HDF"
 
 
 def read_mat(path: Path) -> RawTable:
@@ -36,7 +36,7 @@ def read_mat(path: Path) -> RawTable:
         The file is not a MAT file, is damaged, or has no vectors of a common length; or it is of v7.3 and h5py is not
         installed.
     """
-    content = _hdf5(path) if is_hdf5(path) else _classic(path)
+    content = _hdf5(path) if _is_hdf5(path) else _classic(path)
     vectors = {name: values for name, values in content.items() if isinstance(values, np.ndarray)}
     if not vectors:
         raise InputError("has no column of numbers; save every channel as a vector", file=path)
@@ -72,11 +72,14 @@ def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
 def _classic(path: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name]
+        most = str(constants.LARGEST_UNPACKED // BYTES_OF_A_NUMBER)
+        command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name, most]
         try:
             subprocess.run(command, check=True, timeout=600.0, capture_output=True)
         except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
             raise damaged(path, KIND, "reading it failed without a reason") from None
+        if (folder / SIZE).exists():
+            check_size(BYTES_OF_A_NUMBER * int((folder / SIZE).read_text(encoding="utf-8")), path)
         trouble = folder / TROUBLE
         if trouble.exists():
             raise damaged(path, KIND, trouble.read_text(encoding="utf-8", errors="replace"))
@@ -85,10 +88,18 @@ def _classic(path: Path) -> dict[str, Any]:
     return {**content, **vectors}
 
 
+def _is_hdf5(path: Path) -> bool:
+    """Whether the file is of version 7.3; MATLAB puts a text of 512 bytes before HDF5."""
+    with path.open("rb") as file:
+        head = file.read(512 + len(HDF5_MARK))
+    return head.startswith(HDF5_MARK) or head[512:] == HDF5_MARK
+
+
 def _hdf5(path: Path) -> dict[str, Any]:
     h5py = needed("h5py", "MATLAB files of version 7.3", path)
     content: dict[str, Any] = {}
     with undamaged(path, KIND), h5py.File(path, "r") as file:
+        check_size(sum(int(one.nbytes) for one in file.values() if isinstance(one, h5py.Dataset)), path)
         for name, item in file.items():
             if name.startswith("#"):
                 continue

@@ -1,12 +1,13 @@
 """MATLAB files of v4 to v7, read in a process of their own: scipy's reader may crash the process on a damaged file.
 
-``python -P matlab_apart.py FILE OUT`` imports nothing of mffit. It writes the numbers and texts of the file to the folder OUT
+``python -P matlab_apart.py FILE OUT MOST`` imports nothing of mffit. It writes numbers and texts of the file to the folder OUT
 for :func:`mffit.sweeps.matlab.read_mat`, or the reason why it cannot be read to OUT/trouble.txt.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 
 LARGEST_TEXT = 10_000  # letters; not a record of constants.py, which this module must not import
-TROUBLE, TEXTS = "trouble.txt", "texts.json"
+TROUBLE, TEXTS, SIZE = "trouble.txt", "texts.json", "size.txt"
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -45,10 +46,19 @@ def _texts(cells: Any) -> list[str]:
     return found
 
 
-def main(source: str, out: str) -> None:
-    """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``."""
+def main(source: str, out: str, most: str) -> None:
+    """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``.
+
+    A file with more than ``most`` numbers is not loaded; their number is written to ``size.txt``.
+    """
+    import scipy.io
+
     folder = Path(out)
     try:
+        numbers = sum(math.prod(shape) for _, shape, _ in scipy.io.whosmat(source))
+        if numbers > int(most):
+            (folder / SIZE).write_text(str(numbers), encoding="utf-8")
+            return
         content = load(Path(source))
         for k, value in enumerate(content.values()):
             if isinstance(value, np.ndarray):
@@ -61,4 +71,4 @@ def main(source: str, out: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    main(*sys.argv[1:4])

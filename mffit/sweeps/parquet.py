@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mffit.sweeps.extras import needed, undamaged
+from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, needed, undamaged
 from mffit.sweeps.raw_table import Cells, RawTable
 
 
@@ -21,6 +21,9 @@ def read_parquet(path: Path) -> RawTable:
     needed("pyarrow", "Parquet files", path)
     parquet = needed("pyarrow.parquet", "Parquet files", path)
     with undamaged(path, "Parquet file"), parquet.ParquetFile(path) as file:
+        about = file.metadata  # values that repeat are stored once, so their number counts too
+        stated = sum(about.row_group(k).total_byte_size for k in range(about.num_row_groups))
+        check_size(max(stated, BYTES_OF_A_NUMBER * about.num_rows * about.num_columns), path)
         table = file.read()
     headings = tuple(str(name).strip() for name in table.column_names)
     return RawTable(

@@ -33,7 +33,6 @@ class RawTable:
     path: Path
     heading_line: int | None  #: None in formats without lines
     about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
-    skipped: tuple[str, ...] = ()  #: sentences about rows of the file that are no readings, without its name
 
     def __post_init__(self) -> None:
         if not self.headings or not len(self.lines):
@@ -79,6 +78,13 @@ SPREADSHEET_ERRORS = frozenset({
 })  # fmt: skip
 
 
+SUMMARIES = frozenset({
+    "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
+    "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",
+})  # fmt: skip
+"""Words, in lower case, at the beginning of rows that spreadsheets add below the readings."""
+
+
 def has_decimal_comma(cell: str) -> bool:
     """Whether a cell is a number with a decimal comma."""
     return NUMBER_WITH_COMMA.fullmatch(cell) is not None
@@ -92,6 +98,11 @@ def with_decimal_point(cell: str) -> str:
 def is_spreadsheet_error(cell: str) -> bool:
     """Whether a spreadsheet writes this where it has no value."""
     return cell.upper() in SPREADSHEET_ERRORS
+
+
+def is_summary(cell: str) -> bool:
+    """Whether a cell says that its row is computed from the others."""
+    return cell.lower().rstrip(".: ") in SUMMARIES
 
 
 def without_commas(cell: str) -> str:

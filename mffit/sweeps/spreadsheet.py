@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import zipfile
 from contextlib import closing
 from pathlib import Path
 
 from mffit.errors import InputError
-from mffit.sweeps.extras import needed, undamaged
+from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, needed, undamaged
 from mffit.sweeps.grid import table_of
 from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_comma, with_decimal_point
-from mffit.sweeps.unpacked import BYTES_OF_A_NUMBER, too_large
 
 
 def read_xlsx(path: Path) -> RawTable:
@@ -21,6 +21,8 @@ def read_xlsx(path: Path) -> RawTable:
         The file is not a workbook, no sheet has a table, or openpyxl is not installed.
     """
     openpyxl = needed("openpyxl", "Excel workbooks", path)
+    with undamaged(path, "Excel workbook"), zipfile.ZipFile(path) as members:
+        check_size(sum(member.file_size for member in members.infolist()), path)
     with (
         undamaged(path, "Excel workbook"),
         path.open("rb") as packed,  # openpyxl leaves a file of its own open where reading ends early
@@ -31,10 +33,7 @@ def read_xlsx(path: Path) -> RawTable:
             for row in sheet.iter_rows(values_only=True):
                 rows.append(tuple(_cell(value) for value in row))
                 cells += len(row)  # also those that a workbook only claims to have
-                if too_large(BYTES_OF_A_NUMBER * cells):
-                    raise InputError(
-                        f"has a sheet of more than {cells} cells; remove the empty ones", file=path
-                    )
+                check_size(BYTES_OF_A_NUMBER * cells, path)
             if any(sum(cell != "" for cell in row) > 1 for row in rows):
                 return table_of(_with_points(rows), range(1, len(rows) + 1), path)
     raise InputError("has no sheet with a table; put headings above the columns", file=path)

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.errors import InputError, shortened
 from mffit.sweeps import tydex_format
-from mffit.sweeps.extras import first_bytes
+from mffit.sweeps.extras import content_of
 from mffit.sweeps.raw_table import RawTable, with_decimal_point
 from mffit.sweeps.tydex_format import (
     CHANNEL_SECTION,
@@ -82,7 +82,7 @@ def _sections(path: Path) -> dict[str, Numbered]:
 
 
 def _text(path: Path) -> str:
-    text = first_bytes(path).decode("latin-1")
+    text = content_of(path).decode("latin-1")
     if "\0" in text:
         raise InputError(
             "is binary: a National Instruments .tdx, which belongs to a .tdm file, and not TYDEX; export it as CSV",

@@ -17,10 +17,11 @@ from mffit.points import Points, levels
 from mffit.points.loading import read
 from mffit.quantities import CONDITIONS
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
-from mffit.recordings.guess import ColumnChoice, Guess, guesses
+from mffit.recordings.guess import ColumnChoice, guesses
 from mffit.recordings.project_file import Stated, slug, tyre_found
 from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, rolls_backward, sniff
-from mffit.recordings.summary import RunSummary, apart, bad_runs, two_specimens
+from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
+from mffit.recordings.unstated import Guess
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
@@ -42,7 +43,7 @@ class RecordingsFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
         self._seen: object = None
-        self._apart: tuple[list[Path], tuple[RunSummary, ...]] = [], ()
+        self._apart: tuple[list[Path], tuple[SummaryRow, ...]] = [], ()
 
     @property
     def files(self) -> list[Path]:
@@ -50,11 +51,11 @@ class RecordingsFolder:
         return self._parted()[0]
 
     @property
-    def summaries(self) -> tuple[RunSummary, ...]:
+    def summaries(self) -> tuple[SummaryRow, ...]:
         """The summaries of tests that are in the folder now."""
         return self._parted()[1]
 
-    def _parted(self) -> tuple[list[Path], tuple[RunSummary, ...]]:
+    def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...]]:
         found = [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
         now = [(path, path.stat().st_mtime_ns) for path in found]
         if now != self._seen:
@@ -108,6 +109,7 @@ class RecordingsFolder:
                 if path not in files
             ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
+        known = tyre_found(found, self.folder) if found else Stated(name=slug(self.folder))
         return {
             "folder": self.folder.name,
             "channels": [
@@ -115,7 +117,7 @@ class RecordingsFolder:
             ],
             "groups": groups,
             "problems": [*problems, *([problem] if problem else []), *self._of_summaries()],
-            "tyre": tyre_found(found, self.folder)._asdict() if found else {"name": slug(self.folder)},
+            "tyre": {key: value for key, value in known._asdict().items() if value},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
         }

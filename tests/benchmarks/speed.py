@@ -136,8 +136,6 @@ def main() -> None:
                     f"{b / a:12.4f}" if b == b else f"{'-':>12}" for a, b in zip(plain, times, strict=True)
                 )
             )
-        if compiled:
-            threads(tyre, turn_slip)
     kernels.WORTH_LOADING.update(found)
     found_by_itself(tyre)
     started()
@@ -179,14 +177,6 @@ def found_by_itself(tyre: tir.Tyre) -> None:
             fresh(*arrays, turn_slip=False)
         taken = seconds(lambda fresh=fresh, arrays=arrays: fresh(*arrays, turn_slip=False))
         print(f"{n:<44}{taken * 1e6:12.1f}{taken / numpy_path:12.3f}")
-
-
-def threads(tyre: tir.Tyre, turn_slip: bool) -> None:
-    """Wall time of the largest call by number of threads."""
-    for n in sorted({1, len(os.sched_getaffinity(0))}):
-        os.environ["OMP_NUM_THREADS"] = str(n)
-        wall = seconds(call(tyre, conditions(tyre, SIZES[-1]), turn_slip), time.perf_counter)
-        print(f"{n} thread{'s' * (n > 1)}: {wall / SIZES[-1] * 1e6:.3f} us per condition of wall time")
 
 
 def started() -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import mffit
 from mffit.made import METHOD
-from mffit.results import as_json
 from mffit.results.values import plain
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -22,7 +21,7 @@ STORED = Path(__file__).with_name("method_figures.json")
 
 def figures(project: str) -> dict[str, Any]:
     """The direct measurement, the misfits, the rig errors and all fitted coefficients of a build of today."""
-    content = plain(as_json.build(mffit.build(SAMPLES / project / "tyre.toml")))
+    content = plain(mffit.build(SAMPLES / project / "tyre.toml"))
     fitted = {
         name: {key: row[key] for key in ("value", "stderr")}
         for name, row in content["fit"]["coefficients"].items()

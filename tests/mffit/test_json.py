@@ -80,12 +80,12 @@ def test_an_outcome_of_many_builds():
         source=Path("a/tyre.toml"), name="a", out=Path("out/a"), state="built", seconds=2.5, warnings=3, file="a.tir",
         epsilon_gamma=Quantity(-0.1, 0.02, "-"), misfit={"Fy": 6.0},
     )  # fmt: skip
-    assert as_json.outcome(good) == {
+    assert as_json.document(good) == {
         "tyre_toml": str(Path("a/tyre.toml")), "name": "a", "out": str(Path("out/a")), "state": "built", "sentence": None,
         "seconds": 2.5, "epsilon_gamma": {"value": -0.1, "u": 0.02}, "rmse": {"Fy": 6.0}, "warnings": 3, "tir": "a.tir",
         "trusted": True, "reasons": [], "in_doubt": [],
     }  # fmt: skip
-    bad = as_json.outcome(BuildOutcome(Path("b.toml"), "b.toml", None, "refused", "the reason"))
+    bad = as_json.document(BuildOutcome(Path("b.toml"), "b.toml", None, "refused", "the reason"))
     assert bad == {
         "tyre_toml": "b.toml", "name": "b.toml", "out": None, "state": "refused", "sentence": "the reason", "seconds": 0.0,
         "epsilon_gamma": None, "rmse": {}, "warnings": 0, "trusted": None, "reasons": [], "in_doubt": [], "tir": None,

@@ -10,6 +10,7 @@ import pytest
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.points import make_points
 from mffit.suspicion import Doubt, Outlier
+from mffit.suspicion.others import Error
 
 N = 12
 POINTS = make_points(
@@ -45,7 +46,8 @@ def test_discounted_readings_are_listed_by_file_with_their_smallest_weight():
 
 def test_an_outlier_has_no_weight_and_a_doubtful_sweep_all_of_it():
     outlier = Outlier("b.csv", 7, "b", 11, "Fy", 900.0, 20.0, 110.0)
-    doubt = Doubt("a", "a.csv", np.arange(6), "Fy", 41.0, 5.0, 0.1, "a load in lbf")
+    error = Error("Fy", 41.0, 5.0, 0.1, 0.0, 0.0)
+    doubt = Doubt("a", "a.csv", np.arange(6), (error,), looks="a load in lbf")
     wild, doubted = left_out_by_fit(POINTS, fitted(np.ones(N), outliers=(outlier,), doubts=(doubt,)))
     assert (wild.file, wild.lines, wild.rule, wild.weight) == ("b.csv", "7", "outlying-reading", 0.0)
     assert "900 N where 20 N is expected" in wild.why

@@ -78,7 +78,9 @@ def test_the_build_explains_its_own_points(small):
 def test_the_json_gives_the_origin_as_the_file_does(small):
     result, folder = small
     on_disk = tir.read(folder / "out" / "small.tir")
-    origin = {name: entry["origin"] for name, entry in as_json.build(result)["fit"]["coefficients"].items()}
+    origin = {
+        name: entry["origin"] for name, entry in as_json.document(result)["fit"]["coefficients"].items()
+    }
     assert len(on_disk.status.keys() & origin.keys()) > 200
     for name in on_disk.status.keys() & origin.keys():
         assert origin[name] == on_disk.status[name], name

@@ -90,7 +90,6 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
     """What the commands say of the projects, by command and key; the sentence of a failure in its place."""
     import mffit
     from mffit.pipeline.planning import plan_of
-    from mffit.results import as_json
     from mffit.results.values import plain
 
     found: dict[str, object] = {}
@@ -99,12 +98,12 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
         try:
             if "build" in commands or "plan" in commands:
                 built = mffit.build(project, with_report=False)
-                found |= flat(plain(as_json.build(built)), f"build {name}")
+                found |= flat(plain(built), f"build {name}")
             if "diagnose" in commands:
                 model = project.with_name(MODEL)
-                found |= flat(plain(as_json.diagnosis(mffit.diagnose(project, model))), f"diagnose {name}")
+                found |= flat(plain(mffit.diagnose(project, model)), f"diagnose {name}")
             if "plan" in commands:
-                found |= flat(plain(as_json.plan(plan_of(built))), f"plan {name}")
+                found |= flat(plain(plan_of(built)), f"plan {name}")
         except Exception as error:  # any failure is a figure that moved
             found[f"{name} fails"] = f"{type(error).__name__}: {error}"
     return {key: value for key, value in found.items() if not {"made", "seconds"} & {*key.split(".")}}

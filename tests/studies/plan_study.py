@@ -24,9 +24,8 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import tir
 from mffit import virtual_rig
 from mffit.pipeline.planning import plan_of
-from mffit.planning import Goal, Plan, PlannedRun, addition_named, constants, read_goal
+from mffit.planning import Goal, Plan, PlannedRun, addition_named, read_goal
 from mffit.results import BuildResult
-from mffit.virtual_rig.campaign import as_declared
 from tests.mffit.small_rigs import SAMPLE, built, disc, truth
 
 FAULTS = {
@@ -95,18 +94,11 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
     content = copy.deepcopy(content)
     for step in plan.steps:
         content["sweep"] += list(sweeps(step.run, plan))
-        for key, u in step.run.rig.items():
-            # The error of a better measurement is smaller: the same draw, scaled.
-            fault, sure = FAULTS[key], as_declared(plan.config.rig)[FAULTS[key]]
-            content["faults"][fault] = sure + constants.RIG_IMPROVEMENT * (content["faults"][fault] - sure)
-            content["rig"][key] = u
     return content
 
 
 def sweeps(run: PlannedRun, plan: Plan) -> Iterator[dict[str, Any]]:
     """Set-points of a run as sweeps of the virtual rig, one sweep per camber."""
-    if run.points is None:
-        return
     points = run.points
     usual = plan.config.rig.radius
     for way in (1, -1):

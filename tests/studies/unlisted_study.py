@@ -167,7 +167,7 @@ def one(job: tuple[int, str, Any]) -> dict[str, Any]:
 
 
 def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, Any]:
-    written = as_json.build(result)
+    written = as_json.document(result)
     spin, fit = written["spin"] or {}, written["fit"]
     out: dict[str, Any] = {
         "trusted": written["trusted"],

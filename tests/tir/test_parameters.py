@@ -46,7 +46,7 @@ WORDS = {
             "combined-Fx",
             "combined-Fy",
         ),
-        *("trail", "residual", "combined-Mz", "spin", "shift", "Mx", "Mx-arm", "Mx-load"),
+        *("trail", "residual", "combined-Mz", "spin", "shift", "Mx"),
     },
     "channel": {"", "Fx", "Fy", "Mx", "My", "Mz"},
     "symmetry": {"", "odd", "odd shift", "odd shift conicity"},

@@ -11,7 +11,6 @@ and Vehicle Dynamics, 3rd ed., section 4.2): their factors of slip are multiplie
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -29,7 +28,6 @@ from mffit.fit.priors import NOT_MEASURED, scatter
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.upright import sideways
 from mffit.points import Points, levels, main_pressure
-from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.parameters import BY_NAME, TABLE
@@ -144,7 +142,6 @@ def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
         covariance=errors @ errors.T + np.diag(np.square(own)),
         leans_on=fitted.names,
         slope=slope[:, :-2],
-        envelope=sister.envelope,
     )
     u = fitted.with_numbers(every).stderr
     return Lent(
@@ -179,45 +176,29 @@ def _scaled(
 
     ``by`` names the numbers to differentiate by.
     """
-    free = traced({name: float(values[name]) for name in by if name in values and name in BY_NAME})
-    own = sideways({**values, **free}, sister.loads, sister.pressure)
-    other = sideways(sister.tyre.values, sister.loads, sister.pressure)
-    logs, slopes = [], []
-    for k, (here, there) in enumerate(zip(own, other, strict=True)):
-        logs.append(np.log(plain(here) / there))
-        slope = np.zeros((len(sister.loads), len(by) + 2))
-        columns = [by.index(name) for name in free]
-        slope[:, columns] = gradient(here, list(free.values())) / plain(here)[:, None] if free else 0.0
-        slope[:, len(by) + k] = 1.0
-        slopes.append(slope)
+    own = [name for name in by if name in values and name in BY_NAME]
+    free = traced({**{name: float(values[name]) for name in own}, "friction": 0.0, "stiffness": 0.0})
+    of_friction, of_stiffness = np.exp(free["friction"]), np.exp(free["stiffness"])
+    here = sideways({**values, **free}, sister.loads, sister.pressure)
+    there = sideways(sister.tyre.values, sister.loads, sister.pressure)
+    mu, K = here[0] / there[0], here[1] / there[1]
+    # sideslip over that of sliding follows from the measured side force alone, without the two errors
+    growth = {False: K / mu, True: K / mu * (of_stiffness / of_friction)}
     dfz = sister.loads / (float(values["FNOMIN"]) * float(values["LFZO"])) - 1.0
     lines = np.stack([np.ones_like(dfz), dfz], axis=1)
-    nearest = np.linalg.pinv(lines)
-    found, derivative = dict(theirs), {name: np.zeros(len(by) + 2) for name in theirs}
-    for k, pairs in enumerate((BY_FRICTION, BY_STIFFNESS)):
+    nearest, mean = np.linalg.pinv(lines), np.full((1, len(dfz)), 1.0 / len(dfz))
+    columns = [*(by.index(name) for name in own), len(by), len(by) + 1]
+    found, slopes = dict(theirs), {name: np.zeros(len(by) + 2) for name in theirs}
+
+    def take(names: Sequence[str], weights: np.ndarray, over_load: Any) -> None:
+        """Coefficients that are these sums over the loads."""
+        by_free = weights @ gradient(over_load, list(free.values()))
+        for name, x, slope in zip(names, weights @ plain(over_load), by_free, strict=True):
+            found[name], slopes[name][columns] = float(x), slope
+
+    for scale, pairs in ((mu * of_friction, BY_FRICTION), (K * of_stiffness, BY_STIFFNESS)):
         for pair in pairs:
-            scaled = np.exp(logs[k]) * (lines @ [theirs[name] for name in pair])
-            for name, x, slope in zip(
-                pair, nearest @ scaled, nearest @ (scaled[:, None] * slopes[k]), strict=True
-            ):
-                found[name], derivative[name] = float(x), slope
-    # sideslip over that of sliding follows from the measured side force alone, without the two errors
-    growth = float(np.mean(logs[1] - logs[0]))
-    by_growth = {True: np.mean(slopes[1] - slopes[0], axis=0)}
-    by_growth[False] = np.r_[by_growth[True][:-2], 0.0, 0.0]
+            take(pair, nearest, scale * (lines @ [theirs[name] for name in pair]))
     for name, (power, of_kappa) in OVER_SLIP.items():
-        found[name] = theirs[name] * math.exp(power * growth)
-        derivative[name] = found[name] * power * by_growth[of_kappa]
-    return _Scaled(found, derivative)
-
-
-def sister_sentence(lent: Lent) -> str:
-    """Where longitudinal and combined slip come from, with both ratios and what their uncertainty contains."""
-    sister, friction, slip = lent.sister, lent.friction, lent.stiffness
-    return ascii_only(
-        f"Fx and combined slip are those of the sister tyre {sister.file}, scaled by the measured side force: friction times "
-        f"{to_uncertainty(friction.value, friction.u)} +- {to_uncertainty(friction.u, friction.u)}, slip stiffness times "
-        f"{to_uncertainty(slip.value, slip.u)} +- {to_uncertainty(slip.u, slip.u)}. These contain the uncertainty of the fit, "
-        f"and {sister.u_friction:.0%} and {sister.u_stiffness:.0%} for tyres whose longitudinal force does not follow the side "
-        "force. No reading of this tyre tests them."
-    )
+        take((name,), mean, theirs[name] * growth[of_kappa] ** float(power))
+    return _Scaled(found, slopes)

@@ -16,7 +16,7 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.left_out import needed_fall, over_scatter
 from mffit.linearised.constants import POINTS_EXAMINED
-from mffit.linearised.mixed import LeftOutReadings, Mixed, Variances
+from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, Variances
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 
@@ -128,8 +128,21 @@ class JointFit:
 
     def alike(self, held: Collection[str] = ()) -> Explained:
         """The same if the groups do not differ."""
-        given = Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
+        given = self._alike(held)
         return Explained(self.model.evidence(given).value, given)
+
+    def _alike(self, held: Collection[str] = ()) -> Variances:
+        return Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
+
+    def further(self, columns: np.ndarray) -> FurtherColumns:
+        """What the readings say of further changes (m, j) of them, if the groups do not differ."""
+        return self.model.further(self._alike(), columns)
+
+    @property
+    def misfit(self) -> float:
+        """Sum of squares of what all numbers leave, in units of the readings' weights, if the groups do not differ."""
+        left = self.model.residual - self.model.common @ self.model.posterior(self._alike()).mean
+        return float(left @ left)
 
     def _held(self, names: Collection[str]) -> np.ndarray:
         """Logarithm (k,) of the variances of the shared numbers."""

@@ -15,7 +15,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.joint import JointFit, LeftOutGroups, beyond_chance, clearly_above_zero
 from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber, minimum
+from mffit.least_squares import FreeNumber, solve
 from mffit.points import Points
 from mffit.suspicion import parts_of_sweeps
 
@@ -134,12 +134,15 @@ def _judged(
 ) -> tuple[dict[str, Verdict], NearSolution]:
     """The verdicts on demanded influences and candidates, and the fit with what is modelled; ``model`` is the one without any."""
     group = parts_of_sweeps(model.problem.points)
-    base = model.left_out(group)
+    base = model.left_out(group).gaps
     if demanded:
         model = _refitted(model, demanded)
     enough = len(np.unique(group)) >= FEWEST_SWEEPS_TO_PREDICT
+    verdicts = {}
+    for nuisance in candidates:
+        reason = f"it needs the {_named(nuisance.after)}, which is not modelled" if nuisance.after else ""
+        verdicts[nuisance.id] = Verdict(nuisance, False, reason if enough else _TOO_FEW)
     left = list(candidates)
-    tried: dict[str, tuple[str, Gaps, Gaps]] = {}
     while enough and left:
         joint = model.joint(group, left)
         new = _numbers(left)
@@ -152,20 +155,26 @@ def _judged(
             gain = joint.gain(numbers, new)
             seen = beyond_chance(gain, len(numbers), rivals)
             after = joint.left_out(joint.alike(new - numbers).given, group)
-            tried[last.id] = (_WORSE if seen else _WITHIN_CHANCE, here.gaps, after.gaps)
+            verdicts[last.id] = Verdict(
+                last, False, _WORSE if seen else _WITHIN_CHANCE, here.gaps, after.gaps
+            )
             if seen and np.sum(after.density) > np.sum(here.density):
                 gains[step] = gain
         if not gains:
             break
-        best = min(
-            gains, key=lambda step: (len(step), -gains[step])
-        )  # two together only if neither does alone
-        rivals_of_best = {nuisance.rival for nuisance in best}
-        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals_of_best]
+        # two together only if neither does alone
+        best = min(gains, key=lambda step: (len(step), -gains[step]))
+        rivals_of = {nuisance.rival: nuisance for nuisance in best}
+        for other in left:
+            if other.id in rivals_of:
+                verdicts[other.id] = Verdict(other, False, f"the {rivals_of[other.id].name} explains more")
+        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals_of]
         model = _refitted(model, best)
-    return _verdicts(
-        config, model, candidates, demanded, base.gaps, model.left_out(group).gaps, tried, enough=enough
-    ), model
+    here = model.left_out(group)
+    for nuisance in model.chosen:
+        reason = _said(config, nuisance) if nuisance in demanded else "what it explains is beyond chance"
+        verdicts[nuisance.id] = Verdict(nuisance, True, reason, base, here.gaps)
+    return verdicts, model
 
 
 def _of_runs(
@@ -230,52 +239,17 @@ def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tup
             yield (by_id[nuisance.after], nuisance)
 
 
-def _verdicts(
-    config: Config,
-    model: NearSolution,
-    candidates: Sequence[Nuisance],
-    demanded: Sequence[Nuisance],
-    base: Gaps,
-    here: Gaps,
-    tried: Mapping[str, tuple[str, Gaps, Gaps]],
-    *,
-    enough: bool,
-) -> dict[str, Verdict]:
-    out, there = {}, {nuisance.id for nuisance in model.chosen}
-    for nuisance in (*demanded, *candidates):
-        modelled, other = nuisance in model.chosen, tried.get(nuisance.id)
-        if nuisance in demanded:
-            reason, gaps = _said(config, nuisance), (base, here)
-        elif modelled:
-            reason, gaps = "what it explains is beyond chance", (base, here)
-        elif nuisance.rival in there:
-            reason, gaps = f"the {_named(nuisance.rival)} explains more", ({}, {})
-        elif other is not None:
-            reason, gaps = other[0], other[1:]
-        elif not enough:
-            reason, gaps = _TOO_FEW, ({}, {})
-        else:
-            reason, gaps = f"it needs the {_named(nuisance.after)}, which is not modelled", ({}, {})
-        out[nuisance.id] = Verdict(nuisance, modelled, reason, *gaps)
-    return out
-
-
 def _named(key: str) -> str:
     return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
 
 
 def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
     """The model with more influences, fitted again from where it is."""
-    points = model.problem.points
-    numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free(points, {}))]
-    return solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
-
-
-def solved(model: NearSolution) -> NearSolution:
-    """The model fitted again from where it is."""
-    numbers = model.problem.starting_here(model.numbers)
-    found = minimum(model.problem.free([number.name for number in numbers]), numbers)
-    return model._replace(problem=model.problem.with_values(found.values))
+    problem = model.problem
+    more = (number for nuisance in added for number in nuisance.free(problem.points, {}))
+    numbers = problem.starting_here([*model.numbers, *more])
+    found = solve(problem.free([number.name for number in numbers]), numbers)
+    return NearSolution(problem.with_values(found.values), numbers, (*model.chosen, *added))
 
 
 def _said(config: Config, nuisance: Nuisance) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,6 @@ class NuisanceFit:
     plain: Fitted  #: without temperature as an input: its coefficients take up the warming
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
-    refit: Callable[[np.ndarray], Fitted]  #: the full fit to some of the points (rows)
 
     @property
     def at_temperature(self) -> bool:
@@ -41,15 +40,11 @@ def fit_with_nuisances(
     fitted = first_fit(problem, start, plan)
     choice = choose(config, fitted)
 
-    def refit(rows: np.ndarray) -> Fitted:
-        part = problem.select(rows)
-        return _polished(config, part, plan, choice, choice.modelled, first_fit(part, start, plan))
-
     if choice.modelled:
         progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-        return NuisanceFit(full, full, choice, refit)
+        return NuisanceFit(full, full, choice)
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
@@ -57,7 +52,7 @@ def fit_with_nuisances(
     shift = np.array(
         [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
     )
-    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, refit)
+    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice)
 
 
 def _polished(

@@ -140,8 +140,6 @@ def _of_setups(
             continue
         if scatter is not None and name == "F0_N":
             u = math.hypot(u, scatter.excess)
-        if scatter is not None and name == SIDESLIP_ZERO and scatter.between_alpha is not None:
-            u = max(u, math.degrees(scatter.between_alpha))
         for setup in setups:
             off = abs(_misaligned(measured, setup)) if name == SIDESLIP_ZERO else 0.0
             reach = constants.RIG_ERROR_REACH if setup else constants.FLAT_TRACK_ZERO_REACH

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +16,7 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import EXACT, FreeNumber, inverse, minimum, of_model, solve
+from mffit.least_squares import EXACT, FreeNumber, inverse, of_model, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
@@ -38,24 +38,6 @@ BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
 MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
 RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
 """Coefficients that measured effective radii determine; the second one needs several loads."""
-
-
-def radius_coefficients(
-    values: Mapping[str, Any],
-    r_e: Mapping[float, float],
-    speed: float,
-    free: Sequence[str] = RADIUS_COEFFICIENTS,
-) -> dict[str, float]:
-    """Q_RE0, and DREFF where several loads were measured, with which Re(Fz) passes through the measurements.
-
-    ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept, and of the two only
-    the ``free`` ones change.
-    """
-    names = tuple(free)[: len(r_e)]
-    loads, target = np.array(list(r_e)), np.array(list(r_e.values()))
-    radius = of_model(lambda free: effective_radius({**values, **free}, loads, speed), names, target, 1e-6)
-    numbers = [FreeNumber(name, float(values[name])) for name in names]
-    return minimum(radius, numbers, tolerance=1e-12).values
 
 
 @dataclass(frozen=True, slots=True)

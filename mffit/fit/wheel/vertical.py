@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
+from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT, UPRIGHT
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
 from mffit.fit.beside import BesideNumbers
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
-from mffit.rounding import ascii_only, to_uncertainty
 from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
 from tir import Quantity
@@ -27,9 +26,6 @@ from tir.parameters import BY_NAME
 
 GROWTH = "growth"
 """Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up."""
-LEAN = {"RL": "lean of RL", "omega": "lean of omega"}
-"""By channel, change of the radius with the square of camber, relative to the free one: it depends on the contour, and is not
-written."""
 BOUNDS = {
     "Q_RE0": (0.9, 1.1),
     "PFZ1": (-0.5, 2.0),
@@ -37,7 +33,6 @@ BOUNDS = {
     "FREFF": (-1.0, 1.0),
     "BREFF": (0.2, 40.0),
     GROWTH: (-0.3, 0.3),
-    **dict.fromkeys(LEAN.values(), (-10.0, 10.0)),
     "Q_V1": (-0.01, 0.02),
     "Q_V2": (-0.3, 0.5),
 }
@@ -46,9 +41,18 @@ OVER_SPEED = dict(zip(("Q_V1", "Q_V2"), constants.SPREADS_OVER_SPEED, strict=Tru
 
 
 OF_WHEEL_SPEED = ("DREFF", "FREFF", "BREFF")
-"""Coefficients of the rolling radius, in the order in which further loads determine them."""
-OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name in BY_NAME))
-"""Every coefficient that radii may determine."""
+"""Coefficients of the rolling radius."""
+SHOWN = {
+    "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *OVER_SPEED, GROWTH),
+    "omega": ("Q_RE0", "Q_V1", *OF_WHEEL_SPEED, GROWTH),
+}
+"""By channel, the numbers that it shows; what the first one has shown stays."""
+NEEDED = {
+    **{"Q_FZ2": ("loads", 3), "FREFF": ("loads", 3), "BREFF": ("loads", 4)},
+    **dict.fromkeys(("PFZ1", GROWTH), ("pressures", 2)),
+    **dict.fromkeys(OVER_SPEED, ("speeds", 2)),
+}
+"""What must be varied for some of them, and how many levels of it; all need two loads."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +60,7 @@ class Vertical:
     """What loaded radius and wheel speed determine."""
 
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """Coefficients (k,) with the growth of the free radius and the effects of camber, in the order of the covariance."""
+    """Coefficients (k,) with the growth of the free radius, in the order of the covariance."""
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  #: (k, k)
     rms: Mapping[str, float] = field(default_factory=dict)
     """By channel, RL and omega, rms misfit of the radius [m]."""
@@ -91,10 +95,9 @@ class Vertical:
 
 @dataclass(frozen=True, slots=True)
 class RollingParts:
-    """Means over the freely rolling parts of sweeps with little camber (n,)."""
+    """Means over the freely rolling parts of sweeps without camber (n,)."""
 
     Fz: np.ndarray  #: [N]
-    gamma: np.ndarray  #: [rad]
     p: np.ndarray  #: [Pa]
     V: np.ndarray  #: [m/s]
     loaded: np.ndarray  #: [m]; NaN where it was not measured
@@ -130,70 +133,53 @@ def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
     """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
 
-    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it, and a zero of one reading does
-    not distort what the other shows. The errors of the first fit are carried into the second. Coefficients ``held``, by hand
-    or because they were measured, stay, and so does what too few loads, pressures or speeds show. What speed does and a single
-    speed does not show is part of the uncertainties.
+    The loaded radius comes first: DREFF, BREFF and FREFF appear only over the stiffness, and a zero of one reading does not
+    distort what the other shows. Coefficients ``held``, by hand or because they were measured, stay, and so does what too few
+    loads, pressures or speeds show. What speed does and a single speed does not show is part of the uncertainties, and so are
+    the errors of what was found before.
     """
     rolling = _rolling(points)
     if rolling is None:
         return Vertical()
-    best = _best(values, rolling, held)
-    covariance = best.covariance
-    for name, spread in OVER_SPEED.items():
-        if name in best.numbers or name in held:
-            continue
-        known = float(values[name])
-        change = float(constants.SIMILAR_TYRES_SPREAD) * abs(known) or float(spread)
-        other = _best({**values, name: known + change}, rolling, {*held, *OVER_SPEED})
-        moved = [other.numbers.get(n, x) - x for n, x in best.numbers.items()]
-        covariance = covariance + np.outer(moved, moved)
-    return replace(best, covariance=covariance)
-
-
-def _best(values: Mapping[str, Any], rolling: RollingParts, held: Collection[str]) -> Vertical:
-    """The numbers that fit the readings; coefficients over speed that are not found are exact here."""
-    nominal = float(values["NOMPRES"])
-    loads = levels.count(rolling.Fz, levels.LOAD)
-    pressures = levels.count(rolling.p, levels.PRESSURE)
-    speeds = levels.count(rolling.V, levels.SPEED)
-    dpi = rolling.p / nominal - 1.0
-    known: dict[str, Any] = {**values, GROWTH: 0.0, **dict.fromkeys(LEAN.values(), 0.0)}
-    fits: dict[str, _OfRadius] = {}
-    growth = [GROWTH] if pressures > 1 else []
-    leant = levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1
-    if np.any(np.isfinite(rolling.loaded)) and loads > 1:
-        names = ["VERTICAL_STIFFNESS", "Q_RE0"] + (["Q_FZ2"] if loads > 2 else [])
-        names += (["PFZ1"] if pressures > 1 else []) + (list(OVER_SPEED) if speeds > 1 else [])
-        names = [name for name in names if name not in held]
-        known |= {name: 0.0 for name in ("Q_FZ2", "PFZ1") if name in names}
+    run = {
+        "loads": levels.count(rolling.Fz, levels.LOAD),
+        "pressures": levels.count(rolling.p, levels.PRESSURE),
+        "speeds": levels.count(rolling.V, levels.SPEED),
+    }
+    read = [c for c in SHOWN if np.any(np.isfinite(rolling.radius(c)))] if run["loads"] > 1 else []
+    names = {channel: [n for n in SHOWN[channel] if n not in held and _is_shown(n, run)] for channel in read}
+    found = {
+        name: float(values[name])
+        for name in OVER_SPEED
+        if name not in held and not any(name in own for own in names.values())
+    }
+    u = [constants.SIMILAR_TYRES_SPREAD * abs(x) or float(OVER_SPEED[name]) for name, x in found.items()]
+    covariance, unseen, misfit = np.diag(np.square(u)), len(found), dict[str, float]()
+    known = {**values, GROWTH: 0.0, **{n: 0.0 for n in ("Q_FZ2", "PFZ1") if n in names.get("RL", ())}}
+    if "VERTICAL_STIFFNESS" in names.get("RL", ()):
         known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
-        names += [*growth, *([LEAN["RL"]] if leant else [])]
-        fits["RL"] = _fitted(names, (), known, rolling, "RL", dpi)
-        known |= fits["RL"].values
-        growth = []
-    if np.any(np.isfinite(rolling.effective)) and loads > 1:
-        names = [] if fits else ["Q_RE0", *(["Q_V1"] if speeds > 1 else [])]
-        names += OF_WHEEL_SPEED[: loads - 1]
-        names = [name for name in names if name not in held]
-        names += [*growth, *([LEAN["omega"]] if leant else [])]
-        before = [name for fit in fits.values() for name in fit.values]
-        fits["omega"] = _fitted(names, before, known, rolling, "omega", dpi)
-        known |= fits["omega"].values
-    covariance = np.zeros((0, 0))
-    for fit in fits.values():  # an error of what was fitted before moves the rest
+    for channel, every in names.items():
+        free = [name for name in every if name not in found]
+        fit = _fitted(free, list(found), {**known, **found}, rolling, channel)
+        found |= fit.values
+        misfit[channel] = fit.rms
         across = fit.moved @ covariance
         own = fit.covariance + across @ fit.moved.T
         covariance = np.block([[covariance, across.T], [across, own]])
-    numbers = {name: x for fit in fits.values() for name, x in fit.values.items()}
-    return Vertical(numbers, covariance, {c: fit.rms for c, fit in fits.items()}, rolling)
+    numbers = dict(list(found.items())[unseen:])
+    return Vertical(numbers, covariance[unseen:, unseen:], misfit, rolling)
+
+
+def _is_shown(name: str, run: Mapping[str, int]) -> bool:
+    what, count = NEEDED.get(name, ("loads", 2))
+    return run[what] >= count
 
 
 def _rolling(points: Points) -> RollingParts | None:
     """The parts of sweeps at which the wheel rolls freely straight on; None without radius or wheel speed."""
     used = points.free_rolling & (points.direction > 0) & (points.phi_t == 0.0)
     used &= np.abs(points.alpha) < STRAIGHT.rad
-    used &= np.abs(points.gamma) < constants.LARGEST_CAMBER_OF_RADII.rad
+    used &= np.abs(points.gamma) < UPRIGHT.rad
     turning = np.isfinite(points.omega) & (points.omega > 0.0)
     used &= np.isfinite(points.RL) | turning
     if not np.any(used):
@@ -207,7 +193,7 @@ def _rolling(points: Points) -> RollingParts | None:
     def mean(x: np.ndarray) -> np.ndarray:
         return np.array([float(np.mean(x[group == k])) for k in np.unique(group)])
 
-    return RollingParts(*map(mean, (part.Fz, part.gamma, part.p, part.V, part.RL, effective)))
+    return RollingParts(*map(mean, (part.Fz, part.p, part.V, part.RL, effective)))
 
 
 def _stiffness(rolling: RollingParts) -> float:
@@ -232,11 +218,10 @@ def _fitted(
     values: Mapping[str, Any],
     rolling: RollingParts,
     channel: str,
-    dpi: np.ndarray,
 ) -> _OfRadius:
     """The best values of the named numbers, beside those that were fitted ``before``."""
-    known = np.isfinite(rolling.radius(channel))
-    rolling, dpi = rolling.select(known), dpi[known]
+    rolling = rolling.select(np.isfinite(rolling.radius(channel)))
+    dpi = rolling.p / float(values["NOMPRES"]) - 1.0
     measured = rolling.radius(channel)
     unit = float(np.ptp(measured)) or 1e-3
     stiffness, free_radius = float(values["VERTICAL_STIFFNESS"]), float(values["UNLOADED_RADIUS"])
@@ -252,7 +237,7 @@ def _fitted(
         every = {**values, **free}
         with np.errstate(invalid="ignore"):
             found = radius(every, rolling, channel)
-        return found + free_radius * (every[GROWTH] * dpi + every[LEAN[channel]] * rolling.gamma**2)
+        return found + free_radius * every[GROWTH] * dpi
 
     end = solve(of_model(radius_of, names, measured, unit), numbers, tolerance=1e-9)
     scale = _scatter(float(end.data @ end.data), len(measured) - len(names), unit) ** 2
@@ -275,15 +260,7 @@ def _scatter(squares: float, freedom: int, unit: float) -> float:
 
 
 def vertical_sentence(found: Vertical) -> str:
-    """What was fitted to loaded radius and wheel speed, with the misfit; empty if nothing was."""
-    if not found.found:
+    """What pressure does to the free radius, which no coefficient says; empty if that is not known."""
+    if not found.growth:
         return ""
-    sources = {"RL": "loaded radius", "omega": "wheel speed"}
-    misfit = " and ".join(f"{1e3 * x:.1f} mm ({sources[name]})" for name, x in found.rms.items())
-    numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
-    grown = (
-        f" The free radius changes by {1e2 * found.growth:+.2f} % per nominal pressure, for which MF has no coefficient."
-        if found.growth
-        else ""
-    )
-    return ascii_only(f"Fitted to radii of the freely rolling wheel, rms {misfit}: {numbers}.{grown}")
+    return f"The free radius changes by {1e2 * found.growth:+.2f} % per nominal pressure, for which MF has no coefficient."

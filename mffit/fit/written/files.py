@@ -11,7 +11,7 @@ from mffit.fit import constants
 from mffit.fit.known import Known
 from mffit.fit.ranges import NAMES as RANGES
 from mffit.fit.ranges import plausible_ranges, sideslips_with_slip, tested_ranges, with_room
-from mffit.fit.written.misfit import FileFigures, Reference
+from mffit.fit.written.misfit import FileFigures, figures
 from mffit.fit.written.normal import derive
 from mffit.fit.written.road import held_to_camber, road_grid
 from mffit.points import Points, main_path
@@ -91,7 +91,7 @@ def make_files(
             weight="everything" if both else config.normal.weight,
         )
 
-    def figures(use: str, values: Mapping[str, float]) -> FileFigures:
+    def file(use: str, values: Mapping[str, float]) -> FileFigures:
         limit = camber if use == "normal" else None
         held, inside = held_to_camber(written, limit), held_to_camber(tested, limit)
         ends = {name: held[name] for name in ("CAMMIN", "CAMMAX")} if limit is not None else {}
@@ -99,12 +99,12 @@ def make_files(
             **{**model, **values, **ends, "USE_MODE": use_mode(model, use)}
         )
         road = road_grid(inside, held, float(model["FNOMIN"]))
-        return Reference(model, road, inside, main_path(points)).figures(tyre, use)
+        return figures(tyre, use, model, road, inside, main_path(points))
 
     uses = dict.fromkeys(("turn-slip", "normal", config.spin.exact)) if disc else {"normal": None}
     own = {use: changed(use) for use in uses if only in (None, use)}
     return Files(
-        by_use={use: figures(use, values) for use, values in own.items()},
+        by_use={use: file(use, values) for use, values in own.items()},
         weight=config.normal.weight,
         camber_limit=camber,
         wide_limit=asked if camber is None else None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -42,45 +42,35 @@ class FileFigures:
         return self.misfit["straight"]
 
 
-class Reference(NamedTuple):
-    """The fitted model and the conditions at which files are compared with it."""
+def figures(
+    tyre: Tyre, use: str, model: Mapping[str, Any], road: Road, tested: Mapping[str, float], phi_t: float
+) -> FileFigures:
+    """The figures of a file for "turn-slip", "normal" or "both".
 
-    model: Mapping[str, Any]  #: every value
-    road: Road
-    tested: Mapping[str, float]
-    phi_t: float  #: curvature of the disc's path [1/m]; 0 on a flat track
+    ``model`` are the values of the fitted model, ``tested`` its ranges; ``phi_t`` is the curvature of the disc's path [1/m], 0 on
+    a flat track.
+    """
+    turn_slip = use == "turn-slip"
+    places = {"straight": (turn_slip, 0.0)}
+    if use == "both":
+        places |= {"straight_with_turn_slip": (True, 0.0), "disc": (True, phi_t)}
+    misfit = {}
+    for place, (on, path) in places.items():
+        own = forces(tyre.values, road, turn_slip=on, phi_t=path)
+        aim = forces(model, road, turn_slip=bool(phi_t), phi_t=path)
+        misfit[place] = {channel: _misfit(own[channel] - aim[channel], road, tested) for channel in own}
+    return FileFigures(tyre, misfit, camber_stiffness(tyre, float(model["FNOMIN"]), turn_slip=turn_slip))
 
-    def figures(self, tyre: Tyre, use: str) -> FileFigures:
-        """The figures of a file for "turn-slip", "normal" or "both"."""
-        turn_slip = use == "turn-slip"
-        misfit = {"straight": self._misfits(tyre, turn_slip=turn_slip, phi_t=0.0)}
-        if use == "both":
-            misfit["straight_with_turn_slip"] = self._misfits(tyre, turn_slip=True, phi_t=0.0)
-            misfit["disc"] = self._misfits(tyre, turn_slip=True, phi_t=self.phi_t)
-        load = float(self.model["FNOMIN"])
-        return FileFigures(tyre, misfit, camber_stiffness(tyre, load, turn_slip=turn_slip))
 
-    def _misfits(self, tyre: Tyre, *, turn_slip: bool, phi_t: float) -> dict[str, Misfit]:
-        own = forces(tyre.values, self.road, turn_slip=turn_slip, phi_t=phi_t)
-        aim = forces(self.model, self.road, turn_slip=bool(self.phi_t), phi_t=phi_t)
-        return {channel: self._misfit(own[channel] - aim[channel]) for channel in own}
+def _misfit(difference: np.ndarray, road: Road, tested: Mapping[str, float]) -> Misfit:
+    within = inside(road, tested)
+    off = difference[within]
 
-    def _misfit(self, difference: np.ndarray) -> Misfit:
-        within = inside(self.road, self.tested)
-        weight = weights(self.road, self.tested)
-        return Misfit(
-            rms=rms(difference[within]),
-            weighted=float(np.sqrt(np.average(difference[within] ** 2, weights=weight[within]))),
-            largest=float(np.max(np.abs(difference[within]))),
-            beyond=rms(difference[~within]) if np.any(~within) else 0.0,
-            ridden=float(
-                np.sqrt(
-                    np.average(
-                        difference[within] ** 2, weights=weights(self.road, self.tested, "road")[within]
-                    )
-                )
-            ),
-        )
+    def weighted(*weight: str) -> float:
+        return float(np.sqrt(np.average(off**2, weights=weights(road, tested, *weight)[within])))
+
+    beyond = rms(difference[~within]) if np.any(~within) else 0.0
+    return Misfit(rms(off), weighted(), float(np.max(np.abs(off))), beyond, weighted("road"))
 
 
 def camber_stiffness(tyre: Tyre, load: float, *, turn_slip: bool) -> float:

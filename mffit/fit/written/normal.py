@@ -14,7 +14,7 @@ from mffit.fit.constraints import limits
 from mffit.fit.ranges import envelope
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.written.road import Road, camber_lines, force, forces, road_grid, weights
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, minimum
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
 from tir.parameters import BY_NAME
@@ -67,7 +67,7 @@ def derive(
     for channel, names in free.items():
         imitation = _Imitation(channel, found, values, goals, road, weights(road, tested, weight), written)
         numbers = _numbers({name: float(values[name]) for name in names}, hand)
-        found |= minimum(imitation.of(names), numbers, tolerance=constants.REFIT_TOLERANCE).values
+        found |= solve(imitation.of(names), numbers, tolerance=constants.REFIT_TOLERANCE).values
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
 
 

@@ -50,7 +50,6 @@ def _panel(
             continue
         load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
         usual = {
-            "gamma": 0.0,
             "p": p,
             "V": speed,
             "loaded": np.nan,

@@ -98,9 +98,6 @@ def _residuals(result: BuildResult) -> str:
             lines.append(wrapped(f"best known effect in the residuals: {wording.best_effect(effect)}"))
         elif result.reasons or result.trust.doubts:
             lines.append("best known effect in the residuals: none known")
-    found = wording.structure(result.remains.structure)
-    if found:
-        lines.append(wrapped(f"residuals are not random: {found}; plots/structure.png"))
     return "\n".join(lines)
 
 

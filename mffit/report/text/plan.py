@@ -13,7 +13,7 @@ def plan_summary(plan: Plan) -> str:
     rows = [
         (
             wording.title(step.run),
-            _cost(step.run.cost),
+            str(step.run.cost),
             wording.shown(plan, step.before),
             wording.shown(plan, step.after),
         )
@@ -22,12 +22,12 @@ def plan_summary(plan: Plan) -> str:
     alone = [
         (
             wording.title(trial.run),
-            _cost(trial.run.cost),
-            wording.shown(plan, plan.now),
-            wording.shown(plan, trial.u),
+            str(trial.run.cost),
+            wording.shown(plan, trial.before),
+            wording.shown(plan, trial.after),
         )
         for trial in plan.trials[: constants.MOST_ROWS]
-        if trial.u < plan.now
+        if trial.after < plan.now
     ]
     reasons = [f"{wording.title(step.run)}: {step.run.addition.reason}" for step in plan.steps]
     parts = [
@@ -38,11 +38,6 @@ def plan_summary(plan: Plan) -> str:
         paragraphs(reasons),
         "Each alone:" if alone else "",
         table(head, alone) if alone else "",
-        wording.estimates(plan),
         wrapped(wording.promise(plan)),
     ]
     return blocks(parts)
-
-
-def _cost(points: int) -> str:
-    return str(points) if points else "-"

@@ -7,11 +7,9 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from mffit.diagnosis.one_step import BestEffect
-from mffit.diagnosis.remains import OddSweep, Remains
-from mffit.diagnosis.structure import ResidualComparison, Structure
+from mffit.diagnosis.remains import BestEffect, OddSweep, Remains
 from mffit.fit import Coefficient, FitResult
-from mffit.fit.bands import BandOfCombined, BandsByPressure
+from mffit.fit.bands import BandBesideSweeps, Bands
 from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.influences.between_runs import BetweenRuns
@@ -24,7 +22,7 @@ from mffit.fit.written.misfit import FileFigures
 from mffit.fleet import information, to_json
 from mffit.points.left_out import LeftOut
 from mffit.results.records import BuildOutcome, BuildResult
-from mffit.results.values import Json, document, keys, plain, with_u
+from mffit.results.values import Json, document, keys, with_u
 from mffit.rig_errors import unit_of
 from mffit.suspicion import Doubt, HeldNumber, Outlier
 
@@ -76,7 +74,6 @@ keys(
     relaxation=lambda found: (
         {**document(found.relaxation[0]), "slip": found.relaxation[1]} if found.relaxation else None
     ),
-    bands=lambda found: found.bands and {**document(found.bands), "combined": plain(found.band_of_combined)},
     files=lambda found: found.files or {},
 )
 keys(
@@ -130,11 +127,12 @@ keys(
     coefficients=lambda found: list(found.found),
 )
 keys(
-    BandsByPressure,
-    "pressure_kPa=main Fy_N=half Fy_exact_zeros_N=half_of_exact_zeros other_pressures_kPa=others other_Fy_N unseen? share",
+    Bands,
+    "pressure_kPa=main Fy_N=half Fy_exact_zeros_N=half_of_exact_zeros other_pressures_kPa=others other_Fy_N unseen? share "
+    "combined",
     other_Fy_N=lambda found: found.half_of_others if found.others else None,
 )
-keys(BandOfCombined, "sideslip_deg Fx_N=half_at halfway_Fx_N=half_between")
+keys(BandBesideSweeps, "sideslip_deg Fx_N=half_at halfway_Fx_N=half_beside")
 keys(Posterior, "names covariance")
 keys(StageCoverage, "stage supported held missing")
 keys(
@@ -166,9 +164,14 @@ def _file(files: Files, use: str) -> dict[str, object]:
     return out
 
 
-keys(Remains, "effect structure sweep held left_out")
-keys(Structure, "chance comparisons found", comparisons=lambda found: len(found.comparisons))
-keys(ResidualComparison, "channel over log_chance")
+keys(
+    Remains,
+    "effect missed sweep held left_out",
+    missed=lambda found: {
+        name: {"rms": one.size, "log_evidence": one.proof, "over": one.missed_over}
+        for name, one in (found.linear.channels if found.linear else {}).items()
+    },
+)
 keys(OddSweep, "name looks_like=looks")
 keys(HeldNumber, "name sigma share")
 keys(

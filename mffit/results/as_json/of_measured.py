@@ -45,7 +45,6 @@ keys(
 )
 keys(
     SetupScatter,
-    "load_N setups between_N degrees_of_freedom declared_N chance within_N degrees_of_freedom_within stated_N "
-    "between_alpha_deg declared_alpha_deg excess_N",
+    "load_N setups between_N degrees_of_freedom declared_N chance excess_N",
 )
 keys(Alignment, "correction_deg u_correction_deg=u_deg u_axis_deg aligned steps warnings")

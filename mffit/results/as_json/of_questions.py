@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from pathlib import Path
 
 from mffit.comparison import Comparison, Difference
 from mffit.comparison import wording as compared
@@ -18,19 +16,17 @@ from mffit.diagnosis.validation import Gap, Validation
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.hierarchy import Hierarchy, Population
 from mffit.fleet.record import FleetScatter, Row
-from mffit.planning import Plan, PlannedRun, PlanStep, Tie, Trial
+from mffit.planning import Plan, PlannedRun, PlanStep
 from mffit.planning import wording as planned
 from mffit.planning.goals import Goal
 from mffit.points.stretch import stretch_table
 from mffit.quantities import column
 from mffit.recordings import Sniffed
-from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import SniffedRecording
 from mffit.recordings.summary import BadRun
+from mffit.recordings.unstated import Guess
 from mffit.results.as_json.of_build import estimates, of_rig
-from mffit.results.values import Json, document, keys, plain
-from mffit.results.verification import Verification
-from tir.errors import Problem
+from mffit.results.values import document, keys
 
 keys(
     Diagnosis,
@@ -70,20 +66,14 @@ keys(
 # Uncertainties of a plan are in the goal's unit, k = 1 except for bands; null if not measured.
 keys(
     Plan,
-    "goal headline promise identified ties=identified.ties u_now=now u_then=then "
-    "u_epsilon_gamma_direct=direct_now u_epsilon_gamma_joint=joint_now runs=steps alone=trials",
+    "goal headline promise identified u_now=now u_then=then runs=steps alone=trials",
     headline=planned.headline,
     promise=planned.promise,
     identified=lambda found: planned.identified(found.identified),
 )
 keys(Goal, "kind name label unit")
-keys(Tie, "* told")
-keys(
-    PlanStep,
-    "**run u_before=before u_after=after u_epsilon_gamma_direct=direct u_epsilon_gamma_joint=joint",
-)
-keys(Trial, "**run u_after=u")
-keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost rig", title=planned.title)
+keys(PlanStep, "**run u_before=before u_after=after")
+keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost", title=planned.title)
 
 keys(Comparison, "first second headline numbers coefficients curves sweeps notes", headline=compared.headline)
 keys(Difference, "* change u_change=u in_u=z")
@@ -131,31 +121,8 @@ keys(Guess, "* channel=channel.name")
 keys(BadRun, "file=recording lines why")
 
 keys(
-    Verification,
-    "folder same headline numbers exact method version libraries changes notes",
-    method=lambda found: _then_and_now(found.method),
-    version=lambda found: _then_and_now(found.version),
-    libraries=lambda found: _then_and_now(found.libraries),
-)
-
-
-def _then_and_now(pair: tuple[object, object]) -> dict[str, object]:
-    return dict(zip(("stored", "now"), pair, strict=True))
-
-
-keys(
     Conversion,
     "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
     trusted=lambda found: not converted.reasons(found),
     reasons=converted.reasons,
 )
-
-
-def conversion(found: Conversion, out: Path) -> dict[str, Json]:
-    """The output of ``mffit convert --json``: SI units, shares of 1."""
-    return {"file": str(found.old.path), "written": str(out), **document(found)}
-
-
-def problems(path: Path, found: Sequence[Problem]) -> dict[str, Json]:
-    """The output of ``mffit check --json``."""
-    return {"file": str(path), "problems": plain(list(found))}

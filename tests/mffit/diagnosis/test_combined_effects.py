@@ -33,7 +33,7 @@ def gains(effect: str, folder, added=()) -> dict[str, float]:
     start = Simulation.of(given, turn_slip=False)
     problem = DiagnosisProblem(read, start, stated_noise(read, channels=channels_of(read)))
     candidates, _ = possible(CATALOG, read, start)
-    return {found.id: gain for found, gain, _ in problem.promising(problem.null, candidates)}
+    return {found.id: gain for found, gain in problem.promising(problem.null, candidates)}
 
 
 @pytest.mark.parametrize("effect", HIDDEN)

@@ -13,10 +13,8 @@ from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Scatter
 from mffit.diagnosis.prediction import LeftOutPrediction
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.remainder import Remainder
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.structure import structure
 from mffit.diagnosis.validation import gap, validate
 from mffit.diagnosis.where import where
 from mffit.points import make_points
@@ -133,28 +131,3 @@ def test_noise_has_no_bump_over_slip(driven):
         replace(driven.null, residual=rng.standard_normal(len(driven.null.residual))) for _ in range(300)
     )
     assert sum(scan.best(one).found for one in draws) <= 3
-
-
-def test_residuals_over_slip_are_compared_where_slip_was_swept(driven):
-    """Noise alone is called structure by its chance; a wave over slip is named over slip."""
-    rng = np.random.default_rng(6)
-    n, channels = len(driven.points), ("Fx", "Fy", "Mz")
-
-    def left(residual: np.ndarray) -> Remainder:
-        return Remainder(
-            points=driven.points,
-            simulation=driven.start,
-            channels=channels,
-            residual=residual,
-            axes=np.zeros((3 * n, 0)),
-            sigma=np.ones(3 * n),
-            free=frozenset(),
-            expected={},
-            noise={},
-        )
-
-    chances = [structure(left(rng.standard_normal(3 * n))).chance for _ in range(15)]
-    assert np.sum(np.array(chances) < 0.01) <= 2
-    wave = np.concatenate([np.where(np.abs(driven.points.kappa) > 0.15, 1.5, 0.0), np.zeros(2 * n)])
-    found = structure(left(rng.standard_normal(3 * n) + wave)).found
-    assert ("Fx", "kappa") in {(c.channel, c.over) for c in found}

@@ -110,7 +110,7 @@ def test_a_model_of_another_tyre_is_said(right_model):
 
 def test_the_same_input_gives_the_same_answer(stiffer_camber):
     case, config, points = stiffer_camber
-    first, second = (as_json.diagnosis(diagnose(points, case.given, config)) for _ in range(2))
+    first, second = (as_json.document(diagnose(points, case.given, config)) for _ in range(2))
     assert first == second
 
 

@@ -84,7 +84,7 @@ def test_offsets_of_runs_are_checked_within_the_runs(problem):
     """Left-out runs say nothing about their own offsets: half of each run must predict the other."""
     points = problem.points
     files = sorted({points.files[k] for k in np.unique(points.file)})
-    offsets = BY_ID["run-offsets-fy"].of_parts(files)
+    offsets = BY_ID["run-offsets-fy"].written_out(files, ())
     drawn = dict(zip(files, np.random.default_rng(2).normal(0.0, 20.0, len(files)).tolist(), strict=True))
     moved = problem.points.replace(Fy=points.Fy + np.array([drawn[points.files[k]] for k in points.file]))
     shifted = DiagnosisProblem(moved, problem.start, problem.noise)

@@ -1,4 +1,4 @@
-"""What a fit leaves: the effect that explains it is named with its size, and noise alone is neither structure nor effect."""
+"""What a fit leaves: the effect that explains it is named with its size, and noise alone is no effect."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from small_rigs import LEAN, built, disc
 
-from mffit.diagnosis import wording
-from mffit.diagnosis.one_step import best_effect
-from mffit.diagnosis.remainder import Remainder, left_out_sweeps, remainder
-from mffit.diagnosis.structure import structure
+from mffit.diagnosis.remains import Left, best_effect
 from mffit.effects import CATALOG
+from mffit.fit.fitted import left_by
+from mffit.linearised import LinearisedFit, linearised
 
 DRAWS = 120
+CERTAIN = 12.5
 
 
 @pytest.fixture(scope="module")
@@ -26,23 +26,19 @@ def falling(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def left(falling) -> Remainder:
-    return remainder(falling.fit.search)
+def left(falling) -> Left:
+    return Left.of(falling.fit.search, left_by(falling.fit.search))
 
 
-@pytest.fixture(scope="module")
-def drawn(left):
-    """Remainders of sound readings: the same fit, residuals drawn from the covariance that it leaves, 1 - A A'."""
-    rng = np.random.default_rng(8)
-    q, s, _ = np.linalg.svd(left.axes, full_matrices=False)
-    shrink = 1.0 - np.sqrt(np.maximum(1.0 - s**2, 0.0))
-    used = np.append(left.used, np.ones(len(left.residual) - len(left.sigma), bool))
+def with_residual(left: Left, residual: np.ndarray) -> Left:
+    return left._replace(joint=replace(left.joint, model=replace(left.joint.model, residual=residual)))
 
-    def one() -> Remainder:
-        y = rng.standard_normal(len(left.residual)) * used
-        return replace(left, residual=y - q @ (shrink * (q.T @ y)))
 
-    return [one() for _ in range(DRAWS)]
+def moved(left: Left, change: np.ndarray) -> Left:
+    """The same where the readings (c n,) differ by a change."""
+    residual = left.joint.model.residual.copy()
+    residual[: len(change)] += np.nan_to_num(change) / left.joint.sigma.ravel()
+    return with_residual(left, residual)
 
 
 def test_the_effect_is_named_with_its_size_although_the_misfit_is_at_the_noise(falling):
@@ -56,49 +52,33 @@ def test_the_effect_is_named_with_its_size_although_the_misfit_is_at_the_noise(f
     assert any("load that changes with camber" in said for said in falling.warnings)
 
 
-def test_residuals_of_sound_readings_show_no_effect(drawn):
-    """The chance of any effect is uniform: 1 % of sound fits below 0.01, so 120 have 5 or more with a probability of 0.8 %."""
-    chances = np.array([best_effect(one).chance for one in drawn])
-    assert np.sum(chances < 0.01) <= 4
-    assert 0.25 < np.mean(chances < 0.5) < 0.65  # Bonferroni is a little too careful
+def test_residuals_of_sound_readings_show_no_effect(left):
+    """Numbers drawn from their priors, and noise: 1 % of sound fits have a chance below 0.01.
 
-
-def test_residuals_of_sound_readings_are_random(drawn):
-    chances = np.array([structure(one).chance for one in drawn])
-    assert np.sum(chances < 0.01) <= 4
-    assert 0.2 < np.mean(chances < 0.5) < 0.65
-
-
-def with_shape(sound: Remainder, shape: np.ndarray, chi2: float = 200.0) -> Remainder:
-    """The remainder with a change of Fy (n,), as large as raises the sum of squares that the fit cannot follow by ``chi2``."""
-    rows = np.zeros(len(sound.residual))
-    rows[: len(shape)] = shape
-    own = sound.outside(rows)
-    return replace(sound, residual=sound.residual + np.sqrt(chi2 / (rows @ own)) * own)
-
-
-@pytest.mark.parametrize(
-    ("condition", "over"),
-    [("gamma", "gamma_deg"), ("Fz", "Fz_N"), ("direction", "direction of rolling")],
-)
-def test_structure_is_found_over_the_condition_that_causes_it(left, drawn, condition, over):
-    """Beyond what the fitted numbers follow, where a condition is large, or rolling backwards."""
-    values = np.asarray(getattr(left.points, condition), float)
-    large = np.abs(values) >= np.quantile(np.abs(values), 0.8)
-    found = structure(
-        with_shape(drawn[0], np.where(values < 0.0 if condition == "direction" else large, 1.0, 0.0))
+    120 have 5 or more with a probability of 0.8 %.
+    """
+    rng, model = np.random.default_rng(8), left.joint.model
+    used = np.append(
+        np.isfinite(left.joint.sigma.ravel()), np.ones(len(model.residual) - left.joint.sigma.size)
     )
-    assert found.chance < 1e-4
-    assert over in {c.over for c in found.found}
-    assert "Fy" in wording.structure(found)
+    chances = []
+    for _ in range(DRAWS):
+        numbers, noise = (rng.standard_normal(n) for n in (model.common.shape[1], len(used)))
+        chances.append(best_effect(with_residual(left, model.common @ numbers + used * noise)).chance)
+    assert np.sum(np.array(chances) < 0.01) <= 4
+    assert 0.25 < np.mean(np.array(chances) < 0.5) < 0.65  # Bonferroni is a little too careful
 
 
 def test_an_effect_that_explains_other_residuals_is_no_rival(left):
     """Crosstalk in Fy and a zero of Mz explain as much, each in its channel; the twin of one explains the same as it."""
     by_id = {effect.id: effect for effect in CATALOG}
-    both, nothing = replace(left, residual=np.zeros(len(left.residual))), np.zeros(len(left.points))
-    for shape in ((left.points.Fz, nothing), (nothing, nothing + 1.0)):
-        both = with_shape(both, np.concatenate(shape) / left.sigma)
+    u = dict(zip(left.joint.channels, left.joint.sigma, strict=True))
+    both = with_residual(left, np.zeros(len(left.joint.model.residual)))
+    for channel, shape in (("Fy", left.points.Fz), ("Mz", np.ones(len(left.points)))):
+        change = np.concatenate([shape * (name == channel) for name in left.joint.channels])
+        own = left.joint.further(np.append(change / np.concatenate([*u.values()]), np.zeros(
+            len(left.joint.model.residual) - len(change)))[:, None])  # fmt: skip
+        both = moved(both, change * np.sqrt(200.0 / own.information[0, 0]))
     of_fy, of_mz = by_id["crosstalk-fz-fy"], by_id["loadcell-offset-mz"]
     for effect in (of_fy, of_mz):
         other = of_mz if effect is of_fy else of_fy
@@ -108,46 +88,47 @@ def test_an_effect_that_explains_other_residuals_is_no_rival(left):
         assert best_effect(both, (effect, other)).rivals == ()
 
 
-def test_neighbours_that_agree_are_found_along_the_sweeps(left, drawn):
-    """Slow waves along every sweep with a phase of their own."""
-    rng = np.random.default_rng(2)
-    wave = np.zeros(len(left.points))
-    for k in np.unique(left.points.sweep):
-        rows = np.flatnonzero(left.points.sweep == k)
-        wave[rows] = np.sin(0.7 * np.arange(len(rows)) + rng.uniform(0.0, 6.3))
-    found = structure(with_shape(drawn[1], wave))
-    assert "the course of the sweeps" in {c.over for c in found.found if c.channel == "Fy"}
-
-
-def test_a_left_out_sweep_is_predicted_as_a_fit_without_it_would(left):
-    """Against solving the linear problem anew without the rows of the sweep; A A' = J (J'J + P)^-1 J'."""
-    rng = np.random.default_rng(5)
-    n, k = 40, 4
-    J, P = rng.standard_normal((n, k)), np.diag([0.5, 1e-6, 2.0, 1e-6])
-    y = rng.standard_normal(n)
-    rows = np.arange(n) < 9
-    axes = J @ np.linalg.inv(np.linalg.cholesky(J.T @ J + P)).T
-    whole = replace(left, residual=y - axes @ (axes.T @ y), axes=axes)
-    x = np.linalg.solve(J[~rows].T @ J[~rows] + P, J[~rows].T @ y[~rows])
-    assert whole.left_out(np.where(rows, 0, -1))[rows] == pytest.approx(y[rows] - J[rows] @ x, rel=1e-6)
-
-
-def test_left_out_sweeps_are_predicted_worse_than_they_are_fitted(left, falling):
-    found = left_out_sweeps(left)
-    for k, channel in enumerate(left.channels):
-        used = left.used[k * len(left.points) : (k + 1) * len(left.points)]
-        misfit = (left.points.channel(channel) - falling.fit.model[channel])[used]
-        assert found[channel].sweeps == len(left.points.sweep_names)
-        assert found[channel].fitted == pytest.approx(np.sqrt(np.mean(misfit**2)), rel=0.1)
-        assert found[channel].predicted > found[channel].typical > found[channel].fitted
-
-
 @pytest.mark.parametrize("amount", [-2.26, 2.26])
 def test_an_effect_of_an_impossible_size_is_not_suggested(left, amount):
     """A load that changes by 226 % with camber: its shape alone, some 60 standard deviations strong."""
-    slope = left.simulation.sensitivities(left.points, ["load_camber"], left.channels)[1].stacked[:, :1]
-    far = best_effect(
-        replace(left, residual=left.residual + amount * left.outside(left.whitened(slope)[:, 0]))
-    )
+    slope = left.fitted.simulation.sensitivities(left.points, ["load_camber"], left.joint.channels)[1].stacked
+    far = best_effect(moved(left, amount * slope[:, 0]))
     assert all(step.effect.id != "load-camber" for step in (far.best, *far.rivals))
     assert best_effect(left).best.effect.id == "load-camber"
+
+
+def missed(falling, rng: np.random.Generator, shape: np.ndarray | float) -> LinearisedFit:
+    """What is left of readings of the fitted model with noise and a further force (n,)."""
+    fit, points = falling.fit.search, falling.points
+    read = fit.simulation.readings(points, fit.problem.sigma)
+    noisy = {name: read[name] + u * rng.standard_normal(len(u)) for name, u in fit.problem.sigma.items()}
+    return linearised(
+        points.replace(**noisy | {"Fy": noisy["Fy"] + shape}), fit.simulation, fit.problem.sigma, ()
+    )
+
+
+def test_a_formula_that_misses_nothing_is_not_said_to(falling):
+    rng = np.random.default_rng(5)
+    proofs = [one.proof for _ in range(25) for one in missed(falling, rng, 0.0).channels.values()]
+    assert max(proofs) < CERTAIN
+    assert np.median(proofs) < 2.0
+
+
+@pytest.mark.parametrize("over", ["gamma", "Fz"])
+def test_what_is_missed_is_found_over_the_condition_that_causes_it(falling, over):
+    """Where a condition is large; the other channel misses nothing."""
+    values = np.asarray(getattr(falling.points, over), float)
+    large = np.abs(values) >= np.quantile(np.abs(values), 0.8)
+    found = missed(falling, np.random.default_rng(7), np.where(large, 30.0, 0.0)).channels
+    assert found["Fy"].proof > CERTAIN
+    assert found["Fy"].missed_over[over] > CERTAIN
+    assert found["Mz"].proof < CERTAIN
+
+
+def test_left_out_sweeps_are_predicted_worse_than_they_are_fitted(falling):
+    for channel, found in falling.remains.left_out.items():
+        used = np.isfinite(falling.fit.search.problem.sigma[channel])
+        misfit = np.where(used, falling.points.channel(channel) - falling.fit.model[channel], np.nan)
+        assert found.sweeps == len(falling.points.sweep_names)
+        assert found.fitted == pytest.approx(np.sqrt(np.nanmean(misfit**2)), rel=0.1)
+        assert found.predicted > found.fitted

@@ -41,7 +41,7 @@ class Table:
     def promising(self, before, candidates):
         beside = frozenset(e.id for e in before.effects)
         known = {e: self.evidence.get(beside | {e.id}, (0.0,))[0] for e in candidates}
-        return [(e, max(value - before.log_evidence, 0.0), self) for e, value in known.items()]
+        return [(e, max(value - before.log_evidence, 0.0)) for e, value in known.items()]
 
     def at_amplitude(self, smooth):
         return self
@@ -76,6 +76,6 @@ def test_the_search_ends_if_a_set_looks_worse_at_every_visit():
     assert chosen(problem, A, B, C) == ["b"]
 
 
-def test_an_exchange_that_helps_is_made():
+def test_two_effects_that_are_better_together_replace_the_first():
     problem = Table(a=(60.0,), b=(40.0,), c=(40.0,), ab=(80.0,), ac=(75.0,), bc=(120.0,), abc=(121.0,))
     assert chosen(problem, A, B, C) == ["b", "c"]

@@ -45,7 +45,9 @@ def test_the_best_bump_is_that_of_whole_whitened_shapes():
     found = scan.best(SimpleNamespace(axes=axes, residual=residual))
     gains = []
     for name in noise.channels:
-        shapes, spread = noise.whiten(scan.column(name, slice(None))), scan.spread[name]
+        nothing = np.zeros(scan.bumps.shape)
+        columns = np.vstack([scan.bumps if one == name else nothing for one in noise.channels])
+        shapes, spread = noise.whiten(columns), scan.spread[name]
         inside = axes.T @ shapes
         score = shapes.T @ residual - inside.T @ (axes.T @ residual)
         precision = np.sum(shapes**2, axis=0) - np.sum(inside**2, axis=0) + spread**-2

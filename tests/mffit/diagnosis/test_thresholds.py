@@ -48,14 +48,6 @@ def test_all_of_a_small_library_may_be_taken():
     assert len(steps) == 2
 
 
-@pytest.mark.parametrize(("gain", "taken"), [(1.2, ["a", "b"]), (1.8, ["b", "c"])])
-def test_a_set_is_exchanged_for_one_that_is_better_than_a_tie(gain, taken):
-    problem = Table(
-        a=(60.0,), b=(40.0,), c=(40.0,), ab=(80.0,), ac=(75.0,), bc=(80.0 + gain,), abc=(81.0 + gain,)
-    )
-    assert chosen(problem, A, B, C) == taken
-
-
 def test_an_effect_that_became_needless_is_dropped():
     """c is added first; a and b together make it needless."""
     problem = Table(a=(50.0,), b=(45.0,), c=(60.0,), ab=(120.0,), ac=(90.0,), bc=(70.0,), abc=(121.0,))

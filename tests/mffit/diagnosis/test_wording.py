@@ -26,7 +26,7 @@ from mffit.diagnosis.notes import (
     OneSweep,
     WithoutNoise,
 )
-from mffit.diagnosis.one_step import BestEffect, OneStep
+from mffit.diagnosis.remains import BestEffect, OneStep
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
@@ -174,7 +174,7 @@ def test_every_note_becomes_a_sentence(note, words):
 
 
 def test_the_file_keeps_its_keys(camber):
-    content = as_json.diagnosis(replace(camber, notes=(OneSweep(),)))
+    content = as_json.document(replace(camber, notes=(OneSweep(),)))
     assert list(content) == [
         "trusted", "reasons",
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "limits", "unexplained",

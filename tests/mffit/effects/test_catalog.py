@@ -38,7 +38,6 @@ def test_a_record_says_what_a_reader_needs(effect):
     assert effect.name
     assert effect.physics.endswith(".")
     assert effect.kind in {"tyre", "rig", "environment"}
-    assert effect.parity, f"{effect.id} does not say how it behaves under reversed angles"
     assert set(effect.needs) <= set(NEEDS)
     assert set(effect.confusable_with) <= set(ids()) - {effect.id}
 

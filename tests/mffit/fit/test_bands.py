@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 import small_rigs
 
-from mffit.fit.bands import (
-    BandOfCombined,
-    BandsByPressure,
-    band_of_combined,
-    band_of_other_side,
-    bands_by_pressure,
-)
+from mffit.fit.bands import BandBesideSweeps, Bands, bands
 from mffit.fit.posterior import Posterior
-from mffit.fit.wording import bands_sentence, combined_sentence, other_side_sentence
+from mffit.fit.wording import bands_sentence, beside_sentence
 from mffit.points import make_points
 from mffit.rig import Simulation
 from tests.mffit.fit import combined_programme as belt
@@ -28,7 +22,7 @@ def found(pressures, **changes):
     p = 1e3 * np.array([*[250.0] * 20, *np.repeat(pressures, 10)])
     points = make_points(np.linspace(-0.1, 0.1, len(p)), 0.0, 1400.0, p=p, V=10.0, phi_t=0.0)
     posterior = Posterior((*U, "F0_N"), np.diag([*np.square(list(U.values())), 25.0]))
-    return tyre, bands_by_pressure(posterior, {"PPY2"}, Simulation.of(tyre), points)
+    return tyre, bands(posterior, {"PPY2"}, Simulation.of(tyre), points)
 
 
 def by_differences(tyre, name, p):
@@ -42,38 +36,38 @@ def by_differences(tyre, name, p):
 
 
 def test_at_the_pressure_of_the_sweeps_a_pressure_term_does_not_count():
-    tyre, bands = found([200.0, 300.0])
-    assert bands.main == pytest.approx(250e3)
-    assert bands.half == pytest.approx(by_differences(tyre, "PKY1", 250e3), rel=0.01)
+    tyre, wide = found([200.0, 300.0])
+    assert wide.main == pytest.approx(250e3)
+    assert wide.half == pytest.approx(by_differences(tyre, "PKY1", 250e3), rel=0.01)
 
 
 def test_elsewhere_it_counts_and_is_named_with_its_share():
-    tyre, bands = found([200.0, 300.0])
+    tyre, wide = found([200.0, 300.0])
     whole, own = (
         np.sqrt(np.mean([by_differences(tyre, name, p) ** 2 for p in (200e3, 300e3)]))
         for name in ("PKY1", "PPY2")
     )
-    assert bands.others == (200e3, 300e3)
-    assert bands.half_of_others == pytest.approx(np.hypot(whole, own), rel=0.01)
-    assert bands.unseen == "PPY2"
-    assert bands.share == pytest.approx(own**2 / (own**2 + whole**2), rel=0.01)
-    said = bands_sentence(bands, U, tyre.values, "one load only")
-    assert f"+-{bands.half_of_others:.0f} N at 200, 300 kPa" in said
+    assert wide.others == (200e3, 300e3)
+    assert wide.half_of_others == pytest.approx(np.hypot(whole, own), rel=0.01)
+    assert wide.unseen == "PPY2"
+    assert wide.share == pytest.approx(own**2 / (own**2 + whole**2), rel=0.01)
+    said = bands_sentence(wide, U, tyre.values, "one load only")
+    assert f"+-{wide.half_of_others:.0f} N at 200, 300 kPa" in said
     assert "PKY1" not in said
 
 
 def test_a_nominal_pressure_that_was_not_run_is_one_of_the_others():
-    tyre, bands = found([], NOMPRES=290e3)
-    assert bands.others == (290e3,)
-    wide = BandsByPressure(250e3, 20.0, (200e3, 290e3), 50.0, "PPY2", 0.9)
+    tyre, wide = found([], NOMPRES=290e3)
+    assert wide.others == (290e3,)
+    wide = Bands(250e3, 20.0, (200e3, 290e3), 50.0, "PPY2", 0.9)
     assert "values at the nominal 290 kPa: PKY1 and PKY2 share" in bands_sentence(wide, U, tyre.values, "")
 
 
 def test_one_pressure_needs_no_word():
-    tyre, bands = found([])
-    assert bands.others == ()
-    assert not bands.wider
-    assert bands_sentence(bands, U, tyre.values, "") == ""
+    tyre, wide = found([])
+    assert wide.others == ()
+    assert not wide.wider
+    assert bands_sentence(wide, U, tyre.values, "") == ""
 
 
 def test_one_sideslip_with_slip_leaves_the_way_there_to_the_formula():
@@ -84,24 +78,26 @@ def test_one_sideslip_with_slip_leaves_the_way_there_to_the_formula():
     together = np.array([1.0, slope]) * 0.1
     posterior = Posterior(("RCX1", "RBX1"), np.outer(together, together))
     simulation = Simulation.of(tyre.replace(REX1=0.0, REX2=0.0, RBX2=0.0), turn_slip=False)
-    one = band_of_combined(posterior, simulation, belt.programme(sideslips=(0.0, 5.0)))
-    assert one is not None
+
+    def combined(**programme):
+        return bands(posterior, (), simulation, belt.programme(**programme)).combined
+
+    one = combined(sideslips=(0.0, 5.0))
     assert one.sideslip == pytest.approx(np.radians(5.0), rel=0.01)
     assert one.wider
-    assert one.half_at < 0.1 * one.half_between
-    both_sides = band_of_combined(posterior, simulation, belt.programme(sideslips=(-5.0, 0.0, 5.0)))
-    assert both_sides is not None
-    assert band_of_combined(posterior, simulation, belt.programme()) is None
-    assert band_of_combined(posterior, simulation, belt.programme(sideslips=(0.0,))) is None
-    assert band_of_combined(posterior, simulation, belt.programme(driven=False)) is None
+    assert one.half_at < 0.1 * one.half_beside
+    assert combined(sideslips=(-5.0, 0.0, 5.0)) is not None
+    assert combined() is None
+    assert combined(sideslips=(0.0,)) is None
+    assert combined(driven=False) is None
 
 
 def test_what_one_sideslip_leaves_open_is_said_with_both_bands():
-    said = combined_sentence(BandOfCombined(np.radians(4.0), 9.0, 61.0))
+    said = beside_sentence(BandBesideSweeps("Fx", np.radians(4.0), 9.0, np.radians(2.0), 61.0))
     assert "run at 4.0 deg only" in said
     assert "+-61 N at 2.0 deg" in said
     assert "+-9 N at 4.0 deg" in said
-    assert combined_sentence(BandOfCombined(np.radians(4.0), 9.0, 10.0)) == ""
+    assert beside_sentence(BandBesideSweeps("Fx", np.radians(4.0), 9.0, np.radians(2.0), 10.0)) == ""
 
 
 def test_the_side_that_was_not_run_shares_what_friction_and_conicity_leave_open():
@@ -119,12 +115,11 @@ def test_the_side_that_was_not_run_shares_what_friction_and_conicity_leave_open(
     together = np.array([u, -u * (far["PVY1"] - still) / (far["PDY1"] - still)])
     posterior = Posterior(("PVY1", "PDY1"), np.outer(together, together))
     simulation = Simulation.of(tyre, turn_slip=False)
-    band = band_of_other_side(posterior, simulation, points)
-    assert band is not None
-    assert band.half < 0.1 * band.half_opposite
-    assert band.half_opposite == pytest.approx(
+    band = bands(posterior, (), simulation, points).other_side
+    assert band.half_at < 0.1 * band.half_beside
+    assert band.half_beside == pytest.approx(
         2 * 1.96 * u * np.sqrt((900.0**2 + 1150.0**2 + 1400.0**2) / 3), rel=0.1
     )
-    assert f"+-{band.half_opposite:.0f} N at -8.6 deg" in other_side_sentence(band)
+    assert f"+-{band.half_beside:.0f} N at -8.6 deg" in beside_sentence(band)
     both = points.replace(alpha=np.linspace(-0.1, 0.1, 16))
-    assert band_of_other_side(posterior, simulation, both) is None
+    assert bands(posterior, (), simulation, both).other_side is None

@@ -7,15 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mffit.diagnosis.one_step import best_effect
-from mffit.diagnosis.remainder import remainder
+from mffit.diagnosis.remains import Left, best_effect
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
+from mffit.fit.fitted import left_by
 from mffit.fit.known import known_before_fit
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
 from mffit.fit.start import starting_values
-from mffit.fit.wheel.overturning import overturning_terms
 from mffit.fit.wording import _held_by_bounds
 from mffit.pipeline.measuring import measure
 from tests.mffit.fit import combined_programme as belt
@@ -50,13 +49,13 @@ def test_an_undeclared_crosstalk_is_the_best_effect_in_the_residuals(found):
     unaware = replace(
         fit, problem=fit.problem.with_values({name: 0.0}), numbers=[n for n in fit.numbers if n.name != name]
     )
-    best = best_effect(remainder(unaware))
+    best = best_effect(Left.of(unaware, left_by(unaware)))
     assert best.best.effect.id == "crosstalk-fx-mx"
     assert best.significant
     assert not best.rivals
     value, u = best.best.numbers[name]
     assert value == pytest.approx(belt.FX_INTO_MX, abs=4.0 * u)
-    after = best_effect(remainder(fit))
+    after = best_effect(Left.of(fit, left_by(fit)))
     assert after.best.effect.id != "crosstalk-fx-mx"
     assert not after.significant
 
@@ -96,19 +95,6 @@ def test_the_file_says_which_slips_were_run(found):
     assert found.written.status["KPUMAX"]
 
 
-def test_further_terms_of_the_overturning_moment_are_taken_only_where_they_predict_better(points):
-    """An arm of the side force is found beside the zero of the rig; where there is none, no term is added."""
-    values = {**belt.truth().values, "QSX1": 0.0, "QSX2": 0.0, "QSX3": 0.0}
-    plain = overturning_terms(points, values, "left", NO_HAND)
-    assert plain.predicting == ()
-    for name in ("QSX1", "QSX2", "QSX3"):
-        assert plain.start[name] == pytest.approx(belt.DRIVEN[name], rel=0.1, abs=1e-3), name
-    arm = 0.05 * 0.2992 * points.Fy
-    for size, terms in ((1.0, ("Mx-arm",)), (0.02, ())):  # the second: 0.25 Nm at 2 Nm of noise
-        moved = replace(points, Mx=points.Mx + size * arm)
-        assert overturning_terms(moved, values, "left", NO_HAND).predicting == terms
-
-
 def test_no_start_is_dead(points):
     """Every free coefficient changes some reading at the start: a product of factors that are all 0 would never move."""
     project = belt.config()
@@ -119,11 +105,8 @@ def test_no_start_is_dead(points):
         ("RBX2", "RBY2", "RVY1", "RVY3", "RVY4", "RVY5", "RVY6", "QSX1", "QSX2", "QSX3"), 0.0
     )
     values = {**known.values, **zero}
-    moment = overturning_terms(points, values, "left", NO_HAND)
-    start = {**starting_values(values, points, measured), **moment.start}
-    plan = fit_plan(
-        project, points, measured, replace(known, values=values), start, {}, predicting=moment.predicting
-    )
+    start = starting_values(values, points, measured)
+    plan = fit_plan(project, points, measured, replace(known, values=values), start, {})
     problem = fit_problem(project, points, measured, values, plan.channels).with_values(
         {name: start[name] for name in plan.free}
     )

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.fit.wording import explanations, file_sentences, pecp1_sentence, ranges_sentence
+from mffit.fit.wording import PECP1_IS, explanations, file_sentences, ranges_sentence
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures, Misfit
 
@@ -131,12 +131,11 @@ def test_pressures_of_one_level_are_one(lowest, words):
     [
         ("debiased", "is the measured eps_gamma 0.1200 less the bias"),
         ("direct", "is the measured eps_gamma itself"),
-        ("joint", "is the joint estimate of tyre and rig"),
+        ("model", "is the joint estimate of tyre and rig"),
     ],
 )
 def test_the_origin_of_pecp1_is_stated(source, words):
-    said = pecp1_sentence(source, 0.1034, 0.12)
-    assert said.startswith("PECP1 = 0.1034 ")
+    said = f"is {PECP1_IS[source].format(measured=0.12)}"
     assert words in said
     assert ("0.1200" in said) == (source != "direct")
 
@@ -145,7 +144,7 @@ def test_the_origin_of_pecp1_is_stated(source, words):
 def test_pecp1_is_explained_where_it_was_measured(measured):
     config = SimpleNamespace(
         tyre=SimpleNamespace(name="small"),
-        spin=SimpleNamespace(exact="turn-slip", pecp1="joint"),
+        spin=SimpleNamespace(exact="turn-slip", pecp1="model"),
         rig=SimpleNamespace(on_disc=True),
     )
     epsilon = SimpleNamespace(epsilon_gamma=SimpleNamespace(value=0.12) if measured else None)

@@ -11,8 +11,6 @@ import small_rigs
 import mffit.constants
 import mffit.diagnosis.constants
 import mffit.rig.constants
-from mffit.diagnosis.remainder import remainder
-from mffit.diagnosis.structure import structure
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.least_squares import Linear, condensed
 
@@ -80,17 +78,3 @@ def test_the_choice_of_influences_is_that_in_one_piece(built, in_small_blocks):
         assert dict(new.beside) == pytest.approx(dict(old.beside), rel=1e-7)
         assert dict(new.without) == pytest.approx(dict(old.without), rel=1e-7)
     assert any(verdict.without for verdict in before)
-
-
-def test_of_many_points_some_are_examined_with_their_own_uncertainty(built, monkeypatch):
-    whole = remainder(built.fit.search)
-    every = 3
-    monkeypatch.setattr(mffit.diagnosis.constants, "MOST_POINTS_EXAMINED", -(-len(whole.points) // every))
-    some = remainder(built.fit.search)
-    rows = np.arange(0, len(whole.points), every)
-    assert np.array_equal(some.points.alpha, whole.points.alpha[rows])
-    assert np.array_equal(some.sigma[: len(rows)], whole.sigma[rows])
-    # Fewer readings are followed more closely, so that their residuals are smaller.
-    both = np.concatenate([rows, len(whole.points) + rows])
-    assert 0.5 < np.std(some.residual) / np.std(whole.residual[both]) < 1.0
-    assert structure(some).chance > 1e-3

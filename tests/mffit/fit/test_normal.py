@@ -53,8 +53,8 @@ def test_both_files_are_written_each_for_its_use(built):
     # MF-Tyre's digits: 2 circular cross-section of a motorcycle tyre, 2 nonlinear transient, 5 or 4 with or without turn slip
     assert {use: int(tyre["USE_MODE"]) for use, tyre in on_disk.items()} == {"turn-slip": 225, "normal": 224}
     assert {use_of(tyre) for tyre in on_disk.values()} == {"turn-slip", "normal"}
-    assert as_json.build(result)["files"] == result.files
-    assert as_json.build(result)["tir"] == "front-120-70.tir"
+    assert as_json.document(result)["files"] == result.files
+    assert as_json.document(result)["tir"] == "front-120-70.tir"
 
 
 def test_exact_selects_the_file_with_the_plain_name():
@@ -175,7 +175,7 @@ def test_every_value_has_an_origin(built):
     numbers = {row.name for row in TABLE if row.kind == "number"} - {"QDRP2"}
     assert numbers <= again.status.keys()
     assert again["TYRESIDE"] == "LEFT"
-    stated = as_json.build(result)["fit"]["coefficients"]
+    stated = as_json.document(result)["fit"]["coefficients"]
     assert numbers <= stated.keys()
     assert all(c["status"] and c["origin"] for c in stated.values())
 

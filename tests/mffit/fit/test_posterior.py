@@ -49,7 +49,7 @@ def test_the_band_is_the_propagated_covariance(fitted):
 
 
 def test_draws_scatter_by_the_standard_errors(fitted):
-    members = ensemble(fitted.search, 8, seed=1)
+    members = ensemble(fitted, 8, seed=1)
     assert len(members) == 8
     names = [n for n, c in fitted.coefficients.items() if c.stderr and not c.at_bound and n in members[0]]
     pulls = np.array(
@@ -61,5 +61,5 @@ def test_draws_scatter_by_the_standard_errors(fitted):
 
 
 def test_the_same_seed_draws_the_same_tyres(fitted):
-    assert ensemble(fitted.search, 1, seed=4) == ensemble(fitted.search, 1, seed=4)
-    assert ensemble(fitted.search, 1, seed=4) != ensemble(fitted.search, 1, seed=5)
+    assert ensemble(fitted, 1, seed=4) == ensemble(fitted, 1, seed=4)
+    assert ensemble(fitted, 1, seed=4) != ensemble(fitted, 1, seed=5)

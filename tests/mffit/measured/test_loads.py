@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from uncertainties import UFloat, covariance_matrix, ufloat
 
-from mffit.measured import DirectInputs, direct_method
+from mffit.measured.camber_reduction import camber_reduction
 from mffit.measured.epsilon import load_dependence
 from mffit.measured.uncertain import covariance
 
@@ -104,8 +106,7 @@ def test_the_first_order_is_that_of_random_draws():
         x + u * rng.standard_normal(n) for x, u in ((-1850.0, 40.0), (0.29, 5e-4), (1.32, 2e-3))
     )
     low, high = np.quantile(1.0 + r_e * C_gamma / (-F * R), [0.1587, 0.8413])
-    inputs = DirectInputs(
-        -390.0, -1850.0, 0.29, 1.32, u_C_gamma=40.0, u_r_e=5e-4, u_R=2e-3,
-        u_offset=31.0, u_gamma_0=0.0, u_slip_force=0.0, u_F_raw=3.0,
-    )  # fmt: skip
-    assert direct_method(inputs).epsilon_gamma.std_dev == pytest.approx((high - low) / 2.0, rel=0.05)
+    radius = ufloat(1.32, 2e-3)
+    force = ufloat(-390.0, math.hypot(31.0, 3.0))
+    epsilon = camber_reduction(-force * radius, ufloat(-1850.0, 40.0), ufloat(0.29, 5e-4))
+    assert epsilon.std_dev == pytest.approx((high - low) / 2.0, rel=0.05)

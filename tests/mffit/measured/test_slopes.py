@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
-from mffit.measured.constants import SLOPE_SHAPE
-from mffit.measured.slopes import secant_at, slope_at_zero
+from mffit.measured.stiffnesses import secant_at, slope_at_zero
 
 X = np.radians([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0])
 ONE = np.ones(len(X))
@@ -28,12 +25,8 @@ ONE = np.ones(len(X))
 def test_the_slope_of_a_saturating_curve(curve, within, sign):
     found = slope_at_zero(X, sign * curve(X), 5.0 * ONE, local=np.radians(2.0))
     assert found.value == pytest.approx(sign * 20000.0, rel=within)
-    assert found.cubic == pytest.approx(sign * 20000.0, rel=0.03)
-    assert found.points == 8
-    assert found.u_own == pytest.approx(SLOPE_SHAPE * 20000.0, rel=0.02)
-    # Noise of 5 N explains a part of the difference.
-    assert found.u_shape <= abs(found.value - found.cubic) / 2.0
-    assert found.u == pytest.approx(math.hypot(found.u_noise, found.u_shape, found.u_own))
+    assert found.u_shape < 0.5 * 0.05 * 20000.0  # a cubic is within 3 %, the shape within 2 %
+    assert found.dof == 5.0
 
 
 def test_its_noise_is_the_scatter_over_many_draws():
@@ -67,15 +60,14 @@ def test_a_misfit_of_the_shape_at_large_angles_is_no_noise():
 
 def test_without_a_cubic_a_twentieth_is_in_doubt():
     found = slope_at_zero(X, 20000.0 * X, 1e-3 * ONE, local=np.radians(1.0))
-    assert np.isnan(found.cubic)
     assert found.u_shape == pytest.approx(0.025 * 20000.0, rel=0.01)
 
 
 def test_the_cubic_ends_at_its_reach():
     """Beyond 2 deg this curve is no cubic at all."""
     broken = np.where(np.radians(2.5) > X, 20000.0 * X - 2e6 * X**3, 0.0)
-    found = slope_at_zero(X, broken, ONE, local=np.radians(2.0))
-    assert found.cubic == pytest.approx(20000.0, rel=1e-9)
+    found = slope_at_zero(X, broken, 1e-3 * ONE, local=np.radians(2.0))
+    assert found.u_shape == pytest.approx(abs(found.value - 20000.0) / 2.0, rel=1e-6)
 
 
 def test_two_angles_are_no_curve():
@@ -88,7 +80,6 @@ def test_a_secant_at_a_measured_angle_is_the_mean_of_what_was_read_there():
     found = secant_at(x, np.array([100.0, 40.0, 110.0, 150.0]), np.full(4, 6.0), np.radians(15.0))
     assert found.value == pytest.approx(105.0 / np.radians(15.0))
     assert found.u == pytest.approx(6.0 / np.sqrt(2.0) / np.radians(15.0))
-    assert found.angle == np.radians(15.0)
 
 
 def test_a_secant_between_angles_is_interpolated():
@@ -109,5 +100,5 @@ def test_shapes_that_differ_beyond_their_noise_count():
     """A curve that the saturating shape cannot follow: its slope and the cubic's differ by far more than 0.1 N explains."""
     bent = 20000.0 * X - 4e6 * X**2 + 3e7 * X**3
     found = slope_at_zero(X, bent, 0.1 * ONE, local=np.radians(2.0))
-    assert found.u_shape == pytest.approx(abs(found.value - found.cubic) / 2.0, rel=0.3)
-    assert abs(found.value - 20000.0) < 3.0 * found.u
+    assert 2.0 * found.u_shape > 0.05 * abs(found.value)
+    assert abs(found.value - 20000.0) < 3.0 * found.u_shape

@@ -105,24 +105,6 @@ def test_pressures_are_a_fifth_lower_and_higher(runs):
         assert run.points.p == pytest.approx(np.full(30, 1e3 * run.pressure_kPa))
 
 
-def test_a_number_of_the_rig_is_measured_three_times_better(runs, programme):
-    for addition in (addition for addition in ADDITIONS if addition.declares):
-        (run,) = runs[addition.id]
-        assert run.rig == {
-            addition.declares: pytest.approx(getattr(programme[0].rig, addition.declares) / 3.0)
-        }
-        assert run.cost == 0
-
-
-def test_the_path_radius_from_tape_measures_has_a_propagated_uncertainty(programme):
-    config, points = programme
-    rig = config.rig.model_dump() | {"path_radius": None, "u_path_radius": None, "u_length": 0.001}
-    rig["path"] = {"shaft_diameter": 0.1, "L_B": 1.2, "L_C": 1.25, "L_D": 1.1}
-    measured = config.model_copy(update={"rig": type(config.rig).model_validate(rig)})
-    (run,) = (run for run in candidates(measured, points) if run.addition.id == "path-radius")
-    assert 3.0 * run.rig["u_path_radius"] == pytest.approx(0.0013, abs=0.0007)  # 1 mm each
-
-
 def test_without_a_camber_sweep_small_cambers_are_proposed(programme):
     config, points = programme
     upright = points.select(np.abs(points.gamma) < np.radians(0.9))

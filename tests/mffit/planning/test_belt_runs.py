@@ -81,7 +81,7 @@ def test_what_was_never_run_gains_most(plan):
     kinds = {step.run.addition.id for step in plan.steps}
     assert kinds <= {"drive", "combined", "drive-camber", "drive-pressure"}
     assert plan.then < 0.25 * plan.now
-    alone = {trial.run.addition.id: trial.u for trial in reversed(plan.trials)}  # the best of each kind
+    alone = {trial.run.addition.id: trial.after for trial in reversed(plan.trials)}  # the best of each kind
     assert max(alone[kind] for kind in ("drive", "combined")) < alone["sideslip"]
 
 

@@ -15,7 +15,6 @@ import pytest
 from small_rigs import LOADS, SAMPLE, built, disc, truth
 
 from mffit.cli import main
-from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.pipeline.measuring import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
@@ -24,10 +23,8 @@ from mffit.planning.prospect import Prospect
 from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
-from mffit.rig_errors import DECLARED
 from tests.browser import assert_readable
 
-EFFECTS = {effect.id: effect for effect in CATALOG}
 FREE = {"PECP1": math.inf}
 ONE_SIDE = ("other-side", "other-side-camber")
 
@@ -48,14 +45,14 @@ def result(content, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def knowledge(result):
-    return prospect_of(result, EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"])
+    return prospect_of(result)
 
 
-def prospect_of(result, *effects):
+def prospect_of(result):
     def direct(*_):
         raise AssertionError("the direct method was asked")
 
-    return Prospect(result.config, result.points, result.measured, result.fit, direct, effects)
+    return Prospect(result.config, result.points, result.measured, result.fit, direct)
 
 
 def run_of(result, kind, load=1400):
@@ -89,65 +86,30 @@ def test_the_same_points_again_halve_the_variance_due_to_noise(result, knowledge
 
 
 SETTLED = {
-    "zeros": ("loadcell-offset-mz",),
-    "other-side": ("camber-reduction", "camber-misalignment"),
-    "other-side-camber": ("camber-reduction", "camber-misalignment"),
-    "second-radius": ("path-radius", "camber-reduction", "camber-misalignment"),
-    "small-camber": ("camber-stiffness",),
-    "camber-zero": ("camber-misalignment", "camber-reduction"),
-    "sideslip-zero": ("sideslip-misalignment", "ply-steer"),
-    "backward-camber": ("loadcell-offset-mz", "spin-trail-loss"),
-    "flipped": ("conicity", "crosstalk-fz-fy", "residual-torque"),
-    "sideslip": ("curvature-asymmetry",),
-    "camber": ("camber-stiffness",),
-    "coupled": (
-        "camber-grip",
-        "camber-thrust-curvature",
-        "camber-cornering-stiffness",
-        "spin-trail-loss",
-        "spin-torque",
-    ),
-    "pressure": ("pressure",),
-    "load": (
-        "load-grip",
-        "trail-load",
-        "camber-reduction-load",
-        "loadcell-offset-fy",
-        "steering-compliance",
-    ),
+    "zeros": ("PHY2",),
+    "other-side": ("PECP1", "PHY1", "gamma_0_deg"),
+    "other-side-camber": ("PECP1", "gamma_0_deg", "PKY6"),
+    "second-radius": ("PECP1", "QDTP1", "gamma_0_deg"),
+    "small-camber": ("PKY6",),
+    "backward-camber": ("camber_skew_deg", "QDZ8"),
+    "flipped": ("PVY1", "QDZ6"),
+    "sideslip": ("PDY1", "QBZ1"),
+    "camber": ("PKY6", "PKY7"),
+    "coupled": ("PDY3", "PVY3", "QDTP1"),
+    "pressure": ("PPY1", "PPY3", "PPZ1"),
+    "load": ("PKY2", "PEY2"),
 }
-"""Ids of the effects whose uncertainty an addition lowers markedly; a better measurement lowers that of its rig error."""
-
-
-def settled(addition):
-    if addition.id in SETTLED:
-        return SETTLED[addition.id]
-    (error,) = (error for error, declared in DECLARED if declared.key == addition.declares)
-    return (error.seen_as[0].id,)
-
-
+"""Numbers whose uncertainty an addition lowers markedly."""
 ON_DISCS = [addition for addition in ADDITIONS if addition.rig != "belt"]
 
 
 @pytest.mark.parametrize("addition", ON_DISCS, ids=lambda addition: addition.id)
-def test_an_addition_settles_what_it_names(result, addition):
-    """A run lowers u of an effect beside its rivals by a twelfth or more; a better declaration lowers that of its rig error."""
-    effects = [EFFECTS[name] for name in settled(addition) if len(EFFECTS[name].free) == 1]
-    rivals = {
-        e.id: [EFFECTS[name] for name in e.confusable_with if len(EFFECTS[name].free) == 1] for e in effects
-    }
-    everything = {e.id: e for e in (*effects, *(r for rows in rivals.values() for r in rows))}
-    knowledge = prospect_of(result, *everything.values())
+def test_an_addition_settles_what_it_names(result, knowledge, addition):
     runs = [run for run in candidates(result.config, result.points) if run.addition is addition]
-    assert runs
-    for effect in effects:
-        name = effect.free[0].name
-        if addition.declares and effect.kind == "rig":
-            before, after = (knowledge.posterior(more, FREE).stderr[name] for more in ([], runs))
-        else:
-            before = knowledge.u_of_effect([], effect, *rivals[effect.id])
-            after = min(knowledge.u_of_effect([run], effect, *rivals[effect.id]) for run in runs)
-        assert after < (11.0 / 12.0) * before, effect.id
+    before = knowledge.posterior([], FREE).stderr
+    after = [knowledge.posterior([run], FREE).stderr for run in runs]
+    for name in SETTLED[addition.id]:
+        assert min(found[name] for found in after) < (11.0 / 12.0) * before[name], name
 
 
 def test_additions_are_looked_up_by_id():
@@ -157,21 +119,22 @@ def test_additions_are_looked_up_by_id():
         addition_named("sun")
 
 
-def test_no_run_on_one_rig_separates_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
-    ply, axis = EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]
-    before = knowledge.u_of_effect([], ply, axis)
+def test_no_run_in_one_set_up_separates_ply_steer_from_misalignment(result, knowledge):
+    """A run on another path is a new set-up: the mean of two independent zeros."""
+    ply = {
+        kind: knowledge.posterior([run_of(result, kind)], FREE).stderr["PHY1"]
+        for kind in ("zeros", "sideslip", "other-side", "second-radius")
+    }
+    before = knowledge.posterior([], FREE).stderr["PHY1"]
     for kind in ("zeros", "sideslip"):
-        assert knowledge.u_of_effect([run_of(result, kind)], ply, axis) == pytest.approx(before, rel=0.05)
-    for kind in ("other-side", "second-radius"):  # a new set-up: the mean of two independent zeros
-        two = knowledge.u_of_effect([run_of(result, kind)], ply, axis)
-        assert two == pytest.approx(before / math.sqrt(2.0), rel=0.05)
-    zero = run_of(result, "sideslip-zero")
-    assert knowledge.u_of_effect([zero], ply, axis) < 0.7 * before
+        assert ply[kind] == pytest.approx(before, rel=0.05)
+    for kind in ("other-side", "second-radius"):
+        assert ply[kind] == pytest.approx(before / math.sqrt(2.0), rel=0.1)
 
 
 @pytest.fixture(scope="module")
 def plan(result):
-    without = [addition_named(a.id) for a in ADDITIONS if a.declares or a.id == "second-radius"]
+    without = [addition_named(a.id) for a in ADDITIONS if a.id == "second-radius"]
     return plan_of(result, read_goal("eps_gamma", on_disc=True), runs=1, without=without)
 
 
@@ -187,7 +150,7 @@ def test_the_other_side_of_the_disc_is_chosen_for_eps_gamma(result, plan):
     bias = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
     left = math.hypot(zeros / math.sqrt(2.0), *rest, 0.3 * bias)
     assert 0.9 * left < plan.then < 1.1 * left
-    assert plan.trials[0].u == pytest.approx(plan.then, rel=0.2)
+    assert plan.trials[0].after == pytest.approx(plan.then, rel=0.2)
 
 
 @pytest.fixture(scope="module")
@@ -278,15 +241,8 @@ def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result):
     runs = candidates(config, result.points)
     assert {run.addition for run in runs} == set(ON_DISCS)
     read = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
-    assert {row["file"] for row in read["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
+    assert {row["file"] for row in read["sweep"]} == {f"{r.name}.csv" for r in runs}
     assert set(read["rig"]) == {"axes"}
-    of_the_rig = additions(config, [r for r in runs if r.rig])
-    assert "sheet" not in of_the_rig
-    assert tomllib.loads(of_the_rig) == {}
-    declared = [addition.declares for addition in ADDITIONS if addition.declares]
-    assert len(declared) == 5
-    for key in declared:
-        assert f"# change in [rig]: {key} = " in of_the_rig
 
 
 def test_a_band_is_not_called_a_standard_uncertainty(plan):
@@ -319,7 +275,6 @@ def test_the_plan_lists_what_the_sweeps_identify(plan):
     said = " ".join(wording.identified(plan.identified))
     assert "not visible: " in said
     assert "pressure" in said
-    assert "Not separated: ply-steer and sideslip axis misaligned" in said
 
 
 @pytest.mark.parametrize(
@@ -340,11 +295,9 @@ def test_the_command_refuses_bad_options_before_it_builds(options, said, tmp_pat
 
 def test_the_command_names_what_it_wrote(plan, monkeypatch, capsys):
     """Sheets only with new points; without any run there is nothing to fill in."""
-    rig = [step for step in plan.steps if step.run.points is None]
     for found, more in (
         (plan, ", runs (sheets to fill in)"),
         (dataclasses.replace(plan, steps=()), ""),
-        (dataclasses.replace(plan, steps=tuple(rig)), ", runs (what changes in tyre.toml)" if rig else ""),
     ):
         monkeypatch.setattr("mffit.pipeline.plan", lambda *given, found=found, **keys: found)
         main(["plan", str(SAMPLE / "tyre.toml"), "--out", "somewhere"])

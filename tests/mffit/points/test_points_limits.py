@@ -8,13 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from mffit.points import constants
 from mffit.points.choice import ROLLING_IN, chosen, settled
 from mffit.points.faulty import Fault, faults
-from mffit.points.lag import Lag, common, measure
-from mffit.points.remarks import driven, left_out, note
+from mffit.points.remarks import dropped, faulty, note
 from mffit.points.steady import SteadySettings, moves
-from mffit.points.stretch import SWEEP, Stretch
+from mffit.points.stretch import PLATEAU, SWEEP, Stretch
 
 RATE = 50.0
 N = 500
@@ -172,40 +170,23 @@ def test_a_still_angle_is_stuck_only_while_the_force_moves(moved, found):
     assert ("alpha stuck while Fy moves" in reasons(recording(alpha=alpha, Fy=Fy))) == found
 
 
-def test_left_out_samples_are_named_with_line_time_and_number():
+def test_left_out_samples_and_points_are_named_with_line_and_number():
     which = np.isin(np.arange(N), [10, 11, 30])
-    (said,) = left_out(recording(), [Fault(which, "spikes of Fy", False)], [])
-    assert said == "run.csv:12: spikes of Fy at 0.20 s and in 2 more samples; left out"
-    (said,) = left_out(recording(), [Fault(np.arange(N) == 10, "spikes of Fy", False)], [])
-    assert said == "run.csv:12: spikes of Fy at 0.20 s; left out"
+    (said,) = faulty(recording(), [Fault(which, "spikes of Fy", False)])
+    assert said == "run.csv:12: spikes of Fy here and 2 more; left out"
+    (said,) = faulty(recording(), [Fault(np.arange(N) == 10, "spikes of Fy", False)])
+    assert said == "run.csv:12: spikes of Fy here; left out"
 
 
 @pytest.mark.parametrize(("number", "more"), [(3, ""), (4, " and 1 more")])
-def test_three_dropped_stretches_are_named(number, more):
-    plateaus = [Stretch(50 * k, 50 * k + 40, "only 1.0 s steady") for k in range(number)]
-    (said,) = left_out(recording(), [], [*plateaus, Stretch(300, 400)])
+@pytest.mark.parametrize(("kind", "what"), [(PLATEAU, "steady stretches"), (SWEEP, "sweeps")])
+def test_three_dropped_stretches_are_named(number, more, kind, what):
+    lost = [Stretch(50 * k, 50 * k + 40, "only 1.0 s steady", kind) for k in range(number)]
+    (said,) = dropped(recording(), [*lost, Stretch(300, 400, "", kind)])
     assert said.startswith(
-        f"run.csv: {number} of {number + 1} steady stretches give no point: at 0.0 s (1.72 deg sideslip, 5.73 deg camber) "
-        "only 1.0 s steady; at 1.0 s"
+        f"run.csv: {number} of {number + 1} {what} are left out: at 0.0 s only 1.0 s steady; at 1.0 s"
     )
-    assert said.endswith(f"at 2.0 s (1.72 deg sideslip, 5.73 deg camber) only 1.0 s steady{more}")
-    lost = [Stretch(50 * k, 50 * k + 40, "the tread is cold", SWEEP) for k in range(number)]
-    (said,) = left_out(recording(), [], [*lost, Stretch(300, 400, "", SWEEP)])
-    assert said.startswith(
-        f"run.csv: {number} of {number + 1} sweeps are left out: at 0.0 s the tread is cold; at 1.0 s"
-    )
-    assert said.endswith(f"at 2.0 s the tread is cold{more}")
-
-
-@pytest.mark.parametrize(
-    ("lost", "said"),
-    [([], None), ([4], "run.csv:6: one point is driven"), ([4, 7], "run.csv:6: 2 of 9 points are driven")],
-)
-def test_driven_points_are_named_with_the_first_line(lost, said):
-    nine = recording(9)
-    found = driven(nine, np.setdiff1d(np.arange(9), lost))
-    assert len(found) == (said is not None)
-    assert all(text.startswith(str(said)) and text.endswith("; left out") for text in found)
+    assert said.endswith(f"at 2.0 s only 1.0 s steady{more}")
 
 
 def test_the_row_of_a_stretch_is_in_a_users_units():
@@ -215,13 +196,12 @@ def test_the_row_of_a_stretch_is_in_a_users_units():
         T=np.full(N, 41.0),
         Fz=np.full(N, 1500.0),
     )
-    row = note(series, Stretch(50, 300, "", SWEEP), "run:a", 12, Lag(0.3, 0.03, 0.04))
+    row = note(series, Stretch(50, 300, "", SWEEP), "run:a", 12)
     assert (row.begin_s, row.end_s, row.first_line, row.last_line) == (1.0, pytest.approx(5.98), 52, 301)
     low, high = np.degrees(series.alpha[[50, 299]])
     assert (row.alpha_from_deg, row.alpha_to_deg) == (pytest.approx(low), pytest.approx(high))
     assert row.gamma_deg == pytest.approx(10.0)
     assert (row.Fz_N, row.p_kPa, row.T_degC, row.points) == (1500.0, 250.0, 41.0, 12)
-    assert (row.lag_m, row.u_lag_m) == (0.3, pytest.approx(0.05))
     assert (row.file, row.sweep, row.kind, row.dropped) == ("run.csv", "run:a", "sweep", "")
 
 
@@ -312,33 +292,12 @@ def swept(n: int = 2000, T=None, Fz=None) -> Series:
 LOADS = np.repeat([1000.0, 1200.0, 1450.0, 1750.0, 2100.0], 400)
 
 
-@pytest.mark.parametrize(("cold", "dropped"), [(10.5, 1), (9.5, 0)])
-def test_a_first_sweep_ten_kelvins_colder_is_dropped(cold, dropped):
-    T = np.repeat([40.0 - cold, 40.0, 40.0, 40.0, 40.0], 400)
-    found = chosen(swept(T=T, Fz=LOADS), [], None)
-    said = [s.dropped for s in found if s.kind == SWEEP and s.dropped]
-    assert len(said) == dropped
-    assert all(text == f"the tread is cold: {40 - cold:.0f} degC, later 40" for text in said)
-
-
-def test_three_sweeps_remain_however_cold_they_are():
-    T = np.repeat([10.0, 12.0, 14.0, 60.0, 60.0], 400)
-    # The middle sweep has 14 degC: none is colder than that by ten.
-    found = chosen(swept(T=T, Fz=LOADS), [], None)
-    assert not [s for s in found if s.kind == SWEEP and s.dropped]
-    warm = np.repeat([10.0, 12.0, 40.0, 41.0, 42.0], 400)
-    found = chosen(swept(T=warm, Fz=LOADS), [], None)
-    assert len([s for s in found if s.kind == SWEEP and s.dropped]) == 2
-    three = chosen(swept(1200, T=warm[:1200], Fz=LOADS[:1200]), [], None)
-    assert not [s for s in three if s.kind == SWEEP and s.dropped]
-
-
 def test_the_first_metres_behind_a_change_are_a_stretch_of_their_own():
     found = chosen(swept(Fz=LOADS), [], None)
     rolling = [s for s in found if s.dropped == ROLLING_IN]
     assert ROLLING_IN == "the first 2 m of rolling behind a gap or a change"
     assert len(rolling) == 4
-    assert [s.end - s.begin for s in rolling] == [20] * 4  # 0.4 s at 5 m/s
+    assert all(s.end - s.begin in (20, 21) for s in rolling)  # 0.4 s at 5 m/s
 
 
 @pytest.mark.parametrize(("swing", "dropped"), [(0.27, True), (0.23, False)])
@@ -352,46 +311,3 @@ def test_a_load_that_wanders_by_half_drops_its_sweep(swing, dropped):
     assert bool(found.dropped) == dropped
     if dropped:
         assert found.dropped == "the load wanders from 1115 to 1885 N"
-
-
-def triangle(lag: float, n: int = 400, shape=lambda a: -2e4 * a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sideslip up and down over the rolled distance, and the force of the angle that lags by ``lag`` [m]."""
-    s = np.linspace(0.0, 40.0, n)
-
-    def angle(at):
-        return np.radians(6.0) * (1.0 - 2.0 * np.abs(at / 20.0 - 1.0))
-
-    return angle(s), shape(angle(s - lag)), s
-
-
-@pytest.mark.parametrize("lag", [0.5, 0.0, -0.4])
-def test_the_lag_of_a_triangle_is_the_distance_between_its_ways(lag):
-    found = measure(*triangle(lag))
-    assert found.lag == pytest.approx(lag, abs=1e-6)
-    assert found.u < 1e-6
-
-
-def test_a_force_that_differs_between_the_ways_is_no_lag():
-    alpha, Fy, s = triangle(0.0)
-    up = np.gradient(alpha) > 0.0
-    found = measure(alpha, Fy * np.where(up, 1.05, 0.95), s)
-    assert found.lag == pytest.approx(0.0, abs=0.02)
-
-
-def test_too_few_samples_or_one_way_alone_show_no_lag():
-    alpha, Fy, s = triangle(0.5)
-    assert np.isnan(measure(alpha[:31], Fy[:31], s[:31]).lag)
-    assert np.isnan(measure(alpha[:200], Fy[:200], s[:200]).lag)
-    assert np.isnan(measure(alpha, np.abs(Fy), s).lag)
-    assert np.isnan(measure(alpha, np.maximum(Fy, 0.0), s).lag)
-
-
-def test_the_common_lag_is_the_median_of_three_sweeps_or_the_mean_of_two():
-    lags = [Lag(0.30, 0.03, 0.01), Lag(0.34, 0.04, 0.01), Lag(np.nan, np.nan, np.nan)]
-    assert common(lags)[:2] == pytest.approx((0.32, np.hypot(0.025, 0.01)))
-    value, u, _ = common([*lags, Lag(0.50, 0.04, 0.01)])
-    assert value == pytest.approx(0.34)
-    # 1.4826 times the median of (0.04, 0, 0.16), as the error of a median of three
-    assert u == pytest.approx(np.hypot(1.2533 * 1.4826 * 0.04 / np.sqrt(3.0), 0.01), rel=1e-4)
-    assert np.isnan(common(lags[2:])[0])
-    assert constants.FEWEST_SWEEPS == 3

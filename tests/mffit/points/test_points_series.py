@@ -209,7 +209,7 @@ def test_a_rounded_time_gives_the_points_of_the_true_one(project, digits):
     project.tables["series.csv"] = table.assign(time_s=np.floor(table["time_s"] * 10**digits) / 10**digits)
     found, warnings = load(project)
     part = of_file(found, "series.csv")
-    assert any("time is rounded" in sentence for sentence in warnings)
+    assert any("samples have the time of the one before" in sentence for sentence in warnings)
     assert len(part) == len(true)
     np.testing.assert_allclose(part.Fy, true.Fy, atol=2.0)
 

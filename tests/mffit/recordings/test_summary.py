@@ -73,20 +73,19 @@ def test_two_specimens_are_two_tyres(recordings, tmp_path):
         init_from(
             recordings, tmp_path / "p", unloaded_radius=0.2992, nominal_load=1400.0, nominal_pressure=250.0
         )
-    assert 'are of two tyres: summary.csv names the specimens "H 17" (line 3) and "H 19" (line 5)' in str(
-        error.value
-    )
+    two = 'are of two tyres: specimens "H 17" (summary.csv, line 3) and "H 19" (summary.csv, line 5)'
+    assert two in str(error.value)
     assert not (tmp_path / "p").exists()
 
 
 def test_a_summary_among_the_files_is_no_recording(recordings):
     summary = summarised(recordings, GOOD, "a list of runs.csv")
-    files, (found,) = apart([*recordings, summary])
+    files, found = apart([*recordings, summary])
     assert files == recordings
-    assert [(row.recording.name, row.line) for row in found.rows] == [
-        ("B1320run14.csv", 3),
-        ("B1320run15.csv", 4),
-        ("B1320run16.csv", 5),
+    assert [(row.recording.name, row.place) for row in found] == [
+        ("B1320run14.csv", "a list of runs.csv, line 3"),
+        ("B1320run15.csv", "a list of runs.csv, line 4"),
+        ("B1320run16.csv", "a list of runs.csv, line 5"),
     ]
 
 

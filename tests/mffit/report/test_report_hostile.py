@@ -16,6 +16,7 @@ from mffit.made import made
 from mffit.points.left_out import LeftOut
 from mffit.report import write_build, write_diagnosis
 from mffit.suspicion import Doubt, Outlier, Trust
+from mffit.suspicion.others import Error
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'$^&amp;</style></title><script>alert(2)</script>"
 """Breaks out of an element, an attribute, a style sheet, a title and the type setting of a picture."""
@@ -83,7 +84,9 @@ def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
     result = made_result()
     fit = dataclasses.replace(
         result.fit,
-        doubts=(Doubt(HOSTILE, HOSTILE, np.arange(3), "Fy", 9.0, 3.0, 0.1, HOSTILE),),
+        doubts=(
+            Doubt(HOSTILE, HOSTILE, np.arange(3), (Error("Fy", 9.0, 3.0, 0.1, 0.0, 0.0),), looks=HOSTILE),
+        ),
         outliers=(Outlier(HOSTILE, 3, HOSTILE, 2, "Fy", 1.0, 2.0, 9.0),),
         explanations=(HOSTILE, HOSTILE),
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.points import make_points
-from mffit.points.lag import rolled_distance
+from mffit.points.clock import rolled_distance
 from mffit.rig.lag import lag_of_move, lagged_setting
 
 TIME = np.arange(40) / 20.0

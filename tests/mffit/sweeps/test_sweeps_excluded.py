@@ -71,7 +71,7 @@ def test_a_damaged_row_can_be_excluded(project):
 
 def spin(settings):
     """The numbers of the direct method, without the hashes of the files."""
-    content = as_json.spin(mffit.spin(settings))
+    content = as_json.document(mffit.spin(settings))
     del content["made"]
     return content
 

@@ -73,7 +73,7 @@ def test_a_file_that_holds_too_much_is_refused_in_a_sentence(tmp_path, monkeypat
     monkeypatch.setattr(constants, "LARGEST_UNPACKED", LIMIT)
     BOMBS[name](tmp_path / name)
     assert (tmp_path / name).stat().st_size < LIMIT / 10
-    with pytest.raises(InputError, match=r"holds more than 2 MB when unpacked|more than \d+ cells") as caught:
+    with pytest.raises(InputError, match="holds more than 2 MB when unpacked") as caught:
         formats.read(tmp_path / name)
     assert name in str(caught.value)
 

@@ -15,7 +15,6 @@ from mffit import config, points
 from mffit.errors import InputError
 from mffit.pipeline import init_from
 from mffit.recordings import DiscPath, Stated
-from mffit.recordings.project_file import TyreFound
 
 pytest.importorskip("starlette")
 testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
@@ -123,7 +122,6 @@ def test_the_form_has_every_field_that_a_project_is_made_of():
     path = {"disc": ("path_radius", "path_centre"), "belt": ("type",)}
     names = [name for field in Stated._fields for name in path.get(field, (field,))]
     assert [name for name in names if f'"{name}"' not in script] == []
-    assert set(TyreFound._fields) <= set(Stated._fields)
 
 
 def test_a_correction_changes_its_line_alone(folder, original):

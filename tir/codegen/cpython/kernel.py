@@ -94,14 +94,6 @@ def available() -> bool:
     return obstacle() is None
 
 
-def threads() -> int:
-    """Number of threads for a large call: OMP_NUM_THREADS, else the processors available to this process."""
-    asked = os.environ.get("OMP_NUM_THREADS", "").partition(",")[0].strip()  # the outermost level only
-    if asked.isascii() and asked.isdigit() and int(asked) > 0:
-        return int(asked)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @cache
 def load(kind: str, switches: Switches) -> Kernel:
     """The kernel "batch" or "one", from the cache, or else compiled within a second or two.
