@@ -1,6 +1,6 @@
 """Comparison of two property files, of a file with measured points, or of two builds."""
 
-from mffit.comparison.characteristics import characteristics, with_u
+from mffit.comparison.characteristics import characteristics
 from mffit.comparison.compare import against_points, between
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
 from mffit.comparison.wording import note_on_temperature
@@ -14,5 +14,4 @@ __all__ = [
     "between",
     "characteristics",
     "note_on_temperature",
-    "with_u",
 ]

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 
 import numpy as np
 
 from mffit.comparison import constants, wording
-from mffit.comparison.characteristics import characteristics, with_u
+from mffit.comparison.characteristics import characteristics
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
 from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
-from mffit.fit import Posterior
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, levels, make_points
@@ -64,22 +62,27 @@ def _numbers(
     first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
 ) -> Iterator[Difference]:
     """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to the ends ``reach``."""
-    numbers = partial(
-        characteristics, load=load, pressure=pressure, reach=reach["ALPMAX"], slip_reach=reach["KPUMAX"]
-    )
-    (a, u_a), (b, u_b) = (
-        with_u(
+    a, b = (
+        characteristics(
             side.tyre,
-            side.names,
-            side.covariance,
-            partial(numbers, turn_slip=side.turn_slip),
+            load,
+            turn_slip=side.turn_slip,
+            pressure=pressure,
+            reach=reach["ALPMAX"],
+            slip_reach=reach["KPUMAX"],
+            known=side.known,
         )
         for side in (first, second)
     )
     for key in a:
         if key in b:
             yield Difference(
-                key=key, load=load, first=a[key], second=b[key], u_first=u_a.get(key), u_second=u_b.get(key)
+                key=key,
+                load=load,
+                first=a[key].value,
+                second=b[key].value,
+                u_first=a[key].u or None,
+                u_second=b[key].u or None,
             )
 
 
@@ -110,20 +113,13 @@ def _curves(
 def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tuple[Readings, Readings | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
-    band = None
-    if side.covariance is not None:
-        band = Posterior(side.names, side.covariance).band(simulation, where, channels)
+    band = None if side.known is None else side.known.band(simulation, where, channels)
     return simulation.readings(where, channels), band
 
 
 def _coefficients(first: ComparedSubject, second: ComparedSubject) -> tuple[Difference, ...]:
     """Coefficients that differ."""
-    u_first, u_second = (
-        {}
-        if side.covariance is None
-        else dict(zip(side.names, np.sqrt(np.diag(side.covariance)).tolist(), strict=True))
-        for side in (first, second)
-    )
+    u_first, u_second = ({} if side.known is None else side.known.stderr for side in (first, second))
     rows = []
     for row in TABLE:
         if row.kind != "number" or not row.section.endswith("_COEFFICIENTS"):

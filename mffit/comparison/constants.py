@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from tir.constant import Real, Series
+from tir.constant import Series
 
 COMPARED_LOADS = Series(
     (0.6, 1.0, 1.4), "-", "Compared loads over the nominal one, within the ranges of both files."
-)
-ROUNDING_OF_NUMBERS = Real(
-    1e-12,
-    "-",
-    "Relative changes of a compared number below this are rounding errors of floating-point arithmetic.",
 )

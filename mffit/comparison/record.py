@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.brief import Brief
+from mffit.fit import Posterior
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir import Tyre
@@ -24,8 +25,7 @@ class ComparedSubject:
     name: str
     tyre: Tyre
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
-    names: tuple[str, ...] = ()  #: coefficients whose uncertainty is known
-    covariance: np.ndarray | None = None  #: (k, k) of these; None if it is unknown
+    known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
 
 
 @dataclass(frozen=True, slots=True)

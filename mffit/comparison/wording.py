@@ -85,7 +85,7 @@ def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str,
         notes.append(
             f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated for its own use."
         )
-    bare = [side.name for side in (first, second) if side.covariance is None]
+    bare = [side.name for side in (first, second) if side.known is None]
     if bare:
         notes.append(
             f"The uncertainty of {' and '.join(bare)} is unknown: no result.json beside it states one for this file."

@@ -14,7 +14,7 @@ from mffit import prediction
 from mffit.comparison import characteristics
 from mffit.config import Config
 from mffit.csv_tables import write_csv
-from mffit.fit import name_at_temperature
+from mffit.fit import Posterior, name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
 from mffit.points import Points
@@ -22,7 +22,7 @@ from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
 from mffit.results import BuildResult, as_json
 from mffit.suspicion import marks
-from tir import Tyre
+from tir import Quantity, Tyre
 
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
@@ -135,11 +135,12 @@ def write_members(result: BuildResult, out: Path) -> None:
     for i, member in enumerate(members, 1):
         name = f"{result.config.tyre.name}-{i:0{len(str(len(members)))}d}.tir"
         member.write(folder / name)
-        rows.append({"file": name, **numbers(member, turn_slip=result.on_disc)})
+        found = numbers(member, turn_slip=result.on_disc)
+        rows.append({"file": name, **{key: number.value for key, number in found.items()}})
     write_csv(pd.DataFrame(rows), folder / INDEX)
 
 
-def numbers(tyre: Tyre, *, turn_slip: bool) -> dict[str, float]:
+def numbers(tyre: Tyre, *, turn_slip: bool, known: Posterior | None = None) -> dict[str, Quantity]:
     """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
-    found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip)
+    found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip, known=known)
     return {key: found[key] for key in NUMBERS}

@@ -12,6 +12,7 @@ from mffit import fleet
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
+from mffit.fit import Posterior
 from mffit.fleet import Specimen
 from mffit.measured import LoadResult
 from mffit.output import output_folder
@@ -23,6 +24,7 @@ from mffit.progress import Progress, silent
 from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
+from mffit.viewer.named import tell_apart
 
 
 def compare(
@@ -96,7 +98,7 @@ def _subject(path: Path) -> ComparedSubject:
     posterior = posterior_of(tyre, path)
     if posterior is None:
         return subject
-    return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
+    return replace(subject, known=Posterior(posterior.names, posterior.root @ posterior.root.T))
 
 
 def _build_in(folder: Path) -> Specimen:
@@ -111,20 +113,11 @@ def _build_in(folder: Path) -> Specimen:
 
 def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:
     """The subjects; those with one name get as much of their paths as makes the names differ."""
-    if sides[0].name != sides[1].name:
-        return sides
     files = [path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)]
-    return [replace(side, name=name) for side, name in zip(sides, _shortest_names(*files), strict=True)]
-
-
-def _shortest_names(first: Path, second: Path) -> tuple[str, str]:
-    """The shortest trailing parts of two paths that differ; both in full if the paths are the same."""
-    parts = [path.resolve().parts for path in (first, second)]
-    for k in range(2, max(map(len, parts)) + 1):
-        a, b = ("/".join(p[-k:]) for p in parts)
-        if a != b:
-            return a, b
-    return str(first), str(second)
+    return [
+        replace(side, name=f"{name}{file.suffix}")
+        for side, name, file in zip(sides, tell_apart(files), files, strict=True)
+    ]
 
 
 def _with_data(subject: ComparedSubject, config: Config) -> Comparison:

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
-from mffit.comparison import with_u
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
-from mffit.fit import priors
+from mffit.fit import Posterior, priors
 from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
 from mffit.output import output_folder, refuse_early
@@ -119,9 +116,9 @@ def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
 
 def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
     """Stiffnesses and peaks with the first-order uncertainty that the coefficients give them."""
-    names, covariance = (known.names, known.covariance) if known else ((), np.zeros((0, 0)))
-    here, u = with_u(tyre, names, covariance, partial(numbers, turn_slip=turn_slip))
-    return {key: Quantity(here[key], u.get(key, 0.0), unit.unit) for key, unit in COMPARED.items()}
+    joint = None if known is None else Posterior(known.names, known.covariance)
+    found = numbers(tyre, turn_slip=turn_slip, known=joint)
+    return {key: found[key] for key in COMPARED}
 
 
 def _epsilon(found: TyreEstimate | None) -> Quantity | None:

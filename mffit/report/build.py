@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
-from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, CoefficientRow, view_of
+from mffit.report.build_view import PER_LOAD, BuildView, CoefficientRow, view_of
 from mffit.report.catalogue import Picture
 from mffit.report.figures import (
     bands,
@@ -27,16 +28,8 @@ from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
-SECTION_TITLES = {
-    "LATERAL_COEFFICIENTS": "Side force",
-    "ALIGNING_COEFFICIENTS": "Self-aligning moment",
-    "TURNSLIP_COEFFICIENTS": "Turn slip",
-    "ROLLING_COEFFICIENTS": "Rolling resistance",
-}
-OTHER_SECTIONS = "Everything else"
-PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on the disc"}
-"""Uses for which a file that serves both is judged, beside the straight path without turn slip."""
-
+OTHERS = "EVERYTHING_ELSE"
+"""The section of dimensions, ranges and nominal conditions."""
 
 BUILD: tuple[Picture[BuildView], ...] = (
     Picture(
@@ -117,8 +110,8 @@ BUILD: tuple[Picture[BuildView], ...] = (
         title="Residuals over sideslip and camber, or over slip and sideslip, one map per load and pressure",
         shows="Measured minus model, of the freely rolling wheel over sideslip and camber, of the driven and braked wheel over "
         "longitudinal slip and sideslip. A good fit shows pale colours without order. A patch of one colour is structure that "
-        "the model misses; mffit diagnose looks for its cause. Points with equal angles are drawn side by side; a small dot "
-        "marks a point that was run backwards.",
+        "the model misses; mffit diagnose looks for its cause. Of readings at one place the worst is on top; a small dot marks "
+        "a point that was run backwards.",
         draw=residuals.residual_maps,
     ),
 )
@@ -148,10 +141,8 @@ def write_build(result: BuildResult, folder: Path) -> None:
         verdict=verdict(result),
         headlines=headlines(result),
         purposes=purposes(result),
-        sections=_by_section(view),
-        statuses=[s for s in STATUS_ORDER if any(row.found.status == s for row in view.rows)],
+        sections=groupby(sorted(view.rows, key=lambda row: _section(row) == OTHERS), key=_section),
         channels=CHANNELS,
-        places=PLACES,
         of_number=words.of_number,
         epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
@@ -166,9 +157,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
     )
 
 
-def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:
-    """The rows of the coefficient table by section; values of other sections come last."""
-    out: dict[str, list[CoefficientRow]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
-    for row in view.rows:
-        out[SECTION_TITLES.get(row.known.section, OTHER_SECTIONS)].append(row)
-    return {title: rows for title, rows in out.items() if rows}
+def _section(row: CoefficientRow) -> str:
+    """The section of the table in which a coefficient is."""
+    section = row.known.section
+    return section if section.endswith("_COEFFICIENTS") else OTHERS

@@ -23,9 +23,6 @@ RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in un
 LARGEST_GAP_SCALE = Real(
     20.0, "-", "Longest colour scale of a diagnosis in units of noise, so that structure stays visible."
 )
-NEIGHBOUR_SHIFT = Real(
-    0.026, "-", "Distance of points with equal angles in a map, over the range of its axis."
-)
 MOST_REASONS = Count(
     2, "-", "Sentences against a result, or of warnings, for which one screen has room; --explain has all."
 )

@@ -12,7 +12,7 @@ from mffit.report.drawing.records import Axis, Sheet
 from mffit.report.labels import plain
 
 WORDS = ("panel", "series", "x axis", "y axis")
-NUMBERS = ("x", "y", "lower", "upper", "x of lower", "x of upper", "value")
+NUMBERS = ("x", "y", "lower", "upper", "value")
 
 
 def table(sheet: Sheet) -> str:

@@ -8,14 +8,9 @@ from mffit.rig_errors import unit_of as rig_unit_of
 from tir.parameters import BY_NAME
 
 
-def of_rig(name: str) -> str:
-    """Words for a number of the rig, of the whole test, or of one run or set-up; empty for a coefficient of the tyre."""
-    return words_of(name)
-
-
 def of_number(name: str) -> str:
     """Words for a number of the rig and for the switch of turn slip; a coefficient of the tyre keeps its name."""
-    return "turn slip of the simulation" if name == SWITCH else of_rig(name) or name
+    return "turn slip of the simulation" if name == SWITCH else words_of(name) or name
 
 
 def in_unit(name: str, value: float, u: float) -> tuple[float, float, str]:

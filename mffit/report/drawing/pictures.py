@@ -183,16 +183,10 @@ def _set_axis(axes: Axes, name: str, axis: Axis, width: float) -> None:
         axes.locator_params("y", nbins=5)
     if axis.logarithmic:
         axes.set(**{f"{name}scale": "log", f"{name}lim": (axis.low, axis.high)})
-        getattr(axes, f"{name}axis").set_major_formatter(_power)
     if axis.words is not None:
         words = _words_of(axis, width) if name == "y" else [_text(word) for word in axis.words.values()]
         axes.set(**{f"{name}ticks": [*axis.words], f"{name}ticklabels": words})
         axes.grid(False, axis=name)  # type: ignore[arg-type]
-
-
-def _power(x: float, _: object) -> str:
-    """A power of ten, without the formula of matplotlib."""
-    return "10" + f"{np.log10(x):.0f}".translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def _words_of(axis: Axis, width: float) -> list[str]:
@@ -215,16 +209,20 @@ def _line(look: Look) -> dict[str, Any]:
 
 
 def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | None) -> None:
-    """Draw a series; ``size`` is that of its marks over the usual one."""
-    _draw_uncertainty(axes, series)
-    look = replace(series.look, size=size * series.look.size)
-    place: dict[str, Any] = {"zorder": 1.8 if look.marker else 2.0}
+    """Draw a series with its uncertainty; ``size`` is that of its marks over the usual one."""
+    x, y, look = series.x, series.y, replace(series.look, size=size * series.look.size)
+    if series.half is not None and look.line:
+        low, high = y - series.half, y + series.half
+        axes.fill_between(x, low, high, color=look.colour, alpha=style.SHADE, linewidth=0.0)
+    elif series.half is not None or series.half_x is not None:
+        bars = {"ecolor": look.colour, "elinewidth": look.width, "capthick": look.width}
+        axes.errorbar(x, y, series.half, series.half_x, "none", **bars)  # type: ignore[arg-type]
     if series.shade is None or scale is None:
-        axes.plot(series.x, series.y, **_line(look), **place)
+        axes.plot(x, y, **_line(look), zorder=1.8 if look.marker else 2.0)
         return
     axes.scatter(
-        series.x,
-        series.y,
+        x,
+        y,
         look.size**2,
         series.shade,
         marker=look.marker,
@@ -233,37 +231,8 @@ def _draw_trace(axes: Axes, series: Trace, size: float, scale: ColourScale | Non
         vmax=scale.limit,
         edgecolors=style.FAINT,
         linewidths=0.4,
-        **place,
+        zorder=1.8,
     )
-
-
-def _draw_uncertainty(axes: Axes, series: Trace) -> None:
-    """A band in the colour of a line, or bars at the points."""
-    if series.half is None and series.half_x is None:
-        return
-    none, look = np.zeros(len(series)), series.look
-    along_x, along_y = (
-        none if series.half_x is None else series.half_x,
-        none if series.half is None else series.half,
-    )
-    (left, right), (low, high) = (
-        (series.x - along_x, series.x + along_x),
-        (series.y - along_y, series.y + along_y),
-    )
-    if look.line:
-        around = np.concatenate([left, right[::-1]]), np.concatenate([low, high[::-1]])
-        axes.fill(*around, color=look.colour, alpha=style.SHADE, linewidth=0.0)
-    else:
-        bars = [np.column_stack([*ends, none + np.nan]).ravel() for ends in ((left, right), (low, high))]
-        cap = "_" if series.half_x is None else "|"
-        axes.plot(
-            *bars,
-            color=look.colour,
-            linewidth=look.width,
-            marker=cap,
-            markersize=5.0,
-            markeredgewidth=look.width,
-        )
 
 
 def _png(pixels: np.ndarray) -> bytes:

@@ -32,18 +32,15 @@ class Trace:
     y: np.ndarray
     look: Look
     half: np.ndarray | None = None  #: half the height of the band of a line, or of the bar at a marker
-    half_x: np.ndarray | None = (
-        None  #: the same along x; a band reaches from (x, y) less both to (x, y) plus both
-    )
+    half_x: np.ndarray | None = None  #: half the width of the bar at a marker
     shade: np.ndarray | None = None  #: what the colour of each marker shows, on the scale of the sheet
 
     def columns(self) -> dict[str, np.ndarray]:
         """Columns (n,) of the table behind the picture."""
         out = {"x": self.x, "y": self.y}
-        for name, middle, half in (("", self.y, self.half), ("x of ", self.x, self.half_x)):
+        for middle, half in ((self.x, self.half_x), (self.y, self.half)):
             if half is not None:
-                name = name if self.half is not None else ""
-                out |= {f"{name}lower": middle - half, f"{name}upper": middle + half}
+                out |= {"lower": middle - half, "upper": middle + half}
         return out if self.shade is None else {**out, "value": self.shade}
 
     def __len__(self) -> int:

@@ -64,9 +64,11 @@ def residual_map(
 ) -> Panel:
     """One map with the axes of all points; a dot marks a point that was run backwards."""
     rows = condition.index[np.isfinite(values[condition.index])]
+    rows = rows[
+        np.argsort(np.abs(values[rows]), kind="stable")
+    ]  # of readings at one place the worst is on top
     x, y = (shown_values(points, name)[rows] for name in over)
     (left, right), (low, high) = (_all_points(points, name) for name in over)
-    y = y + _apart(points, over, x, y, low, high)
     series = [Trace(name="measured − model", x=x, y=y, shade=values[rows], look=READING)]
     backward = points.direction[rows] < 0
     if backward.any():
@@ -90,28 +92,6 @@ def _within(bounds: tuple[float, float] | None, ends: tuple[float, float]) -> tu
     low, high = ends
     pad = 0.03 * (high - low)
     return ends if bounds is None else (max(bounds[0] - pad, low), min(bounds[1] + pad, high))
-
-
-def _apart(
-    points: Points, over: tuple[str, str], x: np.ndarray, y: np.ndarray, low: float, high: float
-) -> np.ndarray:
-    """Shift upwards (k,) that keeps points at one place from covering each other, within the axis."""
-    steps = beside(10.0 * x if over[0] == "kappa" else x, y)
-    step = constants.NEIGHBOUR_SHIFT * max(float(np.ptp(shown_values(points, over[1]))), 1.0)
-    room = np.where(steps > 0.0, high - y, y - low)
-    shift: np.ndarray = steps * min(step, *(0.9 * room / np.maximum(np.abs(steps), 1.0)))
-    return shift
-
-
-def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:
-    """Shift (n,), in steps, that keeps points with equal angles from covering each other: 0, +1, -1, +2..."""
-    key = np.round(alpha, 1) * 1000.0 + np.round(gamma, 1)
-    order = np.argsort(key, kind="stable")
-    first = np.r_[True, np.diff(key[order]) != 0]
-    start = np.maximum.accumulate(np.where(first, np.arange(len(order)), 0))
-    rank = np.empty(len(order))
-    rank[order] = np.arange(len(order)) - start
-    return np.where(rank % 2 == 1, 1.0, -1.0) * np.ceil(rank / 2.0)
 
 
 def _all_points(points: Points, over: str) -> tuple[float, float]:

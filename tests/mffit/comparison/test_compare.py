@@ -12,9 +12,9 @@ from small_rigs import SAMPLE, built, disc, truth
 import mffit
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
-from mffit.comparison.characteristics import with_u
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
+from mffit.fit import Posterior
 from mffit.pipeline.build_output import write_build
 from tests.browser import assert_readable
 
@@ -28,10 +28,14 @@ def by_key(found, load=1400.0):
     return {row.key: row for row in found.numbers if row.load == pytest.approx(load)}
 
 
+def values_of(*given, **settings):
+    return {key: number.value for key, number in characteristics(*given, **settings).items()}
+
+
 def test_numbers_are_those_of_the_equations():
     """Slopes at zero as in the equations; turn-slip stiffness from eps_gamma by (17) with R0 for r_e."""
     tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0)
-    found = characteristics(tyre, 1400.0, turn_slip=True)
+    found = values_of(tyre, 1400.0, turn_slip=True)
     state = tyre.state(1400.0)
     assert found["C_alpha_N_per_rad"] == pytest.approx(float(state.K_ya), rel=2e-3)
     assert found["epsilon_gamma"] == pytest.approx(tyre["PECP1"])
@@ -42,28 +46,39 @@ def test_numbers_are_those_of_the_equations():
     assert found["mu_x"] == pytest.approx(
         float(state.mu_x), rel=5e-3
     )  # the shift S_Vx makes the two ends differ
-    assert "C_phit_Nm" not in characteristics(tyre, 1400.0, turn_slip=False)
+    assert "C_phit_Nm" not in values_of(tyre, 1400.0, turn_slip=False)
 
 
 def test_numbers_hold_at_the_pressure_asked_for():
     tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PPY1=0.5, PPY2=0.9)
-    nominal = characteristics(tyre, 1400.0, turn_slip=False)
-    soft = characteristics(tyre, 1400.0, turn_slip=False, pressure=200e3)
+    nominal = values_of(tyre, 1400.0, turn_slip=False)
+    soft = values_of(tyre, 1400.0, turn_slip=False, pressure=200e3)
     assert soft["C_alpha_N_per_rad"] == pytest.approx(float(tyre.state(1400.0, p=200e3).K_ya), rel=2e-3)
     assert abs(soft["C_alpha_N_per_rad"] / nominal["C_alpha_N_per_rad"] - 1.0) > 0.01
-    assert nominal == characteristics(tyre, 1400.0, turn_slip=False, pressure=tyre["INFLPRES"])
+    assert nominal == values_of(tyre, 1400.0, turn_slip=False, pressure=tyre["INFLPRES"])
 
 
 def test_a_number_that_depends_on_no_uncertain_coefficient_has_no_uncertainty():
-    """Rounding errors over a tiny step once gave the peak of Fx an uncertainty of 5e-14, and a difference of 2e11 of these."""
-    tiny = np.diag([1e-6, 1e-26])
-    here, u = with_u(
-        truth(), ("PKY1", "PDX1"), tiny, lambda tyre: characteristics(tyre, 1400.0, turn_slip=True)
+    tiny = Posterior(("PKY1", "PDX1", "LOADED"), np.diag([1e-6, 1e-26, 1.0]))
+    found = characteristics(truth(), 1400.0, turn_slip=True, known=tiny)
+    assert found["epsilon_gamma"].u == found["r_e_m"].u == 0.0
+    assert found["C_alpha_N_per_rad"].u == pytest.approx(
+        1e-3 * abs(found["C_alpha_N_per_rad"].value / truth()["PKY1"]), rel=0.01
     )
-    assert u.keys() <= here.keys() - {"mu_x"}
-    assert u["C_alpha_N_per_rad"] == pytest.approx(
-        1e-3 * abs(here["C_alpha_N_per_rad"] / truth()["PKY1"]), rel=0.01
-    )
+
+
+def test_uncertainties_of_numbers_are_those_of_small_changes():
+    """By differences, of every number that a few coefficients move."""
+    tyre, u = truth(), {"PKY1": 0.3, "PDY1": 0.02, "PDX1": 0.03, "QDZ1": 0.002, "PECP1": 0.05}
+    for name, size in u.items():
+        found = characteristics(tyre, 1200.0, turn_slip=True, known=Posterior((name,), np.array([[size**2]])))
+        low, high = (
+            characteristics(tyre.replace(**{name: tyre[name] + side * 0.01 * size}), 1200.0, turn_slip=True)
+            for side in (-1.0, 1.0)
+        )
+        for key, number in found.items():
+            wanted = abs(high[key].value - low[key].value) / 0.02
+            assert number.u == pytest.approx(wanted, rel=0.02, abs=1e-6 * abs(number.value)), (name, key)
 
 
 def test_a_changed_coefficient_shows_where_it_acts(stiffer):
@@ -78,11 +93,12 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
 
 
 @pytest.mark.parametrize(
-    ("covariance", "words"), [(None, "is unknown"), (np.eye(1), "if one rig measured both")]
+    ("second", "words"),
+    [(None, "is unknown"), (Posterior(("PKY1",), np.eye(1)), "if one rig measured both")],
 )
-def test_a_note_says_what_is_known_of_the_uncertainty(covariance, words):
-    known = ComparedSubject("a.tir", truth(), False, ("PKY1",), np.eye(1))
-    (note,) = between(known, ComparedSubject("b.tir", truth(), False, ("PKY1",), covariance)).notes
+def test_a_note_says_what_is_known_of_the_uncertainty(second, words):
+    known = ComparedSubject("a.tir", truth(), False, Posterior(("PKY1",), np.eye(1)))
+    (note,) = between(known, ComparedSubject("b.tir", truth(), False, second)).notes
     assert words in note
 
 
@@ -96,7 +112,7 @@ def test_equal_files_do_not_differ():
 def test_uncertainties_propagate_to_the_numbers():
     """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
     u = 0.02 * abs(truth()["PKY1"])
-    known = ComparedSubject("a", truth(), True, ("PKY1",), np.array([[u**2]]))
+    known = ComparedSubject("a", truth(), True, Posterior(("PKY1",), np.array([[u**2]])))
     row = by_key(between(known, ComparedSubject("b", truth(), True)))["C_alpha_N_per_rad"]
     assert row.u_first == pytest.approx(0.02 * abs(row.first), rel=0.02)
     assert row.u_second is None

@@ -126,11 +126,11 @@ def test_a_map_is_blue_below_white_at_and_red_above_the_model(view):
     assert min(colour(0.0)) > 0.94
 
 
-def test_points_with_equal_angles_are_drawn_apart():
-    alpha, gamma = np.array([0.0, 1.0, 0.0, 0.0]), np.zeros(4)
-    shift = residuals.beside(alpha, gamma)
-    assert sorted(shift[[0, 2, 3]]) == [-1.0, 0.0, 1.0]
-    assert shift[1] == 0.0
+def test_the_worst_of_the_readings_at_one_place_is_on_top(view):
+    values = np.linspace(-2.0, 3.0, len(view.points))
+    for panel in residuals.residual_maps(missing_by(view, values)).panels:
+        shade = np.abs(panel.series[0].shade)
+        assert list(shade) == sorted(shade)
 
 
 def test_a_picture_with_too_many_panels_keeps_whole_rows_and_says_so():
