@@ -125,10 +125,7 @@ TIE_EXCLUDED_BY_CHANCE = Real(
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
-MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
-FEWEST_CANDIDATES_FITTED = Count(4, "-", "Best candidates of a step, always fitted in full.")
-PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
-PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
+CANDIDATES_FITTED = Count(6, "-", "Best candidates of a step, to first order, that are fitted in full.")
 STRUCTURE_EVIDENCE = Real(
     8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
 )

@@ -132,15 +132,9 @@ class Explanation:
         if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
-        explains = max(gain, chosen.alone - without.alone, self._unaided(effect), 0.0)
+        explains = max(gain, chosen.alone - without.alone, 0.0)
         share = explains / (explains + open_) if open_ else 1.0
         return float(np.clip(against, -500.0, 500.0)), share
-
-    def _unaided(self, effect: Effect) -> float:
-        """Gain of an effect alone without smooth structure beside it."""
-        first = self.steps[0]
-        trials = [trial for trial in first.trials if trial.effects[-1].id == effect.id]
-        return max((trial.alone - first.before.alone for trial in trials), default=0.0)
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Log evidence of the best bump beside a hypothesis; 0 without any."""

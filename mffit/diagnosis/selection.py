@@ -92,15 +92,12 @@ def select(
 
 
 def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> ForwardStep:
-    """Every candidate beside the accepted effects; those with any prospect are fitted in full."""
+    """Every candidate beside the accepted effects; the best to first order are fitted in full."""
     trials = []
     ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
     for rank, (effect, gain) in enumerate(ranked):
         effects = (*before.effects, effect)
-        hope = max(constants.PROMISING_GAIN, constants.PROMISING_SHARE * ranked[0][1])
-        if rank < constants.FEWEST_CANDIDATES_FITTED or (
-            rank < constants.MOST_CANDIDATES_FITTED and gain > hope
-        ):
+        if rank < constants.CANDIDATES_FITTED:
             trials.append(problem.fit(effects, before.numbers))
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
