@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, usual_ply_steer
-from mffit.rounding import to_uncertainty
+from mffit.rounding import ascii_only, stated
 from tir import Quantity
 
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
@@ -89,24 +89,23 @@ def off_nominal_pressure(used: float, nominal: float) -> str:
 
 def camber_skew(skew: Quantity) -> str:
     return (
-        f"Forward and backward camber sweeps: leaning steers the wheel by {to_uncertainty(skew.value, skew.u)} "
-        f"+- {to_uncertainty(skew.u, skew.u)} {skew.unit} times the sine of the camber angle (camber skew). It is subtracted "
-        "from the camber stiffness."
+        f"Forward and backward camber sweeps: leaning steers the wheel by {ascii_only(stated(skew, skew.unit))} times the sine "
+        "of the camber angle (camber skew). It is subtracted from the camber stiffness."
     )
 
 
 def camber_skew_beyond(skew: Quantity, declared: float) -> str:
     return (
         f"the camber axis is not square to the steering axis: forward and backward camber sweeps show a camber skew of "
-        f"{to_uncertainty(skew.value, skew.u)} +- {to_uncertainty(skew.u, skew.u)} {skew.unit}, and {declared:g} {skew.unit} are "
+        f"{ascii_only(stated(skew, skew.unit))}, and {declared:g} {skew.unit} are "
         "declared (u_camber_skew_deg); it is corrected here; square the axis, or declare what it can be"
     )
 
 
 def conicity_measured(found: Quantity) -> str:
     return (
-        f"Zeros on both mounts: the conicity force is {to_uncertainty(found.value, found.u)} +- "
-        f"{to_uncertainty(found.u, found.u)} N. It is subtracted from the turn-slip force."
+        f"Zeros on both mounts: the conicity force is {ascii_only(stated(found, found.unit))}. It is subtracted from the "
+        "turn-slip force."
     )
 
 
