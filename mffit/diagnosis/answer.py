@@ -207,14 +207,13 @@ def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
 def _rivals(
     problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: ForwardStep
 ) -> list[Hypothesis]:
-    """Explanations with another effect in the place of one, refitted beside the others; hopeless ones are left out."""
+    """Explanations with another of a step's best candidates in the place of one effect, refitted beside the others."""
     others = chosen.others(effect)
     kept = chosen.numbers_of(others)
-    hopeless = constants.HOPELESS_RIVAL + (constants.HOPELESS_SHARE * abs(step.gain) if others else 0.0)
     return [
         problem.fit((*others, trial.effects[-1]), kept)
-        for trial in step.trials
-        if trial.effects[-1].id not in chosen.ids and step.best.log_evidence - trial.log_evidence <= hopeless
+        for trial in step.trials[: constants.CANDIDATES_FITTED]
+        if trial.effects[-1].id not in chosen.ids
     ]
 
 

@@ -157,10 +157,6 @@ USUAL_MISS_OF_A_FORMULA = Real(
     "-",
     "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
 )
-HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
-HOPELESS_SHARE = Real(
-    0.5, "-", "Share of the gain of a step that is added to this limit beside other effects."
-)
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 TIE_RUN_CAMBER = Real(40.0, "deg", "Largest camber of an added camber sweep.")
 TIE_RUN_POINTS = Count(13, "-", "Points of an added sweep.")
