@@ -17,7 +17,6 @@ ROAD_FRICTION = Effect(
     physics="The friction of the test road differs from that of the road for which the model was made.",
     free=(Free("LMUY", spread=0.05, lower=0.3, upper=2.0),),
     needs=("slip",),
-    confusable_with=("loadcell-gain", "load-grip"),
 )
 
 if __name__ == "__main__":
