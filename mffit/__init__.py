@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
+        write_tydex,
     )
 
     __version__: str
@@ -52,6 +53,7 @@ __all__ = [
     "spin",
     "write_c",
     "write_fmu",
+    "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",

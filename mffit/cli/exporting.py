@@ -1,4 +1,4 @@
-"""`mffit export`: a property file as C code, FMU or the file of another program."""
+"""`mffit export`: a property file as C code, FMU or the file of another program, or a project's points as TYDEX."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import Voice, voiced
-from mffit.cli.options import code_options, out_option, tir_file
+from mffit.cli.options import code_options, out_option, tir_file, tyre_toml
 from mffit.errors import InputError
 
 
@@ -53,7 +53,7 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
 
 @click.group()
 def export() -> None:
-    """Export a property file as C code, FMU or for another program."""
+    """Export a property file as C code, FMU or for another program, or points as TYDEX."""
 
 
 @export.command()
@@ -175,3 +175,17 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
             f"{counted(len(shown), 'key')} that {file} lacks got the default, marked as not measured: {some(shown)}"
         )
     voice.give({"written": written, "defaults": shown})
+
+
+@export.command()
+@tyre_toml
+@out_option("Folder to write to [default: out/tydex/ beside TYRE_TOML].")
+@voiced
+def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
+    """Export the points of a project as TYDEX 1.3, one file per sweep."""
+    from mffit import pipeline
+
+    written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")
+    names = [str(path) for path in written]
+    voice.say(f"written: {', '.join(names)}")
+    voice.give({"written": names})

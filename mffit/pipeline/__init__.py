@@ -3,6 +3,7 @@
 from mffit.pipeline.building import build
 from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
+from mffit.pipeline.exporting import write_tydex
 from mffit.pipeline.fleets import fleet
 from mffit.pipeline.intake import init_from, project_of
 from mffit.pipeline.many import build_many
@@ -24,4 +25,5 @@ __all__ = [
     "project_of",
     "show",
     "spin",
+    "write_tydex",
 ]

@@ -1,4 +1,4 @@
-"""TYDEX-Format, release 1.3, as text: names of sections and columns of a row.
+"""TYDEX-Format, release 1.3, as text: names of sections and columns of a row, for reader and writer.
 
 A row of constants or channels has a name of 10 characters, a description of 30, a unit of 10, then values. A channel has three:
 a factor, an offset of the measured and an offset of the physical value; physical = factor (measured + offset 1) + offset 2.
@@ -6,7 +6,7 @@ a factor, an offset of the measured and an offset of the physical value; physica
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 RELEASE = "1.3"
 HEADER, COMMENTS, CONSTANTS, END = "HEADER", "COMMENTS", "CONSTANTS", "END"
@@ -35,3 +35,9 @@ class FixedRow(NamedTuple):
         name, rest = line[:NAME], line[NAME:]
         description, rest = rest[:DESCRIPTION], rest[DESCRIPTION:]
         return cls(name.strip(), description.strip(), rest[:UNIT].strip(), rest[UNIT:].strip())
+
+
+def fixed_row(name: str, description: str, unit: str, *values: Any) -> str:
+    """A line of constants or channels in fixed columns; a name or description that is too long is cut."""
+    head = f"{name[:NAME]:<{NAME}}{description[:DESCRIPTION]:<{DESCRIPTION}}{unit:<{UNIT}}"
+    return (head + " ".join(map(str, values))).rstrip()

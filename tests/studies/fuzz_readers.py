@@ -19,6 +19,7 @@ with atheris.instrument_imports(include=["mffit", "tir"]):
     import tir
     from mffit import config
     from mffit.errors import InputError
+    from mffit.pipeline.exporting import write_tydex
     from mffit.recordings.guess import guesses
     from mffit.sweeps import formats
     from tir.checking import check
@@ -52,12 +53,8 @@ def corpus(kind: str, folder: Path) -> None:
     elif kind == "parquet":
         table.to_parquet(folder / "a")
     elif kind == "tdx":
-        rows = "\n".join(
-            f"{name:<10}{name:<30}{'-':<10}1 0 0" for name in ("SLIPANGL", "INCLANGL", "FZW", "FYW")
-        )
-        (folder / "a").write_text(
-            f"**HEADER\n**MEASURCHANNELS\n{rows}\n**MEASURDATA\n0.1 0 1400 -900\n**END\n"
-        )
+        for path in write_tydex(SAMPLE / "tyre.toml", folder / "out"):
+            path.rename(folder / path.name)
     else:
         (folder / "a").write_bytes((SAMPLE / {"tir": "true.tir", "toml": "tyre.toml"}[kind]).read_bytes())
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.errors import InputError
+from mffit.export.tydex import TYDEX_CHANNELS
 from mffit.recordings.guess import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, nearest_channel, nearest_heading
 from mffit.sweeps.units import UnknownUnitError, converted, is_unit, spellings
@@ -121,17 +123,14 @@ def test_other_units_are_refused(unit):
         converted(np.array([1.0]), unit, "N")
 
 
-@pytest.mark.parametrize(
-    ("written", "column"),
-    [
-        ("SLIPANGL", "alpha_deg"), ("INCLANGL", "gamma_deg"), ("FZW", "Fz_N"), ("LONGSLIP", "kappa"),
-        ("FXW", "Fx_N"), ("FYW", "Fy_N"), ("MXW", "Mx_Nm"), ("MYW", "My_Nm"), ("MZW", "Mz_Nm"),
-        ("INFLPRES", "p_kPa"), ("TRAJVELW", "V_mps"), ("WHROTSPD", "omega_radps"), ("TYRETEMP", "T_degC"),
-    ],
-)  # fmt: skip
-def test_a_name_of_tydex_is_known_to_its_reader(written, column):
-    (channel,) = [channel for channel in SWEEP_CHANNELS if written in channel.aliases]
-    assert channel.name == column
+@pytest.mark.parametrize("written", TYDEX_CHANNELS, ids=lambda written: written.name)
+def test_a_name_that_tydex_export_writes_is_known_to_its_reader(written):
+    """The alias belongs to the channel from which the numbers come, and the unit can be converted."""
+    fields = ("alpha", "gamma", "kappa", "Fz", "Fx", "Fy", "Mx", "My", "Mz", "omega", "p", "V", "T")
+    source = written.of(SimpleNamespace(**{field: field for field in fields}))
+    (channel,) = [channel for channel in SWEEP_CHANNELS if written.name in channel.aliases]
+    assert (channel.name.rpartition("_")[0] or channel.name) == source
+    assert np.isfinite(converted(np.ones(1), written.unit, channel.unit)).all()
 
 
 def test_all_missing_columns_are_named_at_once_with_what_to_write(tmp_path):
