@@ -235,7 +235,7 @@ CORPUS: dict[str, tuple[Change, str]] = {
         words("\n-6.0", ",-6.0"),
         ":2: has 14 cells under 7 headings; remove the cells too many",
     ),
-    "a quote in a row": (csv(HEAD + '0,0,"1500,1,1\n1,0,1500,1,1\n'), ":2: has 3 cells under 5 headings"),
+    "a quote in a row": (csv(HEAD + '0,0,"1500,1,1\n1,0,1500,1,1\n'), ":2: a quotation mark is not closed"),
     "the headings again": (words("\n-6.0", f"\n{','.join(SOUND)}\n-6.0"), ":3: column alpha_deg"),
     "prose": (csv("the quick brown fox\njumps over\n"), ":2: has 2 cells under 4 headings"),
     "a page for a table": (csv("<!doctype html><html>Not found</html>\n"), "headings but no data"),
