@@ -71,7 +71,8 @@ def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:
         """``why`` may quote the first wrong cell."""
         if np.any(wrong):
             row = int(wrong.argmax())
-            sentence = why.format(cell=shortened(cells.iloc[row]))
+            cell = cells.iloc[row]
+            sentence = why.format(cell=f"{cell:.15g}" if isinstance(cell, float) else shortened(cell))
             if raw is None:
                 raise InputError(f"row {row + 1}: {sentence}", column=name)
             raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=name)
