@@ -22,7 +22,7 @@ from mffit.points.faulty import DRIVEN
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
-from mffit.points.slip_zero import Driven, SlipZero, against_free_rolling
+from mffit.points.slip_zero import SlipZero, against_free_rolling, readings_of
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
@@ -135,7 +135,7 @@ def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points |
     if not taken_off:
         return None
     kappa = points.kappa.copy()
-    of = Driven(points.kappa, points.Fx, points.Fz, points.alpha, points.gamma, points.p, points.RL, points.V)
+    of = readings_of(points)
     for file, zero in taken_off.items():
         own = points.file == points.files.index(file) if file in points.files else np.zeros(len(points), bool)
         kappa[own] = ((1.0 + kappa) * (1.0 + zero.at(of)) - 1.0)[own]

@@ -18,6 +18,7 @@ from mffit.errors import InputError
 from mffit.points import constants
 from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
+from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
 
@@ -40,7 +41,7 @@ class SlipRemarks(NamedTuple):
 class Driven(NamedTuple):
     """Readings (n,) in any axes; only the magnitudes of load and angles count."""
 
-    slip: np.ndarray
+    kappa: np.ndarray
     Fx: np.ndarray  #: [N]
     Fz: np.ndarray  #: [N]
     alpha: np.ndarray  #: [rad]
@@ -117,7 +118,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
     Enough lie on either side of it, or at it: those of an undriven wheel, with slip that was run in steps.
     """
     if (
-        not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
+        not np.nanmax(of.kappa, initial=-np.inf) - np.nanmin(of.kappa, initial=np.inf)
         >= constants.SMALLEST_SWEEP_OF_SLIP
     ):
         return None  # a freely rolling wheel: Fx over slip is that of the noise
@@ -137,19 +138,19 @@ def slip_zero(of: Driven) -> SlipZero | None:
     middle = Driven(*(np.median(np.abs(values), keepdims=True) for values in used))
     conditions, compliance = _conditions(used, middle), _compliance(used, middle)
     design = np.column_stack([conditions, x[:, None] * compliance, x**3])
-    solution, scatter = _robust_lines(design, used.slip)
+    solution, scatter = _robust_lines(design, used.kappa)
     k = conditions.shape[1]
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
-    every = np.isfinite(of.slip) & np.isfinite(force)
+    every = np.isfinite(of.kappa) & np.isfinite(force)
     if in_steps:  # few readings show the slope at zero: the whole curve shows sign and unit
         driven = every & (np.abs(force) > some)
-        inverse = float(np.median((of.slip - _conditions(of, middle) @ found)[driven] / force[driven]))
-    if inverse * float(np.mean(of.slip[every] * force[every])) < 0.0:
+        inverse = float(np.median((of.kappa - _conditions(of, middle) @ found)[driven] / force[driven]))
+    if inverse * float(np.mean(of.kappa[every] * force[every])) < 0.0:
         return None  # few points near zero: their line contradicts the whole curve
     zero = SlipZero(1.0 / inverse if inverse else np.nan, _at_loads(used, middle, found), middle, found)
     if np.all(np.isfinite(of.RL)):
-        by_radius, left = _robust_lines(design, (1.0 + used.slip) / used.RL)
+        by_radius, left = _robust_lines(design, (1.0 + used.kappa) / used.RL)
         if left * middle.RL < scatter:
             return replace(zero, coefficients=by_radius[:k], per_radius=True)
     return zero
@@ -224,8 +225,8 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
 
 def _too_weak(of: Driven) -> bool:
     """Whether slips that show a force have less of one than any tyre."""
-    shown = (np.abs(of.slip) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
-    if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.slip[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
+    shown = (np.abs(of.kappa) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
+    if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.kappa[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
         return False  # a wheel without drive: its slip says nothing
     return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < WEAKEST)
 
@@ -236,7 +237,7 @@ def _weak(of: Driven, config: Config) -> str:
     heading = (column.column if column is not None else None) or "Fx_N"
     return (
         f"Fx is at most {np.nanmax(np.abs(of.Fx)):.3g} N at loads of {np.nanmedian(np.abs(of.Fz)):.0f} N and slips of up to "
-        f"{np.nanmax(np.abs(of.slip)):.2f}, which looks like kN; write newtons, or "
+        f"{np.nanmax(np.abs(of.kappa)):.2f}, which looks like kN; write newtons, or "
         f'Fx_N = {{ column = "{heading}", unit = "kN" }} under [columns]'
     )
 
@@ -255,11 +256,9 @@ def _contradiction(heading: str, zero: SlipZero) -> str:
     return ""
 
 
-def readings_of(sweep: Sweep) -> Driven:
-    """The readings of a sweep."""
-    return Driven(
-        sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p, sweep.RL, np.abs(sweep.V)
-    )
+def readings_of(rows: MeasuredRows) -> Driven:
+    """The readings of a sweep or of points."""
+    return Driven(*(getattr(rows, name) for name in Driven._fields))
 
 
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:

@@ -12,6 +12,7 @@ from mffit.csv_tables import csv_text
 from mffit.errors import InputError, shortened
 from mffit.quantities import CONDITIONS
 from mffit.sweeps.channels import BY_NAME
+from mffit.sweeps.columns import text_of
 from mffit.sweeps.formats import read
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -71,8 +72,8 @@ def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:
         """``why`` may quote the first wrong cell."""
         if np.any(wrong):
             row = int(wrong.argmax())
-            cell = cells.iloc[row]
-            sentence = why.format(cell=f"{cell:g}" if isinstance(cell, float) else shortened(cell))
+            cell = cells.iloc[row] if raw is None else text_of(cells.iloc[row])
+            sentence = why.format(cell=shortened(cell))
             if raw is None:
                 raise InputError(f"row {row + 1}: {sentence}", column=name)
             raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=name)

@@ -95,7 +95,7 @@ def _zero(
 
     return slip_zero(
         Driven(
-            slip=slip,
+            kappa=slip,
             Fx=in_si("Fx_N", "N"),
             Fz=in_si("Fz_N", "N"),
             alpha=in_si("alpha_deg", "rad"),

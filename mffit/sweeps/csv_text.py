@@ -41,7 +41,6 @@ COMMENT = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
-OPEN_QUOTE = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
 LABELS = frozenset(channel.name for channel in SWEEP_CHANNELS if channel.kind == "label")
 """Columns that are texts even if they look like numbers."""
 
@@ -181,21 +180,23 @@ def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path
             encoding_errors="replace",
             low_memory=False,
         )
-    except ValueError as error:  # pandas counts lines from 1 and rows from 0
+    except ValueError as error:
         found = re.search(r"in line (\d+), saw (\d+)", str(error))
         if found:
             width = sum(isinstance(name, str) for name in names)
             raise ragged(int(found[2]), width, path, above + int(found[1])) from None
-        line = above + 1 + int((re.findall(r"row (\d+)", str(error)) or ["0"])[0])
-        sentence = (
-            OPEN_QUOTE if "EOF inside string" in str(error) else f"is not valid CSV ({error}); correct it"
-        )
-        raise InputError(sentence, file=path, line=line) from None
+        raise _open_quote(body, path, above) from None
     if len(table) != body.count(b"\n") + (not body.endswith(b"\n")):
-        lines = body.split(b"\n")
-        line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
-        raise InputError(OPEN_QUOTE, file=path, line=line)
+        raise _open_quote(body, path, above)
     return table
+
+
+def _open_quote(body: bytes, path: Path, above: int) -> InputError:
+    """The error about a text whose rows are not its lines, at the first line with an odd number of quotation marks."""
+    lines = body.split(b"\n")
+    line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
+    sentence = "a quotation mark is not closed in its line; remove it, or the line break within the cell"
+    return InputError(sentence, file=path, line=line)
 
 
 def _check_widths(

@@ -41,10 +41,10 @@ def test_the_zero_follows_load_camber_pressure_and_sideslip():
 
 def test_braking_that_is_positive_throughout_is_still_found():
     driven = readings(0.05)
-    assert slip_zero(driven._replace(slip=-driven.slip)).slope < 0.0
+    assert slip_zero(driven._replace(kappa=-driven.kappa)).slope < 0.0
 
 
 def test_a_freely_rolling_wheel_shows_no_zero_of_slip():
     """Its recorded slip is noise, and Fx over it has no meaning."""
     driven = readings(0.05)
-    assert slip_zero(driven._replace(slip=-0.9999 + 1e-3 * driven.slip)) is None
+    assert slip_zero(driven._replace(kappa=-0.9999 + 1e-3 * driven.kappa)) is None

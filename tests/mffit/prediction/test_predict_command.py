@@ -194,7 +194,7 @@ def test_a_mistake_in_the_conditions_is_a_sentence(foreign: Built, here, capsys,
         ({"Fz_N": [900.0, np.nan, 1.0]}, "column Fz_N: row 2: this cell is empty"),
         ({"gamma_deg": ["0", "1", None]}, "column gamma_deg: row 3: this cell is empty"),
         ({"kappa": [0.0, np.inf, 0.0]}, 'column kappa: row 2: "inf" is not a number'),
-        ({"V_mps": [0.0, 1.0, 1.0]}, "column V_mps: row 1: 0 is not above zero"),
+        ({"V_mps": [0.0, 1.0, 1.0]}, "column V_mps: row 1: 0.0 is not above zero"),
     ],
 )
 def test_a_mistake_in_a_table_names_its_row(foreign: Built, change: dict[str, Any], sentence):

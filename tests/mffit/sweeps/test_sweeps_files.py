@@ -140,7 +140,9 @@ WHOLE = {
     "a cell more behind the first lines": (
         b"alpha_deg,gamma_deg,Fz_N,Fy_N\n" + b"0,0,1500,-300\n" * 9000 + b"0,0,1500,-300,7\n", 9002, "5 cells under 4 headings",
     ),
-    "open quotation mark": (b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"1500,-300\n0,0,1500,1\n', 3, "quotation mark is not closed"),
+    "open quotation mark": (
+        b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"1500,-300\n0,0,1500,1\n', 3, "quotation mark is not closed",
+    ),
     "line break within a cell": (
         b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"15\n00",-300\n', 3, "quotation mark is not closed in its line",
     ),
