@@ -32,7 +32,7 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     """
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
-    part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
+    part = problem.reweighted().thinned(next(_strides(len(problem.points))))
     ends = []
     for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
         begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
@@ -54,7 +54,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     near = _approached(stated, plan)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
-    problem, scale = near.with_noise_of_misfit().reweighted()
+    problem = near.with_noise_of_misfit().reweighted()
     numbers = plan.numbers(problem)
     solution = solve(problem.free([n.name for n in numbers]), numbers)
     problem = problem.with_values(solution.values)
@@ -76,9 +76,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
             for n in numbers
             if math.isfinite(n.spread) and error_of(n.name) is None and stderr[n.name] >= share * n.spread
         ),
-        scale=scale,
         left=solution.left,
-        cost=solution.cost,
         hand=plan.hand,
     )
 
@@ -86,7 +84,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     """The problem near its solution, by passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
-        thinned = problem.reweighted()[0].thinned(stride)
+        thinned = problem.reweighted().thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)
