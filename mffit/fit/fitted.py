@@ -31,9 +31,7 @@ class Fitted:
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
     at_limit: frozenset[str]  #: those of them that only a physical limit holds
     regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
-    scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
     left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
-    cost: float  #: sum of squares of data, priors and broken limits
     hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 
     @property

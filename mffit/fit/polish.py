@@ -32,7 +32,7 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
     """
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
-    part = problem.reweighted()[0].thinned(next(_strides(len(problem.points))))
+    part = problem.reweighted().thinned(next(_strides(len(problem.points))))
     ends = []
     for shape in ({}, *(SHAPES_OF_FX if "PCX1" in plan.free else ())):
         begin = part.with_values({n: plan.hand.inside(n, x) for n, x in shape.items() if n in plan.free})
@@ -54,22 +54,19 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     near = _approached(stated, plan)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
     near = near.with_values(with_expected_signs(near.simulation.values, expected))
-    problem, scale = near.with_noise_of_misfit().reweighted()
-    return _fitted(problem, plan.numbers(problem), plan, scale)
+    problem = near.with_noise_of_misfit().reweighted()
+    return _fitted(problem, plan.numbers(problem), plan)
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
     """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
     for _ in range(2):
         here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
-        problem, scale = here.with_noise_of_misfit().reweighted()
-        fitted = _fitted(problem, fitted.numbers, fitted, scale)
+        fitted = _fitted(here.with_noise_of_misfit().reweighted(), fitted.numbers, fitted)
     return fitted
 
 
-def _fitted(
-    problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted, scale: Mapping[str, float]
-) -> Fitted:
+def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted) -> Fitted:
     """The fit of some numbers, begun at the values of ``problem``; ``given`` says what is held."""
     numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers)
@@ -92,9 +89,7 @@ def _fitted(
             for n in numbers
             if math.isfinite(n.spread) and error_of(n.name) is None and stderr[n.name] >= share * n.spread
         ),
-        scale=scale,
         left=solution.left,
-        cost=solution.cost,
         hand=given.hand,
     )
 
@@ -102,7 +97,7 @@ def _fitted(
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     """The problem near its solution, by passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
-        thinned = problem.reweighted()[0].thinned(stride)
+        thinned = problem.reweighted().thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else POLISH_TOLERANCE
         numbers = plan.numbers(thinned)

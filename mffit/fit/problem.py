@@ -67,17 +67,17 @@ class FitProblem:
         """The numbers with their current values as starting values."""
         return [replace(n, start=self.value(n.name)) for n in numbers]
 
-    def reweighted(self) -> tuple[FitProblem, dict[str, float]]:
-        """The problem with weights from its own misfit, and by channel the robust misfit over sigma, at least 1.
+    def reweighted(self) -> FitProblem:
+        """The problem with weights from its own misfit.
 
         A channel that the model misses by more than the noise must not dominate the other one.
         """
-        found = {
-            name: weights.enlarged(z, self.points.sweep, self.nominal.get(name, np.ones_like(z)))
+        sigma = {
+            name: self.sigma[name]
+            * weights.enlarged(z, self.points.sweep, self.nominal.get(name, np.ones_like(z)))
             for name, z in self.misfit().items()
         }
-        sigma = {name: self.sigma[name] * factor for name, (factor, _) in found.items()}
-        return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
+        return replace(self, sigma=sigma)
 
     def with_noise_of_misfit(self) -> FitProblem:
         """The problem whose readings that state no uncertainty have one no larger than the scatter of their misfit.

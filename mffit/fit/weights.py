@@ -35,17 +35,15 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
     return np.asarray(np.sqrt(np.maximum(size, 1.0)))
 
 
-def enlarged(
-    residual: np.ndarray, sweep: np.ndarray, least: np.ndarray | float = 1.0
-) -> tuple[np.ndarray, float]:
-    """Factor (n,) on the uncertainty of each point, infinite for outliers; and the robust scale, at least 1.
+def enlarged(residual: np.ndarray, sweep: np.ndarray, least: np.ndarray | float = 1.0) -> np.ndarray:
+    """Factor (n,) on the uncertainty of each point, infinite for outliers.
 
     Residuals are in units of the uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's sweep.
     ``least`` (n,) is the smallest scale by which a reading counts as an outlier.
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
-    return np.where(outlying(residual, np.maximum(scale, least), sweep, least), np.inf, factor), scale
+    return np.where(outlying(residual, np.maximum(scale, least), sweep, least), np.inf, factor)
 
 
 def outlying(

@@ -65,7 +65,7 @@ def test_a_stretch_that_the_model_misses_is_not_an_outlier():
     sweep = np.repeat(np.arange(20), 20)
     residual = rng.standard_normal(400)
     residual[40:60] += 40.0 * np.sin(np.linspace(0.0, np.pi, 20))
-    factor, _ = enlarged(residual, sweep)
+    factor = enlarged(residual, sweep)
     assert np.all(np.isfinite(factor))
     assert factor[50] > 2.0  # but it pulls less than its size
 
