@@ -14,7 +14,6 @@ from mffit.fit.posterior import spread_through
 from mffit.quantities import CHARACTERISTICS
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
-from tir.equations.normalise import camber_reduction
 from tir.outputs import outputs_of
 
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
@@ -47,7 +46,8 @@ def characteristics(
     rows = [] if known is None else [i for i, name in enumerate(known.names) if name in tyre.values]
     names = [] if known is None else [known.names[i] for i in rows]
     uncertain = traced({name: float(tyre[name]) for name in names})
-    p = SimpleNamespace(**{**vars(tyre.p), **uncertain})
+    values: dict[str, Any] = {**vars(tyre.p), **uncertain}
+    p = SimpleNamespace(**values)
     still = {"alpha": 0.0, "gamma": 0.0, "kappa": 0.0, "phi_t": 0.0}
     still |= {"Fz": load, "pressure": float(tyre["INFLPRES"]) if pressure is None else pressure}
 
@@ -71,7 +71,7 @@ def characteristics(
     driven = min(float(tyre["KPUMAX"]), SLIP_BEYOND_THE_PEAK) if slip_reach is None else slip_reach
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
     found = {
-        "epsilon_gamma": camber_reduction(p, dfz),
+        "epsilon_gamma": values["PECP1"] * (1.0 + values["PECP2"] * dfz),
         "C_alpha_N_per_rad": by_slip["Fy"],
         "C_gamma_N_per_rad": slopes("gamma")["Fy"],
         "C_Mz_alpha_Nm_per_rad": by_slip["Mz"],

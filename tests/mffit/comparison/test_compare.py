@@ -39,6 +39,7 @@ def test_numbers_are_those_of_the_equations():
     state = tyre.state(1400.0)
     assert found["C_alpha_N_per_rad"] == pytest.approx(float(state.K_ya), rel=2e-3)
     assert found["epsilon_gamma"] == pytest.approx(tyre["PECP1"])
+    assert values_of(tyre.replace(PECP1=0.0), 1400.0, turn_slip=True)["epsilon_gamma"] == 0.0
     implied = abs(float(state.K_yg0)) * tyre["UNLOADED_RADIUS"] / (1.0 - tyre["PECP1"])
     assert found["C_phit_Nm"] == pytest.approx(implied, rel=2e-3)
     assert found["r_e_m"] == pytest.approx(float(state.Re))
