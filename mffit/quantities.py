@@ -64,7 +64,7 @@ class QuantityName(NamedTuple):
 
     def of(self, value: float) -> str:
         """A rounded value with its unit: ``1500 N``."""
-        return f"{value:.0f} {self.unit}"
+        return f"{round(value) + 0.0:.0f} {self.unit}"
 
 
 def column(channel: str, of: str = "") -> str:

@@ -49,6 +49,11 @@ WIDER_THAN_THE_FIT = Real(
     "-",
     "Variance of a coefficient beside what the formula misses, over that of the fit, which knows nothing of this.",
 )
+CERTAIN_EVIDENCE = Real(
+    12.5,
+    "-",
+    "Log evidence that proves a smooth miss, and a condition over which it changes: five standard deviations.",
+)
 LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."
 )

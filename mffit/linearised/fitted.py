@@ -107,6 +107,16 @@ class LinearisedChannel:
         """Gain of log evidence by what the formula misses, over a constant alone."""
         return self.stride * (self._evidence(self.components.lengths) - self._without)
 
+    @property
+    def is_proven(self) -> bool:
+        """Whether neither noise nor differences of runs look like what the formula misses."""
+        return self.proof > constants.CERTAIN_EVIDENCE
+
+    @property
+    def proven_over(self) -> list[str]:
+        """Names of the inputs over which it changes for certain, the clearest first."""
+        return [name for name, gain in self.missed_over.items() if gain > constants.CERTAIN_EVIDENCE]
+
     @cached_property
     def missed_over(self) -> dict[str, float]:
         """Gain of log evidence because what the formula misses changes over an input, by its name, largest first."""

@@ -19,15 +19,8 @@ LEVELS: Mapping[str, levels.LevelKind] = {
     "p": levels.PRESSURE,
 }
 """Settings of a test plan and the tolerance of their levels."""
-COLUMNS: Mapping[str, str] = {
-    "alpha": "alpha_deg",
-    "kappa": "kappa",
-    "Fz": "Fz_N",
-    "gamma": "gamma_deg",
-    "p": "p_kPa",
-    "T": "T_degC",
-}
-"""Conditions by the column of a table."""
+COLUMNS: Mapping[str, str] = {column.partition("_")[0]: column for column in CONDITIONS}
+"""Column of a table by condition."""
 OTHER_WORDS: Mapping[str, str] = {
     "phi_t": "path curvature",
     "direction": "direction of rolling",

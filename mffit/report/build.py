@@ -19,6 +19,7 @@ from mffit.report.figures import (
     bands,
     decomposition,
     fit,
+    missed,
     radii,
     residuals,
     slip,
@@ -113,6 +114,15 @@ BUILD: tuple[Picture[BuildView], ...] = (
         "the model misses; mffit diagnose looks for its cause. Of readings at one place the worst is on top; a small dot marks "
         "a point that was run backwards.",
         draw=residuals.residual_maps,
+    ),
+    Picture(
+        name="missed",
+        title="What the formula misses smoothly and alike in all sweeps, by the conditions with which it changes most",
+        shows="Measured minus model without what differs from run to run and without noise, with 95 % uncertainty: lines at a "
+        "tenth, the middle and nine tenths of one condition, all others in the middle of their readings. Only channels in which "
+        "chance does not explain it are drawn. No sweep is at fault for it; mffit predict adds it.",
+        section="residuals",
+        draw=missed.missed,
     ),
 )
 """Every picture of the report, in its order."""

@@ -16,6 +16,8 @@ from brush import Brush, sweeps, written
 from small_rigs import flat, simulated
 
 import mffit
+from mffit.report.build_view import view_of
+from mffit.report.figures.missed import missed
 from mffit.results import BuildResult
 
 TYRE = Brush(a=0.0509, stiffness=3.2e6, mu=1.29, mu_load=-0.09, fading=0.3, crown=0.05, reduction=0.03)
@@ -55,6 +57,18 @@ def test_the_limit_is_said_with_its_size(sound):
     size = float(said.split("it misses ")[1].split(" N rms")[0])
     assert 0.6 * misses < size < 1.2 * misses
     assert f"{100.0 * size / np.max(np.abs(Fy)):.1f} % of the largest Fy" in said
+
+
+def test_what_is_missed_is_drawn_within_its_uncertainty(sound):
+    """Every line of the picture against the brush itself less the fitted tyre, between the tested conditions too."""
+    drawn, gamma, off = missed(view_of(sound)), float(np.median(sound.points.gamma)), []
+    for panel in (one for one in drawn.panels if one.title.startswith("Fy, by load")):
+        for line in panel.series:
+            alpha, load = np.radians(line.x), np.full(len(line.x), float(line.name.split()[0]))
+            Fy, _ = TYRE.forces(alpha, gamma + 0.0 * alpha, load)
+            off.append((Fy - sound.fit.tyre(load, alpha=alpha, gamma=gamma).Fy - line.y) / line.half)
+    assert np.mean(np.abs(np.concatenate(off)) < 1.0) > 0.8
+    assert any(np.max(np.abs(line.y)) > 10.0 for panel in drawn.panels for line in panel.series)
 
 
 def scaled(column: str, factor: float) -> Change:

@@ -1,0 +1,89 @@
+"""What the formula misses smoothly and alike in all sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pandas as pd
+
+from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
+from mffit.linearised import LinearisedChannel
+from mffit.linearised.inputs import COLUMNS, LEVELS
+from mffit.prediction.conditions import UNITS
+from mffit.quantities import CHANNELS, CONDITIONS, column
+from mffit.report import style
+from mffit.report.build_view import BuildView
+from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Note, Panel, Sheet, Trace
+from mffit.results import BuildResult
+
+SHARES = (0.1, 0.5, 0.9)
+"""Quantiles of a condition for which lines are drawn."""
+ROOM = 0.35
+"""Room for their names, over the range of the axis."""
+LINE_OF_TEXT = 0.11
+"""Height of a line of text over that of a panel."""
+
+
+def missed(view: BuildView) -> Sheet:
+    """A row for every channel that the formula is proven to miss: over what misses most, a panel per other condition."""
+    linear = view.build.remains.linear
+    rows = [
+        [_panel(view.build, channel, over, by) for by in others]
+        for channel in (linear.channels.values() if linear else ())
+        if channel.is_proven
+        for over, *others in [_conditions(channel)]
+    ]
+    return Sheet(rows=rows, height=1.6) if any(rows) else NOTHING
+
+
+def _conditions(channel: LinearisedChannel) -> list[str]:
+    """Columns of the swept condition over which the miss changes most, and of the others, the clearest first."""
+    by_name = {one.name: one for one in channel.smooth.inputs}
+    found = [by_name[name] for name in channel.missed_over if COLUMNS.get(name) in UNITS]
+    return [COLUMNS[one.name] for one in sorted(found, key=lambda one: one.is_held or one.name not in LEVELS)]
+
+
+def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str) -> Panel:
+    """Lines over one condition at several values of another, everything else in the middle."""
+    points, name = build.points.select(channel.rows), channel.name
+    values = {column: points.condition(column) for column in COLUMNS.values() if column in UNITS}
+    usual = {column: float(np.nanmedian(x)) for column, x in values.items() if np.any(np.isfinite(x))}
+    unit, series = CHANNELS[name].unit, list[Trace]()
+    levels = np.unique(np.quantile(values[by], SHARES, method="nearest")).tolist()
+    for value, colour in style.ramp(levels).items():
+        along = np.linspace(np.nanmin(values[over]), np.nanmax(values[over]), STEPS_OF_LINE)
+        at = pd.DataFrame({**usual, over: along, by: value}, index=range(len(along)))
+        assert build.prediction is not None
+        found = build.prediction.predict(build.fit.tyre, build.fit.tyre, at)
+        series.append(
+            Trace(
+                name=CONDITIONS[by].of(value),
+                x=along,
+                y=(found[column(name, "best")] - found[column(name)]).to_numpy(),
+                half=COVERAGE_FACTOR_95 * found[f"u_{column(name, 'best')}"].to_numpy(),
+                look=Look(colour=colour, line="-", opacity=style.SHADE),
+            )
+        )
+    return Panel(
+        title=f"{name}, by {CONDITIONS[by].word}",
+        x=Axis(label=CONDITIONS[over].axis, low=float(along[0]), high=_beyond(along, ROOM)),
+        y=Axis(label=f"missed [{unit}]"),
+        series=series,
+        guides=[ZERO],
+        notes=list(_names(series)),
+    )
+
+
+def _names(series: Sequence[Trace]) -> Iterator[Note]:
+    """The name of every line behind its end, none over another."""
+    low = min(float(np.min(one.y - one.half)) for one in series if one.half is not None)
+    high = max(float(np.max(one.y + one.half)) for one in series if one.half is not None)
+    place = low
+    for one in sorted(series, key=lambda one: float(one.y[-1])):
+        place = max(place + LINE_OF_TEXT * (high - low), float(one.y[-1]))
+        yield Note(x=_beyond(one.x, 0.02), y=place, text=one.name, colour=one.look.colour)
+
+
+def _beyond(x: np.ndarray, share: float) -> float:
+    return float(x[-1] + share * (x[-1] - x[0]))
