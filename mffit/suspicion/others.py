@@ -182,9 +182,8 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
     id="doubtful-sweep",
     when=When.AFTER,
     outcome=Outcome.WARNED,
-    sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
-    "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
-    "or repeat it",
+    sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, {ratio:.1f} "
+    "times what noise and model explain{explained}; check this sweep or repeat it",
 )
 def doubtful_sweep(seen: Sequence[Doubt]) -> Iterator[Doubt]:
     """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open.
