@@ -21,6 +21,9 @@ from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
 
+STEEPEST = 1e5
+"""Change of all readings by a usual change of a number, over their noise, beyond which sums of squares lose all else."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearisedNumbers:
@@ -280,9 +283,13 @@ class DiagnosisProblem:
 
         Both without the changes that readings share.
         """
-        away = np.array([fitted.numbers[n.name] - n.expected for n in numbers])
-        at_centre = fitted.residual - fitted.jacobian @ away
+        away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
+        size = np.linalg.norm(
+            columns, axis=0
+        )  # infinite slopes, as of a root at zero, are no numbers to compute with
+        columns = columns * np.where(size > STEEPEST, STEEPEST / np.maximum(size, STEEPEST), 1.0)
+        at_centre = fitted.residual - columns @ away
         found = self.noise.unshared(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
