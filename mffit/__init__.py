@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
+        verify,
         write_tydex,
     )
 
@@ -51,6 +52,7 @@ __all__ = [
     "predict",
     "show",
     "spin",
+    "verify",
     "write_c",
     "write_fmu",
     "write_tydex",

@@ -10,6 +10,7 @@ from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
 from mffit.pipeline.showing import show
+from mffit.pipeline.verifying import verify
 from mffit.prediction import predict
 
 __all__ = [
@@ -25,5 +26,6 @@ __all__ = [
     "project_of",
     "show",
     "spin",
+    "verify",
     "write_tydex",
 ]

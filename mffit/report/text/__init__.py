@@ -9,6 +9,7 @@ from mffit.report.text.many import fleet_summary, lacking, many_line, many_summa
 from mffit.report.text.plan import plan_summary
 from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary
+from mffit.report.text.verification import verification_summary
 
 __all__ = [
     "alignment_table",
@@ -28,4 +29,5 @@ __all__ = [
     "prediction_summary",
     "sniff_summary",
     "spin_summary",
+    "verification_summary",
 ]

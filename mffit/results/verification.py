@@ -3,31 +3,92 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeGuard
 
+from mffit.brief import Brief
+from mffit.results import constants
 from mffit.results.values import Json
+from tir.errors import counted
 
 MISSING = "missing"
 """In place of a number that one of the two results lacks."""
 PASSING = ("made", "lab", "warnings", "fit.seconds")
 """Keys of ``result.json`` that no figure of the tyre is in: they differ from run to run, or are copied from the configuration."""
-SAME_NUMBER = 1e-5
-"""Relative change below which a number comes out again: processors and libraries round the last digits differently."""
-SAME_IN_U = 1e-3
-"""Change in standard uncertainties below which a number comes out again: no stated digit of it changes."""
 
 
 @dataclass(frozen=True, slots=True)
 class NumberAgain:
     """A number of a stored result and of the new one."""
 
-    file: str  #: or project
+    file: str  #: "result.json" or a property file
     key: str  #: dotted, or the name of a coefficient
     old: Json
     new: Json
     size: float  #: of the change in units of the tolerance; infinite if one is missing or of another kind
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Verification(Brief):
+    """What a new run from the stored inputs says about a stored result."""
+
+    folder: str
+    compared: tuple[NumberAgain, ...]
+    method: tuple[int, int]  #: stored, and of this program
+    version: tuple[str, str]  #: stored, and of this program
+    libraries: tuple[Mapping[str, str], Mapping[str, str]]  #: versions by name, stored and of this program
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers were compared."""
+        return len(self.compared)
+
+    @property
+    def exact(self) -> int:
+        """Of them the same to the last digit."""
+        return sum(row.old == row.new for row in self.compared)
+
+    @property
+    def changes(self) -> tuple[NumberAgain, ...]:
+        """Those that do not come out again, the largest change first."""
+        return tuple(sorted((row for row in self.compared if row.size > 1.0), key=lambda row: -row.size))
+
+    @property
+    def same(self) -> bool:
+        """Whether every number comes out again."""
+        return not self.changes
+
+    @property
+    def headline(self) -> str:
+        """The result in one sentence."""
+        if self.same:
+            rest = "" if self.exact == self.numbers else f", {self.exact} of them to the last digit"
+            return f"every number comes out again ({self.numbers}{rest})"
+        return f"{len(self.changes)} of {counted(self.numbers, 'number')} do not come out again"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about another method or version."""
+        return tuple(self._notes())
+
+    def _notes(self) -> Iterator[str]:
+        (was, now), (old, new) = self.method, self.version
+        if was != now:
+            yield (
+                f"the result was made by method {was} (mffit {old}), and this is method {now} (mffit {new}): numbers may differ "
+                "for this reason alone"
+            )
+        elif old != new:
+            yield f"the result was made by mffit {old}, and this is {new}; both use method {now}"
+        before, here = self.libraries
+        others = [
+            f"{name} {before[name]} (here {here.get(name)})"
+            for name in before
+            if before[name] != here.get(name)
+        ]
+        if others:
+            yield f"the result was made with {', '.join(others)}: last digits may differ"
 
 
 def compared(file: str, old: Json, new: Json) -> list[NumberAgain]:
@@ -87,5 +148,5 @@ def _size(old: Json, new: Json, u: float) -> float:
         return 0.0
     if not _is_number(old) or not _is_number(new):
         return math.inf
-    tolerance = SAME_NUMBER * max(abs(old), abs(new))
-    return abs(new - old) / max(tolerance, SAME_IN_U * u if u > 0.0 else 0.0)
+    tolerance = constants.SAME_NUMBER * max(abs(old), abs(new))
+    return abs(new - old) / max(tolerance, constants.SAME_IN_U * u if u > 0.0 else 0.0)
