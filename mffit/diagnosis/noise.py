@@ -66,7 +66,7 @@ class SharedDirections(NamedTuple):
 
     rows: slice  #: of the readings
     axes: np.ndarray  #: (m, k)
-    variance: np.ndarray  #: (k,) of the changes, over that of the readings
+    variance: np.ndarray  #: (k,) of the changes; a whitened reading has 1
 
     def less(self, z: np.ndarray) -> np.ndarray:
         """Differences (m,) or (m, j) in units of their uncertainty with these changes; a symmetric operation."""
@@ -162,7 +162,7 @@ class Noise:
         """Of the shared changes, beside the structure."""
         if self.shared is None or not self.shared.shape[1]:
             return SharedDirections(slice(None), np.empty((len(self.used), 0)), np.empty(0))
-        white = self.less_structure(self._independent(self.shared[self.used]))
+        white = self._less_structure(self._independent(self.shared[self.used]))
         variance, turn = np.linalg.eigh(white.T @ white)
         some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
         axes = white @ (turn[:, some] / np.sqrt(variance[some]))
@@ -178,9 +178,9 @@ class Noise:
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
-        return self._directions.less(self.less_structure(self._independent(x[self.used])))
+        return self._directions.less(self._less_structure(self._independent(x[self.used])))
 
-    def less_structure(self, z: np.ndarray) -> np.ndarray:
+    def _less_structure(self, z: np.ndarray) -> np.ndarray:
         """Whitened differences (m,) or (m, k) of which smooth structure explains a part, in units of the joint uncertainty."""
         out = z.copy() if self.structure else z
         for one in self.structure:
@@ -196,7 +196,7 @@ class Noise:
 
     def back(self, x: np.ndarray) -> np.ndarray:
         """The transposed of what shared changes and structure do to whitened differences (m,) or (m, k)."""
-        return self.less_structure(self._directions.less(x))
+        return self._less_structure(self._directions.less(x))
 
     def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
         """By how much the sum of squares (k,) of whitened differences (m, k) falls with shared changes and structure.
@@ -212,7 +212,7 @@ class Noise:
     @cached_property
     def _directions_back(self) -> np.ndarray:
         """Directions of shared changes beside structure, as sums over differences without it."""
-        return self.less_structure(self._directions.axes)
+        return self._less_structure(self._directions.axes)
 
     def only(self, channel: str) -> Noise:
         """The scatter of one channel."""

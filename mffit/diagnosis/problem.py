@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -192,7 +193,7 @@ class DiagnosisProblem:
     def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
         """Candidates with their gain in log evidence to first order, best first."""
         columns = self.columns(before.state, candidates)
-        beside = self.beside or StructureBeside.nothing(self.noise)
+        beside = self._beside_or_nothing
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
         model, now = beside.structure.beside(*self._at_priors(before, numbers)), beside.amplitude
         known, alone, out = model.evidence(now), beside.scatter.alone(), []
@@ -200,6 +201,10 @@ class DiagnosisProblem:
             found = max(model.with_columns(alone.whiten(one)).evidence(now) for one in groups)
             out.append((effect, max(found - known, 0.0)))
         return sorted(out, key=lambda row: -row[1])
+
+    @cached_property
+    def _beside_or_nothing(self) -> StructureBeside:
+        return self.beside or StructureBeside.nothing(self.noise)
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
         """Changes of the readings (c n, k) by each effect at its usual size: to first order, and from each start."""
@@ -285,9 +290,8 @@ class DiagnosisProblem:
         """
         away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        size = np.linalg.norm(
-            columns, axis=0
-        )  # infinite slopes, as of a root at zero, are no numbers to compute with
+        # Infinite slopes, as of a root at zero, are no numbers to compute with.
+        size = np.linalg.norm(columns, axis=0)
         columns = columns * np.where(size > STEEPEST, STEEPEST / np.maximum(size, STEEPEST), 1.0)
         at_centre = fitted.residual - columns @ away
         found = self.noise.unshared(np.column_stack([at_centre, columns]))

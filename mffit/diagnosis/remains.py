@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, ndtri
+from scipy.special import chdtrc
 
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants
@@ -22,7 +22,7 @@ from mffit.fit.influences.joint import JointFit
 from mffit.least_squares import FreeNumber, touches
 from mffit.linearised import LinearisedFit
 from mffit.points import Points
-from mffit.scatter import rms
+from mffit.scatter import beyond, rms
 from mffit.suspicion import HeldNumber, LeftOutSweeps
 from tir.parameters import BY_NAME
 
@@ -130,12 +130,10 @@ class Left(NamedTuple):
 
     @classmethod
     def of(cls, fitted: Fitted, linear: LinearisedFit) -> Left:
-        problem = fitted.problem
-        numbers = [n for n in problem.starting_here(fitted.numbers) if n.name not in fitted.at_bound]
+        problem, numbers = fitted.problem, fitted.inner
         held = [
             FreeNumber(name, value := problem.value(name), -math.inf, math.inf, expected=value, spread=u)
-            for name, u in {**fitted.held, **fitted.held_rig}.items()
-            if u > 0.0
+            for name, u in fitted.taken_as_exact.items()
         ]
         known = [*(n for n in numbers if n.name not in BY_NAME), *held]
         joint = JointFit.of(problem, [*numbers, *held], (), problem.points.sweep)
@@ -174,7 +172,7 @@ class Left(NamedTuple):
         )
 
     def by_channel(self, change: np.ndarray) -> dict[str, np.ndarray]:
-        """A change of the rows (m,) as that of the readings that the linear model of every channel looks at."""
+        """A change of the rows (m,), by channel at the readings that its linear model looks at."""
         sigma, out = self.joint.sigma, {}
         parts = dict(zip(self.joint.channels, change[: sigma.size].reshape(sigma.shape), strict=True))
         for (name, part), u in zip(parts.items(), sigma, strict=True):
@@ -192,7 +190,7 @@ class _Test(NamedTuple):
     u: np.ndarray  #: their standard errors
     log_chance: float
     share: float  #: of the sum of squares that they explain
-    change: np.ndarray  #: (m,) of the rows, without what fitted numbers follow of it
+    change: np.ndarray  #: (m,) of the rows, less the part that fitted numbers can follow
 
 
 def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
@@ -279,7 +277,7 @@ def _sigma(log_chance: float) -> float:
     if log_chance >= 0.0:
         return 0.0
     if log_chance > -600.0:
-        return -float(ndtri(0.5 * math.exp(log_chance)))
+        return beyond(math.exp(log_chance))
     return math.sqrt(-2.0 * log_chance)
 
 

@@ -44,6 +44,16 @@ class Fitted:
         """Standard uncertainty of every number."""
         return self.posterior.stderr
 
+    @property
+    def inner(self) -> list[FreeNumber]:
+        """The numbers that are at no bound, with their values as starting values."""
+        return self.problem.starting_here([n for n in self.numbers if n.name not in self.at_bound])
+
+    @property
+    def taken_as_exact(self) -> dict[str, float]:
+        """Standard uncertainty of all numbers that the fit took as exact and that have one."""
+        return {name: u for name, u in {**self.held, **self.held_rig}.items() if u > 0.0}
+
 
 def uncertain(number: FreeNumber) -> Uncertain:
     """A number at its start with its prior; one without has half the width of the values that tyres have."""
@@ -58,10 +68,8 @@ def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | 
 
     A number at a bound stays there.
     """
-    inner = [number for number in fitted.numbers if number.name not in fitted.at_bound]
-    numbers = [uncertain(number) for number in fitted.problem.starting_here(inner)]
-    held = {**fitted.held, **fitted.held_rig}
-    numbers += [Uncertain(name, 0.0, u, held=True) for name, u in held.items() if u > 0.0]
+    numbers = [uncertain(number) for number in fitted.inner]
+    numbers += [Uncertain(name, 0.0, u, held=True) for name, u in fitted.taken_as_exact.items()]
     problem = of or fitted.problem
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without)
 

@@ -105,7 +105,7 @@ class LinearisedChannel:
     @cached_property
     def proof(self) -> float:
         """Gain of log evidence by what the formula misses, over a constant alone."""
-        return self.stride * (self._evidence(self.components.lengths) - self._without)
+        return self.stride * (self._evidence - self._without)
 
     @property
     def is_proven(self) -> bool:
@@ -120,18 +120,19 @@ class LinearisedChannel:
     @cached_property
     def missed_over(self) -> dict[str, float]:
         """Gain of log evidence because what the formula misses changes over an input, by its name, largest first."""
-        own = self._evidence(self.components.lengths)
         found = {}
         for i, one in enumerate(self.smooth.inputs):
             lengths = list(self.components.lengths)
             lengths[i] = constants.LONGEST_LENGTH * one.width
-            found[one.name] = self.stride * (own - self._evidence(tuple(lengths)))
+            constant = replace(self.components, lengths=tuple(lengths))
+            without = _evidence(self.alone, constant, self.smooth, self.declared)
+            found[one.name] = self.stride * (self._evidence - without)
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
-    def _evidence(self, lengths: tuple[float, ...]) -> float:
-        """Log evidence with other lengths."""
-        given, _, _ = variances(replace(self.components, lengths=lengths).logarithms, self.smooth)
-        return self.alone.evidence(with_further(given, self.declared)).value
+    @cached_property
+    def _evidence(self) -> float:
+        """Log evidence of the model with the coefficients as they are."""
+        return _evidence(self.alone, self.components, self.smooth, self.declared)
 
     @cached_property
     def _without(self) -> float:
@@ -142,8 +143,7 @@ class LinearisedChannel:
             common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]]),
         )
         found = _found(model, constant, self.unit, self.declared)
-        given, _, _ = variances(found.logarithms, constant)
-        return model.evidence(with_further(given, self.declared)).value
+        return _evidence(model, found, constant, self.declared)
 
     def _left_out(self, model: Mixed, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
         return [
@@ -159,11 +159,7 @@ class LinearisedChannel:
         """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
         found = _found(without, self.smooth, self.unit, self.declared)
-        before, after = (
-            model.evidence(with_further(variances(of.logarithms, self.smooth)[0], self.declared)).value
-            for model, of in ((self.alone, self.components), (without, found))
-        )
-        return self.stride * (after - before)
+        return self.stride * (_evidence(without, found, self.smooth, self.declared) - self._evidence)
 
 
 class Uncertain(NamedTuple):
@@ -301,6 +297,12 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
     return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+
+
+def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np.ndarray) -> float:
+    """Log evidence of components; ``further`` are logarithms of the variances of further common numbers."""
+    given, _, _ = variances(of.logarithms, smooth)
+    return model.evidence(with_further(given, further)).value
 
 
 def _found(model: Mixed, smooth: SmoothFunctions, unit: np.ndarray, further: np.ndarray) -> Components:

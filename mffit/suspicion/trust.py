@@ -384,8 +384,8 @@ def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Evidence of a smooth miss, where the noise is stated and the miss is no more than it."""
     for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():
-        over = [word_of(one) for one in channel.proven_over]
-        if channel.is_proven and over:
+        over = [word_of(one) for one in channel.proven_over] if channel.is_proven else []
+        if over:
             facts = {"channel": name, "over": listed(over), "size": channel.size}
             yield {**facts, "unit": CHANNELS[name].unit}
 

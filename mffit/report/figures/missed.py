@@ -47,12 +47,12 @@ def _conditions(channel: LinearisedChannel) -> list[str]:
 def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str) -> Panel:
     """Lines over one condition at several values of another, everything else in the middle."""
     points, name = build.points.select(channel.rows), channel.name
-    values = {column: points.condition(column) for column in COLUMNS.values() if column in UNITS}
-    usual = {column: float(np.nanmedian(x)) for column, x in values.items() if np.any(np.isfinite(x))}
+    values = {known: points.condition(known) for known in COLUMNS.values() if known in UNITS}
+    usual = {known: float(np.nanmedian(x)) for known, x in values.items() if np.any(np.isfinite(x))}
+    along = np.linspace(np.nanmin(values[over]), np.nanmax(values[over]), STEPS_OF_LINE)
     unit, series = CHANNELS[name].unit, list[Trace]()
     levels = np.unique(np.quantile(values[by], SHARES, method="nearest")).tolist()
     for value, colour in style.ramp(levels).items():
-        along = np.linspace(np.nanmin(values[over]), np.nanmax(values[over]), STEPS_OF_LINE)
         at = pd.DataFrame({**usual, over: along, by: value}, index=range(len(along)))
         assert build.prediction is not None
         found = build.prediction.predict(build.fit.tyre, build.fit.tyre, at)
