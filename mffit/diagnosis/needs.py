@@ -65,6 +65,7 @@ MET: dict[str, Callable[[Points], bool]] = {
     "times": lambda p: _spread(p.t) > constants.VISIBLE_TIME,
     "distances": _distance_is_not_time,
     "runs": lambda p: len(np.unique(p.file)) >= constants.VISIBLE_RUNS,
+    "directions": lambda p: _spread(p.direction) > 0.0,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
     "drive": lambda p: "Fx" in p.measured and not np.all(p.free_rolling),

@@ -16,6 +16,7 @@ NEEDS = {
     "times": "the time of every point (t_s)",
     "distances": "the time of every point (t_s) and speeds that differ during the test",
     "runs": "at least three runs, each in a file of its own",
+    "directions": "runs in both directions of rolling",
     "senses": "sideslip swept both up and down",
     "continuous": "a continuous sweep (time_s, moving alpha)",
     "drive": "sweeps of longitudinal slip with Fx",

@@ -7,6 +7,7 @@ from mffit.measured.radii import RadiusReading, measured_path_radius, radius_rea
 from mffit.measured.result import (
     KEYS,
     Alignment,
+    Drift,
     LoadResult,
     Measured,
     SetupResult,
@@ -19,6 +20,7 @@ __all__ = [
     "KEYS",
     "Alignment",
     "Contribution",
+    "Drift",
     "LoadResult",
     "Measured",
     "RadiusReading",

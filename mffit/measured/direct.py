@@ -10,6 +10,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
+from mffit.constants import FALSE_ALARM, VISIBLE_TEMPERATURE
 from mffit.measured import wording
 from mffit.measured.axis import (
     SetupAngle,
@@ -20,16 +21,17 @@ from mffit.measured.axis import (
     slip_stiffness,
     split_of_zero,
 )
+from mffit.measured.drift import shares_of_sweeps
 from mffit.measured.epsilon import (
     corrected,
     epsilon_from_moments,
     factor,
     load_dependence,
-    warmer_in_camber,
+    stiffer_in_camber,
 )
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
-from mffit.measured.result import LoadResult, Measured, SetupScatter, SideslipZeros
+from mffit.measured.result import Drift, LoadResult, Measured, SetupScatter, SideslipZeros
 from mffit.measured.setups import excess_forces, results_of_setups, setup_scatter, warnings_of_setups
 from mffit.measured.stiffnesses import LoadSlopes, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
@@ -81,9 +83,11 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes in stiffnesses])
     scatter: SetupScatter | None = None
     zeros: tuple[SideslipZeros, ...] = ()
+    drift: Drift | None = None
     if evidence.rig is not None:
         scatter = setup_scatter(evidence, stiffnesses)
         evidence = replace(evidence, excess=excess_forces(scatter, evidence.rig.of_setups))
+        evidence, drift = _with_drift(evidence)
         axes, zeros = _sideslip_zeros(evidence, stiffnesses)
         evidence = replace(evidence, axes=axes)
     for group, slopes in stiffnesses:
@@ -95,7 +99,25 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         warnings += troubles
     measured, troubles = _assembled(evidence, rows, skew)
     warnings += [*troubles, *warnings_of_setups(points, measured.nominal, scatter, config)]
-    return replace(measured, warnings=tuple(warnings), setup_scatter=scatter, sideslip_zeros=zeros)
+    return replace(
+        measured,
+        warnings=tuple(warnings),
+        setup_scatter=scatter,
+        sideslip_zeros=zeros,
+        drift=drift,
+    )
+
+
+def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]:
+    """The evidence with the shares of the sweeps where they clearly drift, and the drift; both as they are if warmth is known."""
+    points = evidence.points
+    if np.ptp(points.T) > VISIBLE_TEMPERATURE:
+        return evidence, None
+    shares = shares_of_sweeps(points)
+    if shares is None:
+        return evidence, None
+    seen = shares.drift.chance < FALSE_ALARM
+    return (replace(evidence, shares=shares) if seen else evidence), shares.drift
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
@@ -156,10 +178,10 @@ def _at_load(
     row = replace(_row(evidence, group, slopes, found), r_e=quantity_if(r_e, "m"), R=quantity_if(rig.R, "m"))
     if found is None or slopes.C_gamma is None or r_e is None:
         return _AtLoad(row, None), troubles
-    warmer = warmer_in_camber(evidence, group)
-    epsilon = factor(evidence, slopes.C_gamma, found, r_e, warmer)
+    stiffer = stiffer_in_camber(evidence, group)
+    epsilon = factor(evidence, slopes.C_gamma, found, r_e, stiffer)
     slope, secant = (
-        None if C is None else factor(evidence, C, found, r_e, warmer) for C in (slopes.slope, slopes.secant)
+        None if C is None else factor(evidence, C, found, r_e, stiffer) for C in (slopes.slope, slopes.secant)
     )
     row = replace(
         row,

@@ -32,7 +32,9 @@ class Factor(NamedTuple):
     debiased: UFloat  #: corrected for finite spin
 
 
-def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloat, warmer: float) -> Factor:
+def factor(
+    evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloat, stiffer: UFloat | float
+) -> Factor:
     """eps_gamma of one load.
 
     Parameters
@@ -41,14 +43,14 @@ def factor(evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloa
     C_gamma : camber stiffness, less what the rig adds to it [N/rad]
     found : turn-slip force and stiffness
     r_e : effective radius [m]
-    warmer : how much warmer the tyre was in the camber sweep than at zero [K]
+    stiffer : by how much the tyre was stiffer in the camber sweep than at zero, relative
 
     Notes
     -----
     A secant is the published procedure, whose budget has neither finite spin nor temperature.
     """
     if not evidence.published:
-        C_gamma = C_gamma * (1.0 - warmer * evidence.warming)
+        C_gamma = C_gamma * (1.0 - stiffer)
     ratio = camber_reduction(found.C_phit, C_gamma, r_e)
     spin = (1.0 - ratio.nominal_value) * found.phi_t[0] ** 2
     plain = ratio if evidence.published else ratio + spin * evidence.spin_left
@@ -63,13 +65,18 @@ def corrected(evidence: DirectEvidence, C_gamma: UFloat, C_alpha: UFloat | None)
     return true_camber_stiffness(C_gamma, evidence.rig.errors, at)
 
 
-def warmer_in_camber(evidence: DirectEvidence, group: LoadGroup) -> float:
-    """How much warmer the tyre was in the camber sweep than at its zeros [K]; 0 if it was not measured at both."""
+def stiffer_in_camber(evidence: DirectEvidence, group: LoadGroup) -> UFloat | float:
+    """By how much the tyre was stiffer in the camber sweep than at its zeros, relative; 0 if nothing says so.
+
+    Repeated conditions show it; or the temperatures of both say how uncertain it is.
+    """
     points = evidence.points
-    leaning = points.T[sweep(points, points.Fy, group, "gamma", evidence.config)]
-    upright = points.T[np.concatenate([zeros(points, group, direction) for direction in (1, -1)])]
-    known = [T[np.isfinite(T)] for T in (leaning, upright)]
-    return float(np.mean(known[0]) - np.mean(known[1])) if all(map(len, known)) else 0.0
+    leaning = sweep(points, points.Fy, group, "gamma", evidence.config)
+    upright = np.concatenate([zeros(points, group, direction) for direction in (1, -1)])
+    if evidence.shares is not None:
+        return evidence.shares.between(points, leaning, upright)
+    known = [T[np.isfinite(T)] for T in (points.T[leaning], points.T[upright])]
+    return (float(np.mean(known[0]) - np.mean(known[1])) if all(map(len, known)) else 0.0) * evidence.warming
 
 
 def epsilon_from_moments(

@@ -18,6 +18,7 @@ from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
 from mffit.measured import camber_reduction as method
 from mffit.measured import constants
 from mffit.measured.axis import SetupAngle
+from mffit.measured.drift import SweepShares
 from mffit.measured.radii import measured_effective_radius, measured_path_radius
 from mffit.measured.result import FINITE_SPIN
 from mffit.measured.uncertain import named
@@ -44,6 +45,7 @@ class DirectEvidence:
     warming: UFloat  #: relative change of stiffness with temperature [1/K]
     excess: Mapping[str, UFloat] = field(default_factory=dict)
     """Force by which each set-up scatters beyond what is declared [N]."""
+    shares: SweepShares | None = None  #: of sweeps, where they drift for an unknown cause
     axes: Mapping[str, SetupAngle] = field(default_factory=dict)
     """alpha_M of every set-up that was run both ways."""
 

@@ -47,6 +47,16 @@ class SideslipZeros(NamedTuple):
     other: SideslipReading
 
 
+class Drift(NamedTuple):
+    """How far forces of one condition differ from sweep to sweep, relative."""
+
+    scatter: float  #: standard deviation between sweeps
+    chance: float  #: probability that sweeps of one tyre in one state differ by so much
+    least: str  #: sweep with the smallest forces
+    most: str  #: sweep with the largest forces
+    apart: float  #: by which the two differ
+
+
 class SetupResult(NamedTuple):
     """The zeros of one set-up of the rig on one path and at one load, by themselves."""
 
@@ -175,6 +185,7 @@ class Measured(Brief):
     load_note: str = ""  #: the value of PECP2, or why it is 0
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
+    drift: Drift | None = None  #: None where nothing repeated shows one, or warmth is known
     misaligned_setups: Mapping[str, float] = field(default_factory=dict)
     """alpha_M [rad] of the set-ups that are beyond what the alignment leaves, each known from any of its loads."""
     axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned

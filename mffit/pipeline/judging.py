@@ -57,6 +57,7 @@ def judged(
         nominal=measured.nominal,
         radius_counts=not _follows_path(config),
         sideslip_zeros=measured.sideslip_zeros,
+        drift=measured.drift,
     )
     effect = left.effect is not None and left.effect.significant
     against = sorted(fitted.doubts, key=lambda doubt: -doubt.ratio)
@@ -80,6 +81,7 @@ def judged_measurement(config: Config, points: Points, measured: Measured) -> Tr
             nominal=measured.nominal,
             radius_counts=not _follows_path(config),
             sideslip_zeros=measured.sideslip_zeros,
+            drift=measured.drift,
         )
     )
 

@@ -105,6 +105,11 @@ class Chain:
         """Load (n,) [N]."""
         return self._quantities["Fz"]
 
+    @property
+    def nominal_load(self) -> Any:
+        """FNOMIN of the tyre [N]."""
+        return self._coefficients["FNOMIN"]
+
     @cached_property
     def beyond_usual_path(self) -> np.ndarray:
         """Distance (n,) of each path from the usual one, outwards [m]."""
@@ -135,6 +140,11 @@ class Chain:
     def sense(self) -> np.ndarray:
         """Sense (n,) of the sweep: 1, -1, or 0 where the angle was held."""
         return self._history.sense[self._rows]
+
+    @property
+    def along_sweep(self) -> np.ndarray:
+        """Place (n,) of every point in its sweep: 0 the first, 1 the last."""
+        return self._history.along_sweep[self._rows]
 
     def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
         """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""

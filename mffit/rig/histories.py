@@ -29,6 +29,15 @@ class History:
         return sense(self.points)
 
     @cached_property
+    def along_sweep(self) -> np.ndarray:
+        """Place (n,) of every point in its sweep: 0 the first, 1 the last."""
+        out = np.zeros(len(self.points))
+        for k in np.unique(self.points.sweep):
+            rows = np.flatnonzero(self.points.sweep == k)
+            out[rows] = np.linspace(0.0, 1.0, len(rows))
+        return out
+
+    @cached_property
     def usual_speed(self) -> float:
         """The most frequent speed [m/s]."""
         return reference_speed(self.points)

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
 
-CAMBER_ZERO = RigError(
+_of_camber = partial(RigError, kind="rig", place=Place.CAMBER, acts_on=("gamma",), limits=(-5.0, 5.0))
+
+CAMBER_ZERO = _of_camber(
     name="gamma_0_deg",
     unit="deg",
     meaning="true camber = reading + gamma_0",
-    kind="rig",
-    place=Place.CAMBER,
-    acts_on=("gamma",),
     formula=lambda zero, gamma, at: gamma + zero * RADIANS,
     spread=0.4,
-    limits=(-5.0, 5.0),
     of_setup=True,
     seen_as=(
         Appearance(
@@ -36,6 +35,42 @@ CAMBER_ZERO = RigError(
         default=constants.CAMBER_ZERO,
         source="camber alignment",
         force_at_zero=lambda zero, at: RADIANS * at.C_gamma * zero,
+    ),
+)
+CAMBER_ZERO_LOAD = _of_camber(
+    name="gamma_0_deg_per_kN",
+    unit="deg/kN",
+    meaning="true camber = reading + gamma_0_deg_per_kN (load - FNOMIN)",
+    formula=lambda growth, gamma, at: gamma + growth * (RADIANS * 1e-3) * (at.points.Fz - at.nominal_load),
+    spread=0.3,
+    seen_as=(
+        Appearance(
+            id="camber-zero-load",
+            name="camber zero that changes with load",
+            physics="The frame gives way under the load, so that the wheel leans a little.",
+            needs=("loads",),
+            remedy="stiffen the frame or measure the camber under load; or add {value} deg per kN above the nominal load to "
+            "the readings of the camber angle",
+            axes=("gamma",),
+        ),
+    ),
+)
+DISC_TILT = _of_camber(
+    name="disc_tilt_deg_per_kN",
+    unit="deg/kN",
+    meaning="true camber = reading + disc_tilt load, with the sign of phi_t: the disc gives way under the wheel",
+    formula=lambda growth, gamma, at: (
+        gamma + growth * (RADIANS * 1e-3) * np.sign(at.points.phi_t) * at.points.Fz
+    ),
+    spread=0.2,
+    seen_as=(
+        Appearance(
+            id="disc-tilt",
+            name="tilt of the disc under load",
+            physics="The load bends the disc down at the contact, so that its surface leans under the wheel.",
+            needs=("curved", "loads"),
+            remedy="support the disc under the contact; or measure its tilt of {value} deg per kN with a dial gauge",
+        ),
     ),
 )
 LOAD_CAMBER = RigError(
@@ -58,6 +93,30 @@ LOAD_CAMBER = RigError(
             needs=("camber",),
             remedy="hold the load constant over camber by a cell under the disc; or multiply the reported load by 1 + {value} "
             "times the square of the sine of the camber angle",
+        ),
+    ),
+)
+LOAD_CAMBER_ODD = RigError(
+    name="load_camber_odd",
+    shown_in=("%", 100.0),
+    unit="-",
+    meaning="true load = reading times 1 + load_camber_odd sin(true camber)",
+    kind="rig",
+    place=Place.LOAD,
+    acts_on=("Fz",),
+    formula=lambda share, Fz, at: Fz * (1.0 + share * np.sin(at.gamma)),
+    spread=0.02,
+    limits=(-0.5, 0.5),
+    seen_as=(
+        Appearance(
+            id="load-camber-odd",
+            name="load that differs between both sides of camber",
+            physics="The load rises as the wheel leans to one side and falls to the other, because its cell carries part of the "
+            "side force or stands beside the contact point.",
+            needs=("camber",),
+            remedy="set the cell of the load under the contact point; or multiply the reported load by 1 + {value} times the "
+            "sine of the camber angle",
+            axes=("gamma",),
         ),
     ),
 )
@@ -91,6 +150,29 @@ PATH_RADIUS = RigError(
         value="radius",
     ),
 )
+CROWN = RigError(
+    name="crown_m",
+    shown_in=("mm", 1e3),
+    unit="m",
+    meaning="the contact point is crown sin(true camber) to the right of where it is upright, on another radius of the disc",
+    kind="rig",
+    place=Place.PATH,
+    acts_on=("phi_t",),
+    formula=lambda crown, phi_t, at: phi_t / (1.0 - crown * phi_t * np.sin(at.gamma)),
+    spread=0.05,
+    limits=(-0.5, 0.5),
+    seen_as=(
+        Appearance(
+            id="crown",
+            name="path radius that changes with camber",
+            physics="A leaning wheel rolls on the side of its round tread, or leans about an axis above or below the road, so "
+            "that its contact point moves over the disc.",
+            needs=("curved", "camber"),
+            remedy="move the wheel back over its path by {value} m times the sine of the camber angle",
+            axes=("gamma",),
+        ),
+    ),
+)
 SLIP_ZERO = RigError(
     name="kappa_0",
     shown_in=("%", 100.0),
@@ -116,4 +198,13 @@ SLIP_ZERO = RigError(
     declared=Declared(key="u_slip_zero", unit="-", default=0.0, source="zero of slip"),
 )
 
-CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS, SLIP_ZERO)
+CONDITION_ERRORS = (
+    CAMBER_ZERO,
+    CAMBER_ZERO_LOAD,
+    DISC_TILT,
+    LOAD_CAMBER,
+    LOAD_CAMBER_ODD,
+    PATH_RADIUS,
+    CROWN,
+    SLIP_ZERO,
+)

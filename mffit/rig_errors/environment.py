@@ -127,6 +127,26 @@ RUN_STIFFNESS = _of_run(
     meaning="cornering stiffness times 1 + run_stiffness, a number of every run",
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
 )
+SWEEP_HEATING = RigError(
+    name="sweep_heating",
+    shown_in=("%", 100.0),
+    unit="-",
+    kind="environment",
+    meaning="friction times 1 + sweep_heating q, q from 0 at the first point of a sweep to 1 at its last",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_grip_per_K"],),
+    formula=lambda change, value, at: value * (1.0 + change * at.along_sweep),
+    spread=0.02,
+    limits=(-0.5, 0.5),
+    seen_as=(
+        Appearance(
+            id="sweep-heating",
+            name="heating within a sweep",
+            physics="The tread warms during every sweep and cools between sweeps: its friction changes along the sweep.",
+            needs=("slip",),
+        ),
+    ),
+)
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
     word="temperature at which the model holds",
@@ -217,5 +237,6 @@ COEFFICIENT_ERRORS = (
     TEMPERATURE_SLIP_STIFFNESS,
     RUN_GRIP,
     RUN_STIFFNESS,
+    SWEEP_HEATING,
 )
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

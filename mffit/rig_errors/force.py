@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
+
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Declared, Place, RigError
 
@@ -87,6 +89,48 @@ CROSSTALK = _of_reading(
             physics="Part of the vertical load appears in the side-force channel.",
             needs=("loads",),
             remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
+            axes=("Fy",),
+        ),
+    ),
+)
+CROSSTALK_CAMBER = _of_reading(
+    name="crosstalk_camber",
+    shown_in=("%", 100.0),
+    unit="-",
+    meaning="reported Fy = Fy + crosstalk_camber sin(true camber) Fz",
+    acts_on=("Fy",),
+    formula=lambda share, Fy, at: Fy + share * np.sin(at.gamma) * at.Fz,
+    spread=0.01,
+    limits=(-0.3, 0.3),
+    seen_as=(
+        Appearance(
+            id="crosstalk-camber",
+            name="crosstalk of Fz into Fy that grows with camber",
+            physics="The load cell leans with the wheel, and its axes lean by more or less than the camber that is read, or its "
+            "channels along and across the wheel are not calibrated alike.",
+            needs=("camber",),
+            remedy="turn the axes of the load cell into those of the wheel; or subtract {value} of the load times the sine of "
+            "the camber angle from the side force",
+            axes=("Fy", "gamma"),
+        ),
+    ),
+)
+DIRECTION_ZERO = _of_reading(
+    name="F0_direction_N",
+    unit="N",
+    meaning="reported Fy = Fy + F0_direction rolling forwards, Fy - F0_direction backwards",
+    acts_on=("Fy",),
+    formula=lambda zero, Fy, at: Fy + zero * at.points.direction,
+    spread=5.0,
+    limits=(-1e3, 1e3),
+    seen_as=(
+        Appearance(
+            id="loadcell-offset-direction",
+            name="load-cell zero of Fy that differs by direction",
+            physics="Friction or heat of a bearing between wheel and load cell turns with the direction of rolling.",
+            needs=("directions",),
+            remedy="zero the side-force channel in both directions of rolling; or subtract {value} N from forward readings and "
+            "add it to backward ones",
             axes=("Fy",),
         ),
     ),
@@ -296,6 +340,8 @@ FORCE_ERRORS = (
     GAIN,
     NONLINEARITY,
     CROSSTALK,
+    CROSSTALK_CAMBER,
+    DIRECTION_ZERO,
     FORCE_ZERO,
     MOMENT_ZERO,
     LONGITUDINAL_GAIN,

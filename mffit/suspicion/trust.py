@@ -21,7 +21,7 @@ from scipy.special import chdtr, chdtrc, fdtrc, ndtr
 from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
 from mffit.linearised.inputs import word_of
-from mffit.measured import LoadResult, SideslipZeros
+from mffit.measured import Drift, LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
@@ -63,6 +63,7 @@ class JudgedMeasurement:
     nominal: LoadResult | None = None  #: at the nominal load
     radius_counts: bool = True  #: False if r_e was measured along the path, so that an error of R cancels
     sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
+    drift: Drift | None = None  #: between sweeps, where the temperature is not known
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -333,6 +334,19 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
 
 
 @of_measurement(
+    id="drift-between-sweeps",
+    outcome=Outcome.WARNED,
+    sentence="conditions that several sweeps repeat show a drift: forces of {most} are {percent:.1f} % larger than those of "
+    "{least}, though no temperature was recorded that would explain it; eps_gamma is corrected for it as far as zeros and camber "
+    "sweeps were repeated; record T_degC, or warm the tyre up and mix the order of the runs",
+)
+def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
+    """Forces of conditions without sideslip that several sweeps repeat, where temperatures are not known."""
+    if measured.drift is not None and measured.drift.chance < FALSE_ALARM:
+        yield measured.drift._asdict() | {"percent": 100.0 * measured.drift.apart}
+
+
+@of_measurement(
     id="unpublished-camber-reduction",
     outcome=Outcome.DISTRUSTED,
     sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
@@ -437,6 +451,7 @@ OF_TRUST = (
     bound_against_data,
     limit_broken,
     zeros_contradict,
+    drift_between_sweeps,
     unpublished,
     hand_against_data,
     far_below_noise,

@@ -56,7 +56,7 @@ Formula = Callable[[float, Settings, Machine], np.ndarray | float]
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
     """True camber (n,) [rad]."""
-    return np.asarray(np.deg2rad(np.rad2deg(s.gamma) + m.faults["gamma_0_deg"]))
+    return np.asarray(s.gamma + _sum(LEANS, s, m))
 
 
 def _kelvin(s: Settings, m: Machine) -> np.ndarray:
@@ -74,12 +74,17 @@ STEERS: dict[str, Formula] = {
     "hysteresis_deg": lambda x, s, m: np.where(s.sense > 0, -1.0, np.where(s.sense < 0, 1.0, 0.0)) * np.deg2rad(x),
 }  # fmt: skip
 """Added to the sideslip angle as read [rad]."""
-LEANS: dict[str, Formula] = {"gamma_0_deg": lambda x, s, m: np.deg2rad(x)}
+LEANS: dict[str, Formula] = {
+    "gamma_0_deg": lambda x, s, m: np.deg2rad(x),
+    "gamma_0_deg_per_kN": lambda x, s, m: np.deg2rad(x * (s.Fz / 1000.0 - m.tyre["FNOMIN"] / 1000.0)),
+    "disc_tilt_deg_per_kN": lambda x, s, m: m.phi_t_sign * s.side * np.deg2rad(x * s.Fz / 1000.0),
+}
 """Added to the camber as read [rad]."""
 SLIPS: dict[str, Formula] = {"kappa_0": lambda x, s, m: x}
 """Added to the longitudinal slip as read."""
 LOADS: dict[str, Formula] = {
-    "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0
+    "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0,
+    "load_camber_odd": lambda x, s, m: 1.0 - x * np.cos(np.pi / 2.0 + _leant(s, m)),
 }
 """Factors on the load."""
 SCALES: dict[str, tuple[str, Formula]] = {
@@ -94,6 +99,7 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "run_grip": ("LMUY", lambda x, s, m: 1.0 + x),
     "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
+    "sweep_heating": ("LMUY", lambda x, s, m: 1.0 + x * np.arange(len(s)) / max(len(s) - 1, 1)),
 }
 """Factors on scaling factors of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
@@ -107,12 +113,12 @@ SURROUNDINGS: dict[str, Formula] = {
 YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
 CELL = (
-    "gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm",
-    "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
+    "gain", "nonlinearity_per_kN", "crosstalk", "crosstalk_camber", "F0_direction_N", "F0_N", "M0_Nm", "Fx0_N",
+    "Mx0_Nm", "My0_Nm", "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
-ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
-"""Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
+ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "relaxation_m")
+"""Path radius and crown: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
 FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
@@ -185,14 +191,17 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
 def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Channels:
     """Forces and moments (n,) of the tyre at the true sideslip angle ``alpha`` (n,) [rad]."""
     # The wheel is moved between paths by known distances, so the error of the radius is common to all paths.
-    phi_t = machine.phi_t_sign * settings.side / (machine.faults["path_radius_m"] + settings.outward)
+    lean = _leant(settings, machine)
+    side = machine.phi_t_sign * settings.side  # of the disc's centre: -1 left
+    crown = side * machine.faults["crown_m"] * np.sin(lean)  # towards the centre
+    phi_t = side / (machine.faults["path_radius_m"] + settings.outward - crown)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
     load = settings.Fz * _product(LOADS, settings, machine)
     out, state = evaluate(
         mounted,
         load,
         alpha,
-        settings.gamma + _sum(LEANS, settings, machine),
+        lean,
         true_slip(machine, settings),
         phi_t,
         settings.Vx,
@@ -218,7 +227,10 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     seen = faults["gain"] * surroundings * true.Fy
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
     return true._replace(
-        Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
+        Fy=bent
+        + faults["F0_N"]
+        + np.sign(settings.Vx) * faults["F0_direction_N"]
+        + (faults["crosstalk"] + faults["crosstalk_camber"] * np.sin(_leant(settings, machine))) * true.Fz,
         Mz=surroundings * true.Mz + faults["M0_Nm"] + faults["crosstalk_Fx_Mz_m"] * true.Fx,
         Mx=true.Mx
         + faults["Mx0_Nm"]

@@ -122,7 +122,7 @@ def one(job: tuple[int, str, Any]) -> Found:
             measured = mffit.build(path).measured if given.build else mffit.spin(path)
         except InputError as error:
             return Found(refused=str(error))
-    return Found(numbers=_numbers(measured, known, true))
+    return Found(numbers=numbers(measured, known, true))
 
 
 def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -171,7 +171,8 @@ def _flipped(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [{**zeros, "file": f"flipped_{way}.csv", "direction": way} for way in ("forward", "backward")]
 
 
-def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
+def numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
+    """By quantity of the nominal load: value, standard uncertainty and truth."""
     row, truth, faults = measured.nominal, known.nominal, known.faults
     phi_t = -1.0 / truth.R_m
 

@@ -5,7 +5,7 @@ SI units, ISO signs, u with k = 1. ``spin.json`` has ``made`` and the judgement,
 
 from __future__ import annotations
 
-from mffit.measured import KEYS, Alignment, LoadResult, Measured, SetupResult, SetupScatter
+from mffit.measured import KEYS, Alignment, Drift, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.measured.uncertain import Expanded
 from mffit.results.values import keys, with_u
 
@@ -23,7 +23,8 @@ NO_LOAD = {"load_N": None, **{key: None for name in KEYS.values() for key in wit
 keys(
     Measured,
     "**judged **at_nominal epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget "
-    "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter notes per_load [made]",
+    "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift notes "
+    "per_load [made]",
     judged=lambda found: (
         {}
         if found.made is None
@@ -33,6 +34,7 @@ keys(
     coverage_factor=lambda _: 1,
     setups=lambda found: () if found.nominal is None else found.nominal.setups,
 )
+keys(Drift, "scatter chance least most apart")
 keys(
     Expanded,
     "U_epsilon_gamma=U coverage_factor=k coverage_probability=probability effective_dof=dof",

@@ -55,7 +55,7 @@ def settings() -> Settings:
     return Settings(
         alpha=alpha,
         gamma=np.radians(rng.uniform(-50.0, 50.0, n)),
-        Fz=np.full(n, LOAD),
+        Fz=LOAD + rng.uniform(-500.0, 500.0, n),
         p=np.full(n, 240e3),
         V=V,
         T=rng.uniform(20.0, 60.0, n),
