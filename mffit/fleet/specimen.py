@@ -90,7 +90,7 @@ def read(folder: str | Path) -> Specimen:
             file=str(result["tir"]),
             on_disc=on_disc,
             rig=resolved["rig"],
-            information=_information(folder / INFORMATION),
+            information=read_information(folder / INFORMATION),
             epsilon_gamma=None
             if epsilon is None
             else Quantity(float(epsilon), float(spin["u_epsilon_gamma"]), "-"),
@@ -106,7 +106,14 @@ def read(folder: str | Path) -> Specimen:
         ) from None
 
 
-def _information(path: Path) -> Information | None:
+def read_information(path: Path) -> Information | None:
+    """Read an ``information.json``; None if nothing was free in its build.
+
+    Raises
+    ------
+    InputError
+        It is missing, or was not written by ``mffit build``.
+    """
     if not path.is_file():
         raise InputError(
             "is missing, as after a build by an earlier version; build this tyre again", file=path
