@@ -147,15 +147,16 @@ def _of_information(found: Information | None, told: Mapping[str, float]) -> dic
     """The numbers of ``information.json`` by name; what the stored points ``told`` of each is the scale of its changes."""
     if found is None:
         return {}
-    known = fleet.to_json(found)
+    u = {name: known**-0.5 for name, known in told.items() if known > 0.0}
+    vectors = {"expected": found.expected, "values": found.values, **found.moved_by}
     tables = {
-        key: dict(zip(found.names, known[key], strict=True))
-        for key in ("expected", "values", "vector", "spread")
+        key: {name: {"value": x, "u": u.get(name)} for name, x in zip(found.names, row.tolist(), strict=True)}
+        for key, row in vectors.items()
     }
-    for key, power in {"expected": -0.5, "values": -0.5, "vector": 0.5}.items():
-        for name, x in tables[key].items():
-            tables[key][name] = {"value": x, "u": told[name] ** power if told.get(name) else None}
-    return tables | {"matrix": known["matrix"]}
+    known = fleet.to_json(found)
+    slopes = dict(zip(found.names, known["vector"], strict=True))
+    vector = {name: {"value": x, "u": 1.0 / u[name] if name in u else None} for name, x in slopes.items()}
+    return {**tables, "vector": vector, "matrix": known["matrix"], "spread": known["spread"]}
 
 
 def _numbers(tyre: Tyre, spread: Mapping[str, float | None]) -> dict[str, Any]:
