@@ -1,25 +1,34 @@
-"""Date, program, version and method of a result, the same in pages and in JSON."""
+"""Date, program, version, source and method of a result, the same in pages and in JSON."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 
 import mffit
 
 METHOD = 3
-"""Number of the method: raised whenever a change of the program can change a figure of a result.
+"""Number of the method: raised by every change of the program that moves a figure of a result, in that same change.
 
-``tests/mffit/test_method.py`` compares the figures of fixed projects with stored ones and asks for a new number if they differ.
+``python tests/mffit/method_figures.py --raise`` raises it and stores the new figures. ``tests/mffit/test_method.py`` compares
+the figures of fixed projects with those stored, which under one number never change.
 """
-
 
 COMPUTING = ("numpy", "scipy")
 """Libraries on which the last digits of a figure depend."""
+PACKAGES = ("mffit", "tir")
+SOURCES = (".py", ".csv", ".toml", ".j2", ".js", ".css")
+"""Endings of the files that the program consists of: code, tables, templates."""
+BESIDE = ("samples", "__pycache__", "pyproject.toml")
+"""What an installation has or lacks beside them, by the way in which it was made."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +38,7 @@ class Made:
     date: datetime  #: UTC
     program: str = "mffit"
     version: str
+    source: str  #: of the program's own files, see :func:`source`
     method: int = METHOD
     libraries: Mapping[str, str] = field(
         default_factory=dict
@@ -55,8 +65,37 @@ def now() -> datetime:
 def made(inputs: Mapping[str, str] | None = None) -> Made:
     """The record of a result that is made now from inputs with the given hashes."""
     return Made(
-        date=now(), version=mffit.__version__, libraries=libraries(COMPUTING), inputs=dict(inputs or {})
+        date=now(),
+        version=mffit.__version__,
+        source=source(),
+        libraries=libraries(COMPUTING),
+        inputs=dict(inputs or {}),
     )
+
+
+@cache
+def source() -> str:
+    """SHA-256 over the names and contents of mffit's and tir's own files, in 64 hexadecimal digits.
+
+    The same files give the same digest from a wheel, a checkout or a zip archive.
+    """
+    whole = hashlib.sha256()
+    for package in PACKAGES:
+        for name, content in sorted(_sources(files(package), package)):
+            whole.update(f"{name} {hashlib.sha256(content).hexdigest()}\n".encode())
+    return whole.hexdigest()
+
+
+def _sources(folder: Traversable, name: str) -> Iterator[tuple[str, bytes]]:
+    """Name and content of every file of the program in a folder and those within."""
+    for entry in folder.iterdir():
+        inner = f"{name}/{entry.name}"
+        if entry.name in BESIDE:
+            continue
+        if entry.name.endswith(SOURCES):
+            yield inner, entry.read_bytes()
+        elif entry.is_dir():
+            yield from _sources(entry, inner)
 
 
 def libraries(names: Iterable[str]) -> dict[str, str]:

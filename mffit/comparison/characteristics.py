@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,6 +46,28 @@ def characteristics(
     """
     rows = [] if known is None else [i for i, name in enumerate(known.names) if name in tyre.values]
     names = [] if known is None else [known.names[i] for i in rows]
+    found, slopes = with_slopes(
+        tyre, load, names, turn_slip=turn_slip, pressure=pressure, reach=reach, slip_reach=slip_reach
+    )
+    covariance = np.zeros((0, 0)) if known is None else known.covariance[np.ix_(rows, rows)]
+    u = spread_through(slopes, covariance).tolist()
+    return {
+        key: Quantity(x, spread, CHARACTERISTICS[key].unit)
+        for (key, x), spread in zip(found.items(), u, strict=True)
+    }
+
+
+def with_slopes(
+    tyre: Tyre,
+    load: float,
+    names: Sequence[str],
+    *,
+    turn_slip: bool,
+    pressure: float | None,
+    reach: float | None,
+    slip_reach: float | None,
+) -> tuple[dict[str, float], np.ndarray]:
+    """The same numbers (m,) and their derivatives (m, k) by some coefficients."""
     uncertain = traced({name: float(tyre[name]) for name in names})
     values: dict[str, Any] = {**vars(tyre.p), **uncertain}
     p = SimpleNamespace(**values)
@@ -84,9 +107,5 @@ def characteristics(
     }
     if turn_slip:
         found["C_phit_Nm"] = slopes("phi_t")["Fy"]
-    u = dict.fromkeys(found, 0.0)
-    if known is not None:
-        jacobian = np.array([gradient(x, list(uncertain.values())) for x in found.values()], dtype=float)
-        spread = spread_through(jacobian.reshape(len(found), -1), known.covariance[np.ix_(rows, rows)])
-        u = dict(zip(found, spread.tolist(), strict=True))
-    return {key: Quantity(float(plain(x)), u[key], CHARACTERISTICS[key].unit) for key, x in found.items()}
+    jacobian = np.array([gradient(x, list(uncertain.values())) for x in found.values()], dtype=float)
+    return {key: float(plain(x)) for key, x in found.items()}, jacobian.reshape(len(found), -1)

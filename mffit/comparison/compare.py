@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
 from mffit.comparison import constants, wording
-from mffit.comparison.characteristics import characteristics
-from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
+from mffit.comparison.characteristics import characteristics, with_slopes
+from mffit.comparison.record import (
+    ComparedSubject,
+    Comparison,
+    CurveGap,
+    Difference,
+    Shared,
+    SweepGap,
+    ranked,
+)
 from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
@@ -30,7 +39,8 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
 
     Parameters
     ----------
-    first, second : with the covariance of their numbers if a build states it; both are treated as independent
+    first, second : with the covariance of their numbers if a build states it, and that build: what errors of one rig do to both
+        sides cancels in the differences
 
     Returns
     -------
@@ -44,36 +54,44 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     loads = list(dict.fromkeys(within))
     reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX", "KPUMAX")}
     reach["KPUMAX"] = min(reach["KPUMAX"], SLIP_BEYOND_THE_PEAK)
-    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach)]
+    shared = _shared(first, second)
+    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach, shared)]
     curves = [gap for load in loads for gap in _curves(first, second, load, pressure, reach)]
     return Comparison(
         first=first.name,
         second=second.name,
         numbers=ranked(numbers),
-        coefficients=_coefficients(first, second),
+        coefficients=_coefficients(first, second, shared),
         curves=tuple(curves),
         sweeps=(),
-        notes=wording.notes_between(first, second),
+        notes=wording.notes_between(first, second, shared),
         nominal=wording.on_nominal(first, second),
     )
 
 
+def _shared(first: ComparedSubject, second: ComparedSubject) -> Shared:
+    """The errors of the one rig that measured both sides; none for different rigs."""
+    if first.build is None or second.build is None or first.build.rig != second.build.rig:
+        return {}
+    a, b = first.build.moved_by, second.build.moved_by
+    return {error: (a[error], b[error]) for error in a if error in b}
+
+
 def _numbers(
-    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
+    first: ComparedSubject,
+    second: ComparedSubject,
+    load: float,
+    pressure: float,
+    reach: Mapping[str, float],
+    shared: Shared,
 ) -> Iterator[Difference]:
     """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to the ends ``reach``."""
-    a, b = (
-        characteristics(
-            side.tyre,
-            load,
-            turn_slip=side.turn_slip,
-            pressure=pressure,
-            reach=reach["ALPMAX"],
-            slip_reach=reach["KPUMAX"],
-            known=side.known,
-        )
-        for side in (first, second)
-    )
+    found, moved = [], []
+    for k, side in enumerate((first, second)):
+        at = {"pressure": pressure, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
+        found.append(characteristics(side.tyre, load, turn_slip=side.turn_slip, known=side.known, **at))
+        moved.append(_moved(side, load, at, [pair[k] for pair in shared.values()]))
+    a, b = found
     for key in a:
         if key in b:
             yield Difference(
@@ -83,7 +101,18 @@ def _numbers(
                 second=b[key].value,
                 u_first=a[key].u or None,
                 u_second=b[key].u or None,
+                covariance=float(moved[0][key] @ moved[1][key]),
             )
+
+
+def _moved(
+    side: ComparedSubject, load: float, at: Mapping[str, float], moves: Sequence[Mapping[str, float]]
+) -> dict[str, np.ndarray]:
+    """How each of some moves (e,) of the coefficients moves the numbers."""
+    names = [name for name in dict.fromkeys(chain(*moves)) if name in side.tyre.values]
+    found, slopes = with_slopes(side.tyre, load, names, turn_slip=side.turn_slip, **at)
+    sizes = [[move.get(name, 0.0) for move in moves] for name in names]
+    return dict(zip(found, slopes @ np.reshape(sizes, (len(names), len(moves))), strict=True))
 
 
 def _curves(
@@ -117,7 +146,7 @@ def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tup
     return simulation.readings(where, channels), band
 
 
-def _coefficients(first: ComparedSubject, second: ComparedSubject) -> tuple[Difference, ...]:
+def _coefficients(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[Difference, ...]:
     """Coefficients that differ."""
     u_first, u_second = ({} if side.known is None else side.known.stderr for side in (first, second))
     rows = []
@@ -134,6 +163,7 @@ def _coefficients(first: ComparedSubject, second: ComparedSubject) -> tuple[Diff
                     second=b,
                     u_first=u_first.get(name),
                     u_second=u_second.get(name),
+                    covariance=sum(x.get(name, 0.0) * y.get(name, 0.0) for x, y in shared.values()),
                 )
             )
     return ranked(rows)

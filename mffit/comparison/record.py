@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.brief import Brief
 from mffit.fit import Posterior
+from mffit.fleet import Specimen
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir import Tyre
@@ -16,6 +18,9 @@ from tir.parameters import BY_NAME
 
 OF_ORDER_ONE = frozenset({"epsilon_gamma"})
 """Numbers whose differences count in absolute terms: they may be near zero."""
+
+Shared = Mapping[tuple[str, str], tuple[Mapping[str, float], Mapping[str, float]]]
+"""How errors of one rig move the numbers of two sides by name, see ``Specimen.moved_by``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +31,7 @@ class ComparedSubject:
     tyre: Tyre
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
     known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
+    build: Specimen | None = None  #: that wrote the file with this covariance
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +44,7 @@ class Difference:
     second: float
     u_first: float | None = None  #: k = 1; None if unknown
     u_second: float | None = None
+    covariance: float = 0.0  #: of both sides, by errors of the one rig that measured them
 
     @property
     def change(self) -> float:
@@ -45,9 +52,9 @@ class Difference:
 
     @property
     def u(self) -> float | None:
-        """Uncertainty of the difference of independent sides; None if both are unknown."""
+        """Uncertainty of the difference; None if those of both sides are unknown."""
         known = [u for u in (self.u_first, self.u_second) if u is not None]
-        return math.hypot(*known) if known else None
+        return math.sqrt(max(sum(u**2 for u in known) - 2.0 * self.covariance, 0.0)) if known else None
 
     @property
     def z(self) -> float | None:

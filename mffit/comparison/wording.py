@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
-from mffit.comparison.record import ComparedSubject, Comparison, Difference
+from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
+from mffit.rig_errors import words_of
 from tir.errors import listed
 from tir.parameters import BY_NAME
 
@@ -77,8 +78,8 @@ def on_nominal(first: ComparedSubject, second: ComparedSubject) -> str:
     )
 
 
-def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str, ...]:
-    """Remarks on a comparison of two files: their use, and what is known of their uncertainty."""
+def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[str, ...]:
+    """Remarks on a comparison of two files: their use, what is known of their uncertainty, and what they have in common."""
     notes = []
     if first.turn_slip != second.turn_slip:
         on, off = (first, second) if first.turn_slip else (second, first)
@@ -90,9 +91,16 @@ def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str,
         notes.append(
             f"The uncertainty of {' and '.join(bare)} is unknown: no result.json beside it states one for this file."
         )
+    elif shared:
+        errors = listed(list(dict.fromkeys(words_of(error) for error, _ in shared)))
+        notes.append(
+            f"One rig measured both sides: what its errors do to both cancels in the differences ({errors}). Zeros count among "
+            "these if [rig] has a name and the sweeps of both builds name the same setup."
+        )
     else:
         notes.append(
-            "Both sides are treated as independent: if one rig measured both, differences are more significant than stated."
+            "Both sides are treated as independent, as they are not two builds with the same [rig]: if one rig measured "
+            "both, differences are more significant than stated."
         )
     return tuple(notes)
 

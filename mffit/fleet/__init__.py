@@ -3,7 +3,7 @@
 from mffit.fleet.hierarchy import Hierarchy, TyreEstimate, estimate
 from mffit.fleet.information import Information, information, to_json
 from mffit.fleet.record import EPSILON, Fleet, Row
-from mffit.fleet.specimen import INFORMATION, Specimen, read
+from mffit.fleet.specimen import INFORMATION, Specimen, read, read_information
 
 __all__ = [
     "EPSILON",
@@ -17,5 +17,6 @@ __all__ = [
     "estimate",
     "information",
     "read",
+    "read_information",
     "to_json",
 ]

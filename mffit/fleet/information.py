@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,8 @@ class Information:
     vector: np.ndarray  #: (k,)
     expected: np.ndarray  #: (k,) centre of the prior
     spread: np.ndarray  #: (k,) its standard deviation, inf without a prior
+    moved_by: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """How one standard uncertainty of a declared rig error, or of a measured coefficient that was held, moves ``values``."""
 
     def rows(self, *, rig: bool) -> list[int]:
         """Positions of the rig errors, or of the tyre's own numbers."""
@@ -69,7 +71,26 @@ def information(fitted: Fitted) -> Information | None:
         vector=matrix @ at - here.slope.T @ here.data,
         expected=np.array(centre),
         spread=np.array(spread),
+        moved_by=_moved_by(fitted, names),
     )
+
+
+def _moved_by(fitted: Fitted, names: Sequence[str]) -> dict[str, np.ndarray]:
+    """A fit yields to a prior as far as its points do not speak against it, and to a held number wholly."""
+    prior, held = {n.name: n.spread for n in fitted.inner}, fitted.taken_as_exact
+    every, k, problem = (*prior, *held), len(prior), fitted.problem
+    u = np.array([*prior.values(), *held.values()])
+    slope = problem.free(every).linear(np.array([problem.value(name) for name in every])).slope
+    told = slope.T @ slope
+    yields = np.linalg.inv(told[:k, :k] + np.diag(u[:k] ** -2.0))
+    free = np.hstack([yields / u[:k], -yields @ told[:k, k:] * u[k:]])
+    moves = dict(zip(every, np.vstack([free, np.diag(u)[k:]]), strict=True))
+    still = np.zeros(len(every))
+    return {
+        name: np.array([moves.get(number, still)[i] for number in names])
+        for i, name in enumerate(every)
+        if (error_of(name) or (name in held and name in MEASURED)) and u[i] < math.inf
+    }
 
 
 def to_json(found: Information | None) -> dict[str, Any]:
@@ -85,6 +106,7 @@ def to_json(found: Information | None) -> dict[str, Any]:
         "vector": found.vector.tolist(),
         "expected": found.expected.tolist(),
         "spread": [None if math.isinf(u) else u for u in found.spread.tolist()],
+        "moved_by": {name: move.tolist() for name, move in found.moved_by.items()},
     }
 
 
@@ -104,6 +126,9 @@ def from_json(content: Mapping[str, Any]) -> Information:
     matrix += np.tril(matrix, -1).T
     vectors = {n: np.array(content[n], dtype=float) for n in ("values", "vector", "expected")}
     spread = np.array([math.inf if u is None else float(u) for u in content["spread"]])
-    if any(len(v) != k for v in (*vectors.values(), spread)) or not np.all(np.isfinite(matrix)):
+    moves = {str(name): np.array(move, dtype=float) for name, move in content["moved_by"].items()}
+    if any(len(v) != k for v in (*vectors.values(), spread, *moves.values())) or not np.all(
+        np.isfinite(matrix)
+    ):
         raise ValueError("names, matrix and vectors must have one length")
-    return Information(names=names, matrix=matrix, spread=spread, **vectors)
+    return Information(names=names, matrix=matrix, spread=spread, **vectors, moved_by=moves)

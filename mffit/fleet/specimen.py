@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import tir
 from mffit.errors import InputError
-from mffit.fleet.information import Information, from_json
-from mffit.rig_errors import OF_RUN, error_of, number_of
+from mffit.fleet.information import MEASURED, Information, from_json
+from mffit.rig_errors import DECLARED, OF_RUN, error_of, number_of
 from tir import Quantity, Tyre
 
 RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
@@ -35,6 +36,8 @@ class Specimen:
     reasons: tuple[str, ...] = ()  #: why the build is not to be trusted; empty for a sound one
     in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
+    budget: Mapping[str, float] = field(default_factory=dict)
+    """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
 
     @property
     def information_of_setups(self) -> Information | None:
@@ -46,6 +49,25 @@ class Specimen:
         if known is None:
             return None
         return replace(known, names=tuple(self._shared_name(name) for name in known.names))
+
+    @property
+    def moved_by(self) -> dict[tuple[str, str], dict[str, float]]:
+        """How one standard uncertainty of an error of the rig moves the build's numbers through the readings, or through a
+        measured coefficient, by the budget of that: by the error as builds of this rig share it, and the coefficient or ""."""
+        known = self.information
+        if known is None:
+            return {}
+        moves = {
+            name: dict(zip(known.names, move.tolist(), strict=True)) for name, move in known.moved_by.items()
+        }
+        found = {(self._shared_name(name), ""): move for name, move in moves.items() if error_of(name)}
+        for name in moves.keys() & set(MEASURED):
+            for error, declared in DECLARED:
+                if declared.source in self.budget:
+                    share = self.budget[declared.source] / moves[name][name]
+                    shared = {number: share * x for number, x in moves[name].items()}
+                    found[self._shared_name(error.name), name] = shared
+        return found
 
     def _shared_name(self, number: str) -> str:
         name, _, setup = number.partition(OF_RUN)
@@ -90,7 +112,7 @@ def read(folder: str | Path) -> Specimen:
             file=str(result["tir"]),
             on_disc=on_disc,
             rig=resolved["rig"],
-            information=_information(folder / INFORMATION),
+            information=read_information(folder / INFORMATION),
             epsilon_gamma=None
             if epsilon is None
             else Quantity(float(epsilon), float(spin["u_epsilon_gamma"]), "-"),
@@ -98,6 +120,10 @@ def read(folder: str | Path) -> Specimen:
             warnings=tuple(result["warnings"]),
             reasons=tuple(result.get("reasons", ())),
             in_doubt=tuple(result.get("in_doubt", ())),
+            budget={
+                row["source"]: math.copysign(row["contribution"], row["sensitivity"])
+                for row in spin.get("budget", ())
+            },
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
@@ -106,7 +132,14 @@ def read(folder: str | Path) -> Specimen:
         ) from None
 
 
-def _information(path: Path) -> Information | None:
+def read_information(path: Path) -> Information | None:
+    """Read an ``information.json``; None if nothing was free in its build.
+
+    Raises
+    ------
+    InputError
+        It is missing, or was not written by ``mffit build``.
+    """
     if not path.is_file():
         raise InputError(
             "is missing, as after a build by an earlier version; build this tyre again", file=path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -90,15 +91,21 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
 
 def _subject(path: Path) -> ComparedSubject:
     """A property file, or that of a build's folder, with its covariance if its build is beside it."""
+    build = None
     if path.is_dir():
-        path = path / _build_in(path).file
+        build = _build_in(path)
+        path = path / build.file
+    else:
+        with suppress(InputError):
+            build = fleet.read(path.parent)
     tyre = tir.read(path)
     use = use_of(tyre)
     subject = ComparedSubject(path.name, tyre, tyre.turn_slip if use is None else use == "turn-slip")
     posterior = posterior_of(tyre, path)
     if posterior is None:
         return subject
-    return replace(subject, known=Posterior(posterior.names, posterior.root @ posterior.root.T))
+    known = Posterior(posterior.names, posterior.root @ posterior.root.T)
+    return replace(subject, known=known, build=build)
 
 
 def _build_in(folder: Path) -> Specimen:

@@ -151,7 +151,7 @@ def _check_folder(job: Job, others: Sequence[Job], *, given: bool) -> None:
 
 
 def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: bool = True) -> bool:
-    """Whether ``out`` holds a complete, unedited build of this version, configuration and inputs.
+    """Whether ``out`` holds a complete, unedited build of this source, configuration and inputs.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: boo
             {name for name in files if with_report or name != REPORT} <= kept
             and ensemble in (0, drawn)
             and (out / "resolved.toml").read_bytes() == resolved_text(config, out)
-            and (stated["version"], stated["method"]) == (now.version, now.method)
+            and stated["source"] == now.source
             and stated["inputs"] == now.inputs
         )
     except (OSError, ValueError, LookupError, TypeError, AttributeError):

@@ -32,6 +32,8 @@ BY_HAND = "set by hand"
 """Key of what the engineer set in [coefficients]."""
 METHOD = "method"
 """Key of the number of the method."""
+SOURCE = "source"
+"""Key of the digest of the program's own files."""
 DIGITS = 16
 """Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
 TEMPERATURE = "temperature"
@@ -63,6 +65,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
         provenance = {
             PROGRAM: f"{made.program} {made.version}",
             METHOD: str(made.method),
+            SOURCE: made.source[:DIGITS],
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "stiffnesses": STIFFNESSES,
             "configuration": _settings(config),

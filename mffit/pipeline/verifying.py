@@ -9,10 +9,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import tir
 from mffit import config as configuration
+from mffit import fleet
 from mffit.config import Config
 from mffit.errors import InputError, readable
+from mffit.fleet import Information
 from mffit.output import digest, written_by
 from mffit.pipeline.build_output import FOLDER, write_members
 from mffit.pipeline.building import build
@@ -36,7 +40,8 @@ def verify(out: str | Path, *, progress: Progress = silent) -> Verification:
     Returns
     -------
     Verification
-        The numbers of ``result.json`` and of every property file that did not come out again, the largest change first.
+        The numbers of ``result.json``, ``information.json`` and every property file that did not come out again, the largest
+        change first.
 
     Raises
     ------
@@ -51,12 +56,14 @@ def verify(out: str | Path, *, progress: Progress = silent) -> Verification:
     result = build(config, ensemble=len(drawn), progress=progress)
     progress("comparing")
     again = compared(RESULT, stored, json.loads(as_json.text(result)))
+    again += _information_again(out / fleet.INFORMATION, result)
     made = stored["made"]
     return Verification(
         folder=str(out),
         compared=(*again, *_property_files(out, stored, drawn, result)),
         method=(made["method"], result.made.method),
         version=(made["version"], result.made.version),
+        source=(made["source"], result.made.source),
         libraries=(dict(made.get("libraries", {})), result.made.libraries),
     )
 
@@ -69,7 +76,7 @@ def _stored(out: Path) -> dict[str, Any]:
     try:
         found: dict[str, Any] = json.loads(text)
         tables = (found["files"], found["fit"]["coefficients"], found["made"]["inputs"])
-        whole = all(isinstance(table, dict) for table in tables) and {"method", "version"} <= set(
+        whole = all(isinstance(table, dict) for table in tables) and {"method", "version", "source"} <= set(
             found["made"]
         )
     except (ValueError, LookupError, TypeError, AttributeError):
@@ -126,6 +133,30 @@ def _property_files(
                 raise InputError(f"is gone, but {RESULT} names it; build again", file=path)
             again = _numbers(tir.read(new / name), spread) if (new / name).is_file() else {}
             yield from compared(name, _numbers(tir.read(path), spread), again)
+
+
+def _information_again(path: Path, result: BuildResult) -> list[NumberAgain]:
+    """The stored information of the points against that of the new run."""
+    assert result.fit.search is not None
+    before, now = fleet.read_information(path), fleet.information(result.fit.search)
+    told = {} if before is None else dict(zip(before.names, np.diag(before.matrix).tolist(), strict=True))
+    return compared(path.name, _of_information(before, told), _of_information(now, told))
+
+
+def _of_information(found: Information | None, told: Mapping[str, float]) -> dict[str, Any]:
+    """The numbers of ``information.json`` by name; what the stored points ``told`` of each is the scale of its changes."""
+    if found is None:
+        return {}
+    u = {name: known**-0.5 for name, known in told.items() if known > 0.0}
+    vectors = {"expected": found.expected, "values": found.values, **found.moved_by}
+    tables = {
+        key: {name: {"value": x, "u": u.get(name)} for name, x in zip(found.names, row.tolist(), strict=True)}
+        for key, row in vectors.items()
+    }
+    known = fleet.to_json(found)
+    slopes = dict(zip(found.names, known["vector"], strict=True))
+    vector = {name: {"value": x, "u": 1.0 / u[name] if name in u else None} for name, x in slopes.items()}
+    return {**tables, "vector": vector, "matrix": known["matrix"], "spread": known["spread"]}
 
 
 def _numbers(tyre: Tyre, spread: Mapping[str, float | None]) -> dict[str, Any]:

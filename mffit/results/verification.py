@@ -37,6 +37,7 @@ class Verification(Brief):
     compared: tuple[NumberAgain, ...]
     method: tuple[int, int]  #: stored, and of this program
     version: tuple[str, str]  #: stored, and of this program
+    source: tuple[str, str]  #: stored, and of this program
     libraries: tuple[Mapping[str, str], Mapping[str, str]]  #: versions by name, stored and of this program
 
     @property
@@ -69,7 +70,7 @@ class Verification(Brief):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences about another method or version."""
+        """Sentences about another method or source."""
         return tuple(self._notes())
 
     def _notes(self) -> Iterator[str]:
@@ -79,8 +80,8 @@ class Verification(Brief):
                 f"the result was made by method {was} (mffit {old}), and this is method {now} (mffit {new}): numbers may differ "
                 "for this reason alone"
             )
-        elif old != new:
-            yield f"the result was made by mffit {old}, and this is {new}; both use method {now}"
+        elif self.source[0] != self.source[1]:
+            yield f"the result was made by other files of mffit ({old}) than these ({new}); both use method {now}"
         before, here = self.libraries
         others = [
             f"{name} {before[name]} (here {here.get(name)})"
@@ -132,9 +133,9 @@ def _uncertainty(table: dict[str, Json], name: str) -> float:
 
 
 def _spread(rows: list[Json]) -> list[float]:
-    """Square roots of the diagonal of a covariance matrix, by which its elements are judged; empty for other lists."""
-    square = [row for row in rows if isinstance(row, list) and len(row) == len(rows)]
-    diagonal = [x for k, row in enumerate(square) if _is_number(x := row[k])]
+    """Square roots of the diagonal of a symmetric matrix, whole or up to it, by which its elements are judged; else empty."""
+    square = [row for k, row in enumerate(rows) if isinstance(row, list) and len(row) in (len(rows), k + 1)]
+    diagonal = [x for k, row in enumerate(square) if _is_number(x := row[min(k, len(row) - 1)])]
     return [math.sqrt(abs(x)) for x in diagonal] if len(diagonal) == len(rows) else []
 
 

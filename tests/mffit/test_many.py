@@ -21,6 +21,7 @@ from mffit.cli.building import _compare_built, _end
 from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
+from mffit.made import source
 from mffit.output import RECORD, digest
 from mffit.pipeline import many, workers
 from mffit.pipeline.many import is_current
@@ -113,15 +114,15 @@ def _rewritten(out: Path, name: str, content: bytes) -> None:
     (out / RECORD).write_text(json.dumps(record))
 
 
-def another_method(project: Path, out: Path) -> None:
-    text = (out / "result.json").read_bytes()
-    assert b'"method": ' in text
-    _rewritten(out, "result.json", text.replace(b'"method": ', b'"method": 9', 1))
+def another_source(project: Path, out: Path) -> None:
+    text = (out / "result.json").read_text()
+    assert source() in text
+    _rewritten(out, "result.json", text.replace(source(), "0" * 64).encode())
 
 
 @pytest.mark.parametrize(
     "change",
-    [None, edited_sweep, edited_configuration, edited_output, missing_output, another_method],
+    [None, edited_sweep, edited_configuration, edited_output, missing_output, another_source],
 )
 def test_changed_input_or_output_is_built_again(built, project, tmp_path, change):
     # resolved.toml depends on the relative position of both folders, which the copies keep.

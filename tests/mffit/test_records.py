@@ -18,7 +18,7 @@ import tir
 from mffit.cli import main
 from mffit.effects import CATALOG
 from mffit.errors import InputError
-from mffit.made import METHOD
+from mffit.made import METHOD, source
 from mffit.report import text
 from mffit.results.verification import MISSING, compared
 
@@ -98,6 +98,7 @@ def test_the_result_states_when_by_what_and_from_what_it_was_made(built, result)
     assert {"sideslip_1400.csv", "base.tir"} <= set(made["inputs"])
     file = tir.read(built / "out" / "small.tir")
     assert file.provenance["method"] == str(METHOD)
+    assert made["source"].startswith(file.provenance["source"])
     assert made["inputs"]["base.tir"].startswith(file.provenance["input base.tir"])
 
 
@@ -152,6 +153,7 @@ def test_a_build_from_the_stored_inputs_gives_every_number_again(built, capsys):
     assert found["changes"] == []
     assert found["numbers"] > 1000
     assert found["method"] == {"stored": METHOD, "now": METHOD}
+    assert found["source"]["stored"] == found["source"]["now"]
     assert found["notes"] == []
     assert before == {path: path.read_bytes() for path in built.rglob("*") if path.is_file()}
 
@@ -166,12 +168,19 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
     file = copy / "out" / "small.tir"
     changed = tir.read(file)
     changed.replace(PKY1=1.5 * changed["PKY1"]).write(file)
+    path = copy / "out" / "information.json"
+    told = json.loads(path.read_text())
+    k = told["names"].index("PKY1")
+    told["matrix"][k][k] *= 1.01
+    told["vector"][k] *= 1.001
+    path.write_text(json.dumps(told))
     assert run("build", "--verify", copy / "out") == 3
     said = capsys.readouterr()
     lines = said.out.splitlines()
     assert f"made by method {METHOD - 1}" in lines[0]
     assert "numpy 1.0 (here" in said.out
-    assert "2 of" in said.err
+    assert "4 of" in said.err
+    assert said.out.count("information.json") == 2
     assert said.out.index("PKY1.value") < said.out.index("spin.epsilon_gamma")
 
 
@@ -182,6 +191,7 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
         (lambda folder: (folder / "camber_900.csv").write_text("x"), "camber_900.csv: was changed since the build"),
         (lambda folder: (folder / "out" / "resolved.toml").write_text("x"), "resolved.toml: was changed since the build"),
         (lambda folder: (folder / "out" / "resolved.toml").unlink(), "there is no such file"),
+        (lambda folder: (folder / "out" / "information.json").unlink(), "information.json: is missing"),
         (lambda folder: (folder / "out" / "result.json").unlink(), "name a folder that mffit build wrote"),
         (lambda folder: (folder / "out" / "result.json").write_text("[]"), "is not the result of a build"),
         (lambda folder: (folder / "out" / "result.json").write_text("{"), "is not the result of a build"),
@@ -211,13 +221,14 @@ def test_a_verification_takes_nothing_else(built, also, capsys):
 def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
     mffit.spin(built / "tyre.toml", tmp_path / "spin")
     made = json.loads((tmp_path / "spin" / "spin.json").read_text())["made"]
-    assert made["method"] == METHOD
+    assert (made["method"], made["source"]) == (METHOD, source())
     assert len(made["inputs"]["base.tir"]) == 64
     mffit.diagnose(built / "tyre.toml", effects=CATALOG[:1], out=tmp_path / "diagnosis")
     content = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
     made = content["made"]
     model = built / "out" / "small.tir"
     assert made["inputs"][str(model)] == hashlib.sha256(model.read_bytes()).hexdigest()
+    assert made["source"] == source()
     assert content["lab"]["operator"] == LAB["operator"]
     assert {row["why"] for row in content["left_out"] if row["by"] == "hand"} == {WHY}
     page = (tmp_path / "diagnosis" / "diagnosis.html").read_text(encoding="utf-8")
@@ -240,6 +251,8 @@ def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
         ({"a": [1.0, 2.0]}, {"a": [1.0]}, "a, length"),
         ({"a": [{"b": 2.0}]}, {"a": [{"b": 3.0}]}, "a[0].b"),
         ({"a": 1.0}, {}, "a"),
+        ({"c": [[4.0], [1e-9, 9.0]]}, {"c": [[4.0], [2e-9, 9.0]]}, None),
+        ({"c": [[4.0], [0.01, 9.0]]}, {"c": [[4.0], [0.02, 9.0]]}, "c[1][0]"),
         ({"a": None}, {"a": 0.0}, "a"),
         ({"a": True}, {"a": False}, "a"),
         ({"a": "x"}, {"a": "y"}, None),

@@ -129,9 +129,10 @@ keys(
 )
 keys(
     Verification,
-    "folder same headline numbers exact method version libraries changes notes",
+    "folder same headline numbers exact method version source libraries changes notes",
     method=lambda found: _then_and_now(found.method),
     version=lambda found: _then_and_now(found.version),
+    source=lambda found: _then_and_now(found.source),
     libraries=lambda found: _then_and_now(found.libraries),
 )
 

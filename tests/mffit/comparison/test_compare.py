@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
 
 import numpy as np
 import pytest
-from small_rigs import SAMPLE, built, disc, truth
+from small_rigs import SAMPLE, built, disc, simulated, truth
 
 import mffit
+from mffit import fleet
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
 from mffit.fit import Posterior
+from mffit.fleet import Information, Specimen
 from mffit.pipeline.build_output import write_build
 from tests.browser import assert_readable
 
@@ -219,3 +225,78 @@ def test_the_command_prints_the_differences(capsys):
     assert said.startswith("The curves of base.tir and true.tir differ in Fy by up to")
     assert "camber reduction factor" in said
     assert "written to" not in said
+
+
+def moved(name, setup, moves):
+    """A build of the rig "bench" with one set-up whose numbers its path radius and its load-cell zero move."""
+    names = tuple(dict.fromkeys(chain(*moves.values())))
+    k = len(names)
+    told = Information(
+        names, np.zeros(k), np.eye(k), np.zeros(k), np.zeros(k), np.ones(k),
+        {error: np.array([move.get(number, 0.0) for number in names]) for error, move in moves.items()},
+    )  # fmt: skip
+    return Specimen(
+        name=name, folder=Path(name), tyre=truth(), file="a.tir", on_disc=True, rig={"name": "bench"}, information=told,
+        epsilon_gamma=None, misfit={}, warnings=(), setups=(setup,), budget={"load-cell offset": -0.03},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("setups", [("may", "may"), ("may", "june")])
+def test_what_one_rig_does_to_both_sides_cancels_in_the_difference(setups):
+    """Against draws: a common path radius, the zero of a set-up in readings and in PECP1 as measured, errors of each side."""
+    rng, own, of_zero, names = np.random.default_rng(3), 0.1, -0.03, ("PKY1", "PECP1")
+
+    def drawn(common):
+        one = rng.standard_normal((2, 400_000))
+        return (one[0], one[0]) if common else (one[0], one[1])
+
+    one_setup = setups[0] == setups[1]
+    radius, zero, direct = drawn(True), drawn(one_setup), drawn(one_setup)
+    rest, noise = drawn(False), drawn(False)
+    sides, errors = [], []
+    for k, (by_radius, by_zero, u, by_epsilon) in enumerate([(0.5, 0.2, 0.06, 0.3), (0.4, -0.1, 0.05, 0.2)]):
+        epsilon = of_zero * direct[k] + math.sqrt(u**2 - of_zero**2) * rest[k]
+        stiffness = by_radius * radius[k] + by_zero * zero[k] + by_epsilon / u * epsilon + own * noise[k]
+        errors.append(np.array([stiffness, epsilon]))
+        moves = {
+            "path_radius_m": {"PKY1": by_radius},
+            "F0_N": {"PKY1": by_zero},
+            "PECP1": {"PECP1": u, "PKY1": by_epsilon},
+        }
+        tyre = truth().replace(PKY1=truth()["PKY1"] + k, PECP1=0.1 * k)
+        known = Posterior(names, np.cov(errors[k]))
+        sides.append(ComparedSubject(f"{k}", tyre, True, known, moved(f"{k}", setups[k], moves)))
+    found = between(*sides)
+    rows = {row.key: row.u for row in found.coefficients}
+    assert [rows[name] for name in names] == pytest.approx(np.std(errors[1] - errors[0], axis=1), rel=0.01)
+    stiff, slip = by_key(found)["C_alpha_N_per_rad"], by_key(found)["epsilon_gamma"]
+    assert slip.u == pytest.approx(rows["PECP1"])
+    # C_alpha is in proportion to PKY1.
+    scaled = [
+        e[0] * row / side.tyre["PKY1"]
+        for e, row, side in zip(errors, (stiff.first, stiff.second), sides, strict=True)
+    ]
+    assert stiff.u == pytest.approx(np.std(scaled[1] - scaled[0]), rel=0.02)
+    other = replace(sides[1], build=replace(sides[1].build, rig={"name": "other"}))
+    apart = by_key(between(sides[0], other))["epsilon_gamma"]
+    assert apart.u == pytest.approx(math.hypot(0.06, 0.05), rel=0.01)
+
+
+def test_a_declared_path_radius_moves_a_build_as_stated(tmp_path):
+    """Built again with the radius one standard uncertainty larger."""
+    builds = []
+    for k, radius in enumerate((1.323, 1.3248)):
+        content = disc()
+        content["rig"] |= {"path_radius": 1.323, "u_path_radius": 0.0018}
+        simulated(content, tmp_path / f"{k}", seed=7)
+        path = tmp_path / f"{k}" / "tyre.toml"
+        path.write_text(path.read_text().replace("path_radius = 1.323", f"path_radius = {radius}"))
+        mffit.build(path, tmp_path / f"{k}" / "out")
+        builds.append(fleet.read(tmp_path / f"{k}" / "out"))
+    first, second = (build.information for build in builds)
+    stated = dict(zip(first.names, first.moved_by["path_radius_m"], strict=True))
+    found = dict(zip(second.names, second.values, strict=True))
+    result = json.loads((tmp_path / "0" / "out" / "result.json").read_text())["fit"]
+    u = {name: row["stderr"] for table in ("coefficients", "rig") for name, row in result[table].items()}
+    for name, before in zip(first.names, first.values, strict=True):
+        assert found[name] - before == pytest.approx(stated[name], abs=0.1 * (u[name] or math.inf)), name
