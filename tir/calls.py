@@ -69,6 +69,11 @@ def compile_kernels(
 
 def forces(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
     """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
+    found = _by_formula(tyre, inputs, switches)
+    return found if tyre.correction is None else tyre.correction.added(found, inputs, limits=switches.limits)
+
+
+def _by_formula(tyre: TyreRecord, inputs: Sequence[Any], switches: Switches) -> Forces:
     arrays = [np.asarray(x) for x in inputs]
     if {a.dtype for a in arrays} != ONLY_DOUBLES:
         if not _real(arrays):
@@ -141,17 +146,17 @@ def _plain(x: Any) -> Any:
 
 def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Function | None:
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
-    key = switches if outputs is FORCES else (outputs, switches)
+    key = switches if outputs is FORCES and tyre.correction is None else (outputs, switches)
     if key not in tyre.prepared:
         values = _values(tyre, switches, outputs)
         if values is None:
             return None
-        loaded = kernels.meter("one", switches).kernel() if outputs is FORCES else None
+        loaded = kernels.meter("one", switches).kernel() if key is switches else None
         if loaded is not None:
             tyre.prepared[key] = loaded.run_of(values)
         else:
             run = single.run_of(values, switches, outputs)
-            tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if outputs is FORCES else run
+            tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if key is switches else run
     found: Function | None = tyre.prepared[key]
     return found
 
@@ -192,7 +197,7 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
 
 
 def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
-    """The lag of the tyre's contact, cached in the tyre.
+    """The lag of the tyre's contact, cached in the tyre; without a correction.
 
     Raises
     ------
@@ -205,6 +210,8 @@ def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
 
         return lag_functions(values, switches)
 
+    if ("lag", switches) not in tyre.prepared:
+        tyre.leave_correction("the lag of the contact")
     found = _prepared(tyre, "lag", switches, (*FORCES, *OF_CONTACT), lag)
     if found is None:
         raise TirError("the lag of the contact is computed for real parameters only")

@@ -48,8 +48,12 @@ def doubt(values: Mapping[str, Any], present: Collection[str]) -> str:
 def warn_of_doubt(values: Mapping[str, Any], present: Collection[str]) -> None:
     """Warn with the sentence of :func:`doubt`, at the line outside this package that asked for the forces."""
     sentence = doubt(values, present)
-    if not sentence:
-        return
+    if sentence:
+        warn(sentence)
+
+
+def warn(sentence: str) -> None:
+    """Warn at the line outside this package that called it."""
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith(INSIDE):
         level, frame = level + 1, frame.f_back

@@ -12,12 +12,14 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from inspect import Parameter, Signature
 from numbers import Complex, Number
+from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple, Self
 
+from tir.correction import Correction, read_correction
 from tir.document import Document
 from tir.errors import Problem, TirError
-from tir.mode import asks_for_turn_slip, warn_of_doubt
+from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 
 EMPTY: Mapping[str, Any] = MappingProxyType({})
@@ -43,6 +45,7 @@ class TyreRecord:
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
     problems: tuple[Problem, ...] = ()  #: problems found on reading
     document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
+    correction: Correction | None = None  #: what the formula misses, added by calls
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Self:
@@ -74,7 +77,9 @@ class TyreRecord:
         return self.values.keys()
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, TyreRecord) and dict(self.values) == dict(other.values)
+        if not isinstance(other, TyreRecord):
+            return False
+        return self.correction == other.correction and dict(self.values) == dict(other.values)
 
     def __hash__(self) -> int:
         """Hash of the values that can be hashed; arrays, for example, are left out."""
@@ -137,6 +142,33 @@ class TyreRecord:
             measured=MappingProxyType({**self.measured, **measured}),
             provenance=MappingProxyType({**self.provenance, **provenance}),
         )
+
+    def with_correction(self, path: str | Path) -> Self:
+        """A copy whose calls add what the formula misses, from the table that a build wrote beside the file.
+
+        The table is linear in each input between its nodes. Beyond them the miss fades to zero, and on another path than that
+        of the measurement it is known in part, as in ``mffit predict``; with ``limits=True`` it does not fade. Nothing is added
+        when rolling backwards. A changed value keeps the table. Property files, exports, ``state`` and ``tir.transient`` do not
+        have it; the first two and the last warn of it.
+
+        Parameters
+        ----------
+        path : ``<name>-correction.csv`` of the build
+
+        Raises
+        ------
+        TirError
+            If the table cannot be read, is not whole, or belongs to a file of other coefficients.
+        """
+        return replace(self, correction=read_correction(path, self.values))
+
+    def leave_correction(self, where: str) -> None:
+        """Warn that something made of the tyre lacks what the formula misses."""
+        if self.correction is not None:
+            warn(
+                f"{where} holds the formula alone: what it misses does not travel with it; give the table of with_correction "
+                "with it (docs/correction.md)"
+            )
 
     def expand(self) -> Self:
         """A copy in which missing keys are given with the defaults of the table, marked as not measured.

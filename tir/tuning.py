@@ -26,7 +26,8 @@ class Tunable(NamedTuple):
 
 
 def exported(tyre: TyreRecord, turn_slip: bool | None, star: bool, limits: bool) -> Switches:
-    """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
+    """The switches of exported code; warns of doubtful coefficients of turn slip, and of a correction, which stays behind."""
+    tyre.leave_correction("exported code")
     on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
     if on:
         warn_of_doubt(tyre.values, tyre.present)

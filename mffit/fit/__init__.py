@@ -8,7 +8,7 @@ from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.straight import straight_cornering_stiffness
-from mffit.fit.written.files import file_names, name_at_temperature, plain_use
+from mffit.fit.written.files import file_names, fitted_use, name_at_temperature, plain_use
 
 __all__ = [
     "Agreement",
@@ -18,6 +18,7 @@ __all__ = [
     "ensemble",
     "file_names",
     "fit",
+    "fitted_use",
     "left_by",
     "name_at_temperature",
     "plain_use",

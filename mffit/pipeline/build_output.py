@@ -42,7 +42,7 @@ def write_build(
     ``stretches`` of recordings go to ``stretches.csv``. Without report, page and plots of an earlier build are removed.
     """
     name = result.config.tyre.name
-    siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name)]
+    siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name), result.correction_name]
     if not with_report:
         siblings += [REPORT, *(f"plots/{path.name}" for path in (out / "plots").glob("*.png"))]
     with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
@@ -51,9 +51,11 @@ def write_build(
         as_json.write(folder / "result.json", result)
         as_json.write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
+        fitted = result.files[result.fitted]
         if result.prediction is not None:
-            fitted = result.files["turn-slip" if "turn-slip" in result.files else "normal"]
             prediction.write(folder / prediction.FILE, result.prediction, result.tir_path, fitted)
+        if result.correction is not None:
+            prediction.write_correction(folder / result.correction_name, result.correction, fitted)
         if stretches:
             write_csv(stretch_table(stretches), folder / "stretches.csv")
         (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))

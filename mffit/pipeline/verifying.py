@@ -128,6 +128,8 @@ def _property_files(
             result.tyres[use].write(new / name)
         write_members(result, new)
         for name in (*stored["files"].values(), *(f"{FOLDER}/{name}" for name in drawn)):
+            if not name.endswith(".tir"):
+                continue
             path = out / name
             if not path.is_file():
                 raise InputError(f"is gone, but {RESULT} names it; build again", file=path)

@@ -44,11 +44,19 @@ class MissedChannel:
         ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by the coefficients, ``path`` (n,) the correlation
         of what the formula misses with that on the measured path.
         """
-        likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
-        columns = np.hstack([likeness[:, None] * self.smooth.columns(settings), slopes])
+        likeness, functions = self._functions(settings, path)
+        columns = np.hstack([functions, slopes])
         known = np.sum((columns @ self.root) ** 2, axis=1)
-        missed = columns[:, : len(self.missed)] @ self.missed
-        return missed, known + (1.0 - likeness**2) * self.components.missed**2
+        return functions @ self.missed, known + (1.0 - likeness**2) * self.components.missed**2
+
+    def mean(self, settings: np.ndarray, path: np.ndarray) -> np.ndarray:
+        """What the file misses (n,), as :meth:`at`."""
+        return np.asarray(self._functions(settings, path)[1] @ self.missed)
+
+    def _functions(self, settings: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Correlation (n,) with what is missed at the nearest tested conditions, and the functions (n, m) times it."""
+        likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
+        return likeness, likeness[:, None] * self.smooth.columns(settings)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +90,7 @@ class Predictor:
         DataFrame
             The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
         """
-        points = self._points(tyre, conditions)
+        points = self.points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
         simulation = Simulation.of(fitted, turn_slip=self.curved)
         forces, slopes = simulation.sensitivities(points, self.names, self.channels)
@@ -100,7 +108,14 @@ class Predictor:
             found[f"u_{column(name, 'run')}"] = np.sqrt(run)
         return found
 
-    def _points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
+    def missed(self, name: str, points: Points) -> np.ndarray:
+        """What the file misses (n,) of a channel, without uncertainty."""
+        channel = self.channels[name]
+        path = self._of_path(channel, points)
+        found = [channel.mean(settings, path) for settings in _settings(points, channel.smooth.inputs)]
+        return np.asarray(np.mean(found, axis=0))
+
+    def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
         """The conditions as points; a temperature that is not stated is NaN, all others are nominal then."""
 
         def stated(name: str, otherwise: float) -> np.ndarray:

@@ -93,4 +93,8 @@ def purposes(result: BuildResult) -> dict[str, str]:
             off = [f"{m.ridden:.3g} {CHANNELS[name].unit}" for name, m in files.by_use[use].straight.items()]
             text += f"; {' and '.join(off)} off the model"
         found.setdefault(name, text.format(mode=mode, T=warm.T_ref if warm else 0.0))
+    if result.correction is not None:
+        found[result.correction_name] = (
+            f"simulations that add what the formula misses to {result.files[result.fitted]}"
+        )
     return found

@@ -10,16 +10,19 @@ from typing import Literal
 from mffit.brief import Brief
 from mffit.config import Config
 from mffit.diagnosis.remains import NOTHING_REMAINS, Remains
-from mffit.fit import FitResult
+from mffit.fit import FitResult, fitted_use
 from mffit.made import Made
 from mffit.made import made as made_now
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.prediction import Predictor
+from mffit.prediction import CorrectionTable, Predictor
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
+
+CORRECTION = "-correction.csv"
+"""End of the name of the table of what the formula misses."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -44,6 +47,7 @@ class BuildResult(Brief):
     made: Made = field(default_factory=made_now)
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
     prediction: Predictor | None = None  #: of forces at any conditions
+    correction: CorrectionTable | None = None  #: what the formula misses, where that is proven
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
     @property
@@ -75,6 +79,16 @@ class BuildResult(Brief):
     def tyre(self) -> Tyre:
         """The tyre of the file with the plain name."""
         return self.tyres[self.plain]
+
+    @property
+    def fitted(self) -> str:
+        """The use of the file that holds the fitted model."""
+        return fitted_use(self.files)
+
+    @property
+    def correction_name(self) -> str:
+        """Name of the table of what the formula misses."""
+        return f"{self.config.tyre.name}{CORRECTION}"
 
     @property
     def tir_path(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -140,6 +140,11 @@ def use_mode(values: Mapping[str, Any], use: str) -> int:
 def name_at_temperature(name: str) -> str:
     """Name of the file that holds at one temperature."""
     return f"{name}-at-temperature.tir"
+
+
+def fitted_use(uses: Container[str]) -> str:
+    """The use whose file holds the fitted model."""
+    return "turn-slip" if "turn-slip" in uses else "normal"
 
 
 def plain_use(config: Config) -> str:

@@ -34,6 +34,10 @@ keys(
     "trusted reasons in_doubt=trust.doubts tyre=config.tyre spin=measured fit residuals=remains remarks=trust.remarks "
     "tir=tir_path files made lab=config.lab left_out warnings doubts=fit.doubts outliers=fit.outliers",
     fit=lambda found: fit(found.fit, found.trust.over_noise),
+    files=lambda found: {
+        **found.files,
+        **({"correction": found.correction_name} if found.correction else {}),
+    },
 )
 keys(
     BuildOutcome,

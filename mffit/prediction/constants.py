@@ -1,0 +1,14 @@
+"""Numbers of judgement of predictions."""
+
+from __future__ import annotations
+
+from tir.constant import Count, Real
+
+INTERPOLATION_ADDS = Real(
+    0.08,
+    "-",
+    "Error of lines between the nodes of the table of the miss over the miss, which is known to a fifth at best.",
+)
+MOST_NODES = Count(
+    8000, "-", "Most nodes of the table of the miss: with four channels they are a file of 0.8 MB."
+)

@@ -1,0 +1,169 @@
+"""What the formula misses as a table over a grid of the inputs, for simulations: ``<name>-correction.csv``."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import RegularGridInterpolator
+
+from mffit.csv_tables import csv_text
+from mffit.linearised.inputs import COLUMNS
+from mffit.points.points import OF_SI
+from mffit.prediction import constants
+from mffit.prediction.predictor import Predictor
+from mffit.quantities import CONDITIONS, column
+from mffit.scatter import rms
+from tir import Tyre
+from tir.correction import AXES, COEFFICIENTS, FADING, FILE, MISSED, PATH, digest
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CorrectionTable:
+    """What a file misses over a grid of the inputs."""
+
+    table: pd.DataFrame
+    """Of every node: the inputs, and of every channel what is missed and its standard uncertainty; ISO-W."""
+    fading: Mapping[str, Mapping[str, float]]
+    """By channel and input, the length over which the miss fades outside of the grid [unit of the input]."""
+    path: float  #: curvature of the path [1/m]
+    added: (
+        float  #: what linear interpolation adds, over the miss [-]: rms of the worst channel within the grid
+    )
+    coefficients: str  #: digest of those of the file
+
+
+def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> CorrectionTable | None:
+    """The table of the channels that the formula is ``proven`` to miss; None if there is none.
+
+    ``fitted`` is the file of the fitted model, to whose forces the table is added.
+    """
+    names = [name for name in MISSED if name in proven]
+    inputs: dict[str, tuple[float, float]] = {}
+    for name in names:
+        for one in known.channels[name].smooth.inputs:
+            heading = COLUMNS.get(one.name, "")
+            if heading in AXES:
+                factor = OF_SI.get(CONDITIONS[heading].unit, 1.0)
+                low, high = inputs.get(heading, (np.inf, -np.inf))
+                inputs[heading] = (min(low, factor * one.lower), max(high, factor * one.upper))
+    if not inputs:
+        return None
+    missed = _Missed(known, fitted, names)
+    nodes, added = _grid(missed, inputs)
+    at = pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes))
+    found = known.predict(fitted, fitted, at)
+    of_nodes, table = missed(at), at.copy()
+    for name in names:
+        u = found[f"u_{column(name, 'best')}"].to_numpy()
+        digits = 2 - int(np.floor(np.log10(np.median(u))))  # three of a usual uncertainty
+        table[MISSED[name]] = of_nodes[name].round(digits)
+        table[f"u_{MISSED[name]}"] = u.round(digits)
+    return CorrectionTable(
+        table, {name: _fading(known, name, nodes) for name in names}, known.path, added, digest(fitted.values)
+    )
+
+
+def text_of(found: CorrectionTable, file: str) -> str:
+    """The content of the file; ``file`` is the property file to whose forces the table is added."""
+    head = [
+        f"What the formula misses, to be added to the forces of {file}; ISO-W axes. See docs/correction.md.",
+        f"Between the nodes linear in every input, which adds {100.0 * found.added:.1f} % of the miss (rms).",
+        f"{FILE}: {file}",
+        f"{COEFFICIENTS}: {found.coefficients}",
+        f"{PATH}: {found.path:.6g}",
+    ]
+    for name, lengths in found.fading.items():
+        head.append(f"{FADING} {name}: " + ", ".join(f"{key} {value:.4g}" for key, value in lengths.items()))
+    return "".join(f"# {line}\n" for line in head) + csv_text(found.table)
+
+
+def write_correction(path: Path, found: CorrectionTable, file: str) -> None:
+    """Write the table; ``file`` is the property file that it belongs to."""
+    path.write_text(text_of(found, file), encoding="utf-8", newline="")
+
+
+@dataclass(frozen=True, slots=True)
+class _Missed:
+    """What a file misses at conditions in the units of their columns, on the path of the measurement."""
+
+    known: Predictor
+    fitted: Tyre
+    names: Sequence[str]
+
+    def __call__(self, at: pd.DataFrame) -> dict[str, np.ndarray]:
+        points = self.known.points(self.fitted, _whole(at))
+        return {name: self.known.missed(name, points) for name in self.names}
+
+
+def _whole(at: pd.DataFrame) -> pd.DataFrame:
+    """The conditions with those that a test did not vary."""
+    return at.assign(**{name: 0.0 for name in ("alpha_deg", "gamma_deg") if name not in at})
+
+
+def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> tuple[dict[str, np.ndarray], float]:
+    """Nodes of every input, the fewest between which a line follows the miss along each, and what all lines together add.
+
+    Each input has the same share of what may be added. A grid of too many nodes gets fewer, and adds more.
+    """
+    random = np.random.default_rng(0)
+    n = max(len(missed.known.channels[name].missed) for name in missed.names)
+    at = pd.DataFrame({name: random.uniform(*ends, n) for name, ends in inputs.items()})
+    exact, share = missed(at), constants.INTERPOLATION_ADDS / np.sqrt(len(inputs))
+    size = {name: rms(values) for name, values in exact.items()}
+    while True:
+        nodes = {name: _nodes(missed, at, exact, size, name, ends, share) for name, ends in inputs.items()}
+        if np.prod([len(own) for own in nodes.values()]) <= constants.MOST_NODES:
+            break
+        share *= np.sqrt(2.0)
+    found = missed(pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes)))
+    shape = [len(own) for own in nodes.values()]
+    lines = {
+        name: RegularGridInterpolator(
+            list(nodes.values()), values.reshape(shape), bounds_error=False, fill_value=None
+        )(at)
+        for name, values in found.items()
+    }
+    return nodes, max(rms(lines[name] - exact[name]) / max(size[name], 1e-12) for name in exact)
+
+
+def _nodes(
+    missed: _Missed,
+    at: pd.DataFrame,
+    exact: Mapping[str, np.ndarray],
+    size: Mapping[str, float],
+    name: str,
+    ends: tuple[float, float],
+    share: float,
+) -> np.ndarray:
+    """The fewest nodes of an input between which lines along it miss no channel by more than a share of its size."""
+    x, intervals = at[name].to_numpy(), 1
+    while True:
+        nodes = np.array([float(f"{node:.4g}") for node in np.linspace(*ends, intervals + 1)])
+        below = np.clip(np.searchsorted(nodes, x) - 1, 0, intervals - 1)
+        low, high = (missed(at.assign(**{name: nodes[below + k]})) for k in (0, 1))
+        weight = (x - nodes[below]) / (nodes[below + 1] - nodes[below])
+        off = max(
+            rms((1.0 - weight) * low[key] + weight * high[key] - exact[key]) / max(size[key], 1e-12)
+            for key in exact
+        )
+        if off <= share:
+            return nodes
+        intervals = max(
+            intervals + 1, int(intervals * np.sqrt(off / share))
+        )  # falls with the square of the distance
+
+
+def _fading(known: Predictor, name: str, nodes: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """The lengths of a channel along the inputs of the table; no end to those that it does not change with."""
+    channel = known.channels[name]
+    found = dict.fromkeys(nodes, np.inf)
+    for one, length in zip(channel.smooth.inputs, channel.components.lengths, strict=True):
+        if COLUMNS.get(one.name) in found:
+            heading = COLUMNS[one.name]
+            found[heading] = length * OF_SI.get(CONDITIONS[heading].unit, 1.0)
+    return found

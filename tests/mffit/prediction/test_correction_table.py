@@ -1,0 +1,79 @@
+"""``<name>-correction.csv``: what the formula misses as a table that a simulation adds."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from conftest import LOADS, Built, brush
+
+import mffit
+import tir
+from mffit.scatter import rms
+
+TABLE = "brush-correction.csv"
+CHANNELS = {"Fy": "N", "Mz": "Nm"}
+
+
+def of(tyre: tir.Tyre, at: pd.DataFrame) -> tir.Forces:
+    alpha, gamma = np.radians(at.alpha_deg.to_numpy()), np.radians(at.gamma_deg.to_numpy())
+    return tyre(at.Fz_N.to_numpy(), alpha=alpha, gamma=gamma)
+
+
+@pytest.fixture
+def tyres(foreign: Built) -> tuple[tir.Tyre, tir.Tyre]:
+    """The file, and with the table."""
+    file = tir.read(foreign.folder / "brush.tir")
+    return file, file.with_correction(foreign.folder / TABLE)
+
+
+def test_at_the_nodes_it_is_the_best_estimate(foreign: Built, tyres):
+    nodes = pd.read_csv(foreign.folder / TABLE, comment="#")
+    best, found = mffit.predict(foreign.folder, nodes), of(tyres[1], nodes)
+    for name, unit in CHANNELS.items():
+        rounding = best[f"u_{name}_best_{unit}"].median() * 0.005
+        assert getattr(found, name) == pytest.approx(best[f"{name}_best_{unit}"].to_numpy(), abs=rounding)
+        u = nodes[f"u_{name}_missed_{unit}"].to_numpy()
+        assert u == pytest.approx(best[f"u_{name}_best_{unit}"].to_numpy(), abs=rounding)
+
+
+def test_between_and_beyond_the_nodes_it_is_near_the_best_estimate_and_nearer_the_truth(
+    foreign: Built, tyres
+):
+    random = np.random.default_rng(4)
+    for reach in (1.0, 1.3):
+        at = pd.DataFrame(
+            {
+                "alpha_deg": random.uniform(-10.0 * reach, 10.0 * reach, 400),
+                "gamma_deg": random.uniform(-4.0, 4.0, 400),
+                "Fz_N": random.uniform(min(LOADS), max(LOADS) * reach, 400),
+            }
+        )
+        best = mffit.predict(foreign.folder, at)
+        true = dict(
+            zip(
+                CHANNELS,
+                brush(*np.radians(at[["alpha_deg", "gamma_deg"]]).to_numpy().T, at.Fz_N),
+                strict=True,
+            )
+        )
+        for name, unit in CHANNELS.items():
+            file, found = (getattr(of(tyre, at), name) for tyre in tyres)
+            estimate = best[f"{name}_best_{unit}"].to_numpy()
+            assert rms(found - estimate) < 0.1 * rms(estimate - file), name
+            if reach == 1.0:
+                assert rms(found - true[name]) < 0.7 * rms(file - true[name]), name
+
+
+def test_it_is_listed_and_small(foreign: Built):
+    files = json.loads((foreign.folder / "result.json").read_text())["files"]
+    assert files == {"normal": "brush.tir", "correction": TABLE}
+    assert (foreign.folder / TABLE).stat().st_size < 1e6
+
+
+def test_what_is_not_proven_is_not_written(of_formula: Built):
+    """A tyre of the formula: there is no table, or one of other channels than Fy."""
+    assert of_formula.result.correction is None
+    assert not list(of_formula.folder.glob("*-correction.csv"))

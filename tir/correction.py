@@ -1,0 +1,201 @@
+"""What the formula misses of a measured tyre, beside its file: a table over the inputs, interpolated and added to the forces.
+
+``mffit build`` writes it; docs/correction.md says how to add it in any simulation.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import itertools
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from tir.codegen.program import INPUTS
+from tir.equations.forces import Forces
+from tir.errors import TirError
+from tir.parameters import TABLE
+
+AXES: Mapping[str, tuple[str, float]] = MappingProxyType(
+    {
+        "alpha_deg": ("alpha", np.pi / 180.0),
+        "gamma_deg": ("gamma", np.pi / 180.0),
+        "Fz_N": ("Fz", 1.0),
+        "p_kPa": ("pressure", 1e3),
+        "kappa": ("kappa", 1.0),
+    }
+)
+"""Columns of the inputs, each with the input of a call and the factor to its unit."""
+MISSED: Mapping[str, str] = MappingProxyType(
+    {name: f"{name}_missed_{'N' if name[0] == 'F' else 'Nm'}" for name in Forces._fields if name != "Fz"}
+)
+"""Columns of the forces and moments, in ISO-W."""
+COUNTED = (
+    "FNOMIN",
+    "NOMPRES",
+    *(row.name for row in TABLE if row.section.endswith("_COEFFICIENTS") and not row.scaling),
+)
+"""What a table belongs to; modes, ranges and scaling factors may differ in a simulation."""
+FILE, COEFFICIENTS, PATH, FADING = "file", "coefficients", "phi_t_per_m", "fading of"
+"""Words at the head of the table."""
+
+
+def digest(values: Mapping[str, Any]) -> str:
+    """Of the coefficients of a file."""
+    text = "\n".join(f"{name} {float(values[name])!r}" for name in COUNTED)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What the formula misses, over a grid of d inputs."""
+
+    content: str  #: SHA-256 of the table, by which two are the same
+    nodes: Mapping[str, np.ndarray] = field(compare=False)  #: by input of a call, rising, SI
+    missed: np.ndarray = field(compare=False)  #: (*grid, channels) [N], [Nm]
+    channels: tuple[int, ...] = field(compare=False)  #: places among the forces
+    fading: np.ndarray = field(compare=False)
+    """(channels, d) lengths over which the miss fades outside of the grid, SI."""
+    path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
+
+    def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
+        """The forces with what the formula misses.
+
+        Parameters
+        ----------
+        forces : of the formula
+        inputs : of the call, in the order of ``INPUTS``
+        limits : whether the inputs are held to the file's ranges; then the miss does not fade outside of the grid
+
+        Raises
+        ------
+        TirError
+            If an input is not a real number.
+        """
+        kinds = {x.dtype.kind for x in map(np.asarray, inputs)}
+        if not kinds <= set("fiub"):
+            raise TirError("what a formula misses is added at real numbers only; call the tyre of the file")
+        by_name = dict(zip(INPUTS, inputs, strict=True))
+        if isinstance(forces.Fz, float):
+            missed = self._once([float(by_name[name]) for name in self.nodes], fades=not limits)
+        else:
+            shape = np.broadcast_shapes(*(np.shape(x) for x in inputs))
+            by_name = {name: np.broadcast_to(x, shape).astype(float) for name, x in by_name.items()}
+            at = np.array([by_name[name].ravel() for name in self.nodes])
+            missed = self.interpolated(at)
+            if not limits:
+                missed = missed * self._left(at)
+            missed = missed.reshape(-1, *shape)
+        if self.path:
+            missed = missed * np.exp(-0.5 * (by_name["phi_t"] / self.path - 1.0) ** 2)
+        missed = np.where(by_name["Vx"] < 0.0, 0.0, missed)
+        found = list(forces)
+        for k, one in zip(self.channels, missed if missed.ndim > 1 else missed.tolist(), strict=True):
+            found[k] = found[k] + one
+        return Forces(*found)
+
+    def interpolated(self, at: np.ndarray) -> np.ndarray:
+        """The miss (channels, n) at inputs (d, n), linear in each between the nodes; outside that of the nearest end."""
+        cells, shares = [], []
+        for x, known in zip(at, self.nodes.values(), strict=True):
+            cell = np.clip(np.searchsorted(known, x, side="right") - 1, 0, len(known) - 2)
+            shares.append(np.clip((x - known[cell]) / (known[cell + 1] - known[cell]), 0.0, 1.0))
+            cells.append(cell)
+        found = np.zeros((at.shape[1], len(self.channels)))
+        for corner in itertools.product((0, 1), repeat=len(cells)):
+            weight = np.ones(at.shape[1])
+            for high, share in zip(corner, shares, strict=True):
+                weight = weight * (share if high else 1.0 - share)
+            place = tuple(cell + high for cell, high in zip(cells, corner, strict=True))
+            found += weight[:, None] * self.missed[place]
+        return found.T
+
+    def _left(self, at: np.ndarray) -> np.ndarray:
+        """Share (channels, n) of the miss that is left outside of the grid."""
+        nodes = self.nodes.values()
+        beyond = np.array([x - np.clip(x, known[0], known[-1]) for x, known in zip(at, nodes, strict=True)])
+        return np.asarray(np.exp(-0.5 * np.sum((beyond / self.fading[:, :, None]) ** 2, axis=1)))
+
+    def _once(self, at: Sequence[float], *, fades: bool) -> np.ndarray:
+        """The miss (channels,) of one condition, in a tenth of the time of arrays."""
+        cells, shares, beyond = [], [], []
+        for x, known in zip(at, self._lists, strict=True):
+            cell = min(max(bisect_right(known, x) - 1, 0), len(known) - 2)
+            low, high = known[cell], known[cell + 1]
+            cells.append(slice(cell, cell + 2))
+            shares.append(min(max((x - low) / (high - low), 0.0), 1.0))
+            beyond.append(x - min(max(x, known[0]), known[-1]))
+        found = self.missed[tuple(cells)]
+        for share in shares:
+            found = (1.0 - share) * found[0] + share * found[1]
+        if fades and any(beyond):
+            found = found * np.exp(-0.5 * np.sum((np.array(beyond) / self.fading) ** 2, axis=1))
+        return found
+
+    @cached_property
+    def _lists(self) -> list[list[float]]:
+        return [known.tolist() for known in self.nodes.values()]
+
+
+def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
+    """The table of a file with these values.
+
+    Raises
+    ------
+    TirError
+        The table cannot be read, is not as a build writes it, or belongs to another file.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise TirError(f"cannot be read ({error}); name the table that a build wrote", path=path) from None
+    lines = text.splitlines()
+    head = dict(line[1:].strip().partition(": ")[::2] for line in lines if line.startswith("#"))
+    try:
+        heading, *rows = csv.reader(line for line in lines if not line.startswith("#"))
+        known = head[COEFFICIENTS]
+        found = _correction(text, head, heading, np.array(rows, dtype=float))
+    except (ValueError, LookupError, StopIteration):
+        sentence = (
+            "is not the whole table of what a formula misses, as a build writes it; build the tyre again"
+        )
+        raise TirError(sentence, path=path) from None
+    if known != digest(values):
+        of = head.get(FILE, "another file")
+        sentence = (
+            f"belongs to {of} as it was built, and the coefficients of this tyre are others; read that file"
+        )
+        raise TirError(sentence, path=path)
+    return found
+
+
+def _correction(text: str, head: Mapping[str, str], heading: list[str], rows: np.ndarray) -> Correction:
+    """The record of a table; raises ValueError or LookupError if it is not whole."""
+    axes = [name for name in AXES if name in heading]
+    names = [name for name in MISSED if f"{FADING} {name}" in head]
+    nodes = [np.unique(rows[:, heading.index(name)]) for name in axes]
+    shape = [len(known) for known in nodes]
+    order = np.lexsort([rows[:, heading.index(name)] for name in reversed(axes)])
+    grid = np.array(list(itertools.product(*nodes)))
+    rows = rows[order]
+    whole = np.array_equal(grid, rows[:, [heading.index(name) for name in axes]]) and np.all(
+        np.isfinite(rows)
+    )
+    if not (whole and names and min(shape) > 1):
+        raise ValueError("the grid is not whole")
+    lengths = [dict(pair.split(" ") for pair in head[f"{FADING} {name}"].split(", ")) for name in names]
+    return Correction(
+        content=hashlib.sha256(text.encode()).hexdigest(),
+        nodes={AXES[name][0]: AXES[name][1] * known for name, known in zip(axes, nodes, strict=True)},
+        missed=rows[:, [heading.index(MISSED[name]) for name in names]].reshape(*shape, len(names)),
+        channels=tuple(Forces._fields.index(name) for name in names),
+        fading=np.array([[AXES[name][1] * float(own[name]) for name in axes] for own in lengths]),
+        path=float(head[PATH]),
+    )
