@@ -7,8 +7,23 @@ import math
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError, Slopes, calibration
 
+CAMBER_GAIN = calibration(
+    "gamma",
+    "gain_gamma",
+    "true camber = gain_gamma times the reading, before its zero is added",
+    u=constants.ANGLE_GAIN,
+    place=Place.CAMBER,
+    slopes=lambda at: Slopes(C_gamma=1.0),
+)
+LOAD_GAIN = calibration(
+    "Fz",
+    "gain_Fz",
+    "true load = gain_Fz times the reading",
+    place=Place.LOAD,
+    slopes=lambda at: at.over_load,
+)
 CAMBER_ZERO = RigError(
     name="gamma_0_deg",
     unit="deg",
@@ -116,4 +131,4 @@ SLIP_ZERO = RigError(
     declared=Declared(key="u_slip_zero", unit="-", default=0.0, source="zero of slip"),
 )
 
-CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS, SLIP_ZERO)
+CONDITION_ERRORS = (CAMBER_GAIN, CAMBER_ZERO, LOAD_GAIN, LOAD_CAMBER, PATH_RADIUS, SLIP_ZERO)

@@ -56,7 +56,7 @@ Formula = Callable[[float, Settings, Machine], np.ndarray | float]
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
     """True camber (n,) [rad]."""
-    return np.asarray(np.deg2rad(np.rad2deg(s.gamma) + m.faults["gamma_0_deg"]))
+    return np.asarray(np.deg2rad(m.faults["gain_gamma"] * np.rad2deg(s.gamma) + m.faults["gamma_0_deg"]))
 
 
 def _kelvin(s: Settings, m: Machine) -> np.ndarray:
@@ -69,17 +69,22 @@ def _grip(s: Settings, m: Machine) -> np.ndarray:
 
 
 STEERS: dict[str, Formula] = {
+    "gain_alpha": lambda x, s, m: x * s.alpha - s.alpha,
     "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
     "camber_skew_deg": lambda x, s, m: np.deg2rad(x * np.sin(_leant(s, m))),
     "hysteresis_deg": lambda x, s, m: np.where(s.sense > 0, -1.0, np.where(s.sense < 0, 1.0, 0.0)) * np.deg2rad(x),
 }  # fmt: skip
 """Added to the sideslip angle as read [rad]."""
-LEANS: dict[str, Formula] = {"gamma_0_deg": lambda x, s, m: np.deg2rad(x)}
+LEANS: dict[str, Formula] = {
+    "gain_gamma": lambda x, s, m: x * s.gamma - s.gamma,
+    "gamma_0_deg": lambda x, s, m: np.deg2rad(x),
+}
 """Added to the camber as read [rad]."""
 SLIPS: dict[str, Formula] = {"kappa_0": lambda x, s, m: x}
 """Added to the longitudinal slip as read."""
 LOADS: dict[str, Formula] = {
-    "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0
+    "gain_Fz": lambda x, s, m: x,
+    "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0,
 }
 """Factors on the load."""
 SCALES: dict[str, tuple[str, Formula]] = {
@@ -108,7 +113,7 @@ YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
 CELL = (
     "gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm",
-    "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
+    "gain_Fx", "gain_Mx", "gain_My", "gain_Mz", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
@@ -219,12 +224,14 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
     return true._replace(
         Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
-        Mz=surroundings * true.Mz + faults["M0_Nm"] + faults["crosstalk_Fx_Mz_m"] * true.Fx,
-        Mx=true.Mx
+        Mz=faults["gain_Mz"] * surroundings * true.Mz
+        + faults["M0_Nm"]
+        + faults["crosstalk_Fx_Mz_m"] * true.Fx,
+        Mx=faults["gain_Mx"] * true.Mx
         + faults["Mx0_Nm"]
         + faults["crosstalk_Fx_Mx_m"] * true.Fx
         + faults["crosstalk_Fy_Mx_m"] * true.Fy,
-        My=faults["My0_Nm"] + true.My,
+        My=faults["My0_Nm"] + faults["gain_My"] * true.My,
         Fx=faults["Fx0_N"] + faults["gain_Fx"] * true.Fx - np.sign(settings.Vx) * faults["drag_Fx_N"],
         Fz=settings.Fz,
     )
