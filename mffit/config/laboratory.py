@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import date
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, PositiveFloat, model_validator
 
 from mffit.config import quantities as q
 from mffit.config.table import Table, list_of_tables
+from mffit.rig_errors import CALIBRATED
 
 
 def _named(name: str) -> str:
@@ -26,6 +27,32 @@ class InstrumentTable(Table):
     certificate: str = ""  #: number of the calibration certificate
     calibrated: date | None = None
     due: date | None = None  #: of the next calibration
+    channel: Literal[*CALIBRATED] | None = None  # type: ignore[valid-type] #: that it reads
+    expanded_uncertainty: PositiveFloat | None = (
+        None  #: U of the certificate, over the reading unless ``at`` is given
+    )
+    at: PositiveFloat | None = None  #: reading at which U holds, in the unit of U
+    k: PositiveFloat = 2.0  #: coverage factor of U
+
+    @property
+    def u_gain(self) -> float | None:
+        """Relative standard uncertainty of its calibration; None if the certificate is not given."""
+        if self.channel is None or self.expanded_uncertainty is None:
+            return None
+        return self.expanded_uncertainty / (self.at or 1.0) / self.k
+
+    @model_validator(mode="after")
+    def _certificate_is_whole(self) -> InstrumentTable:
+        if (self.channel is None) != (self.expanded_uncertainty is None):
+            raise q.wrong("has only one of channel and expanded_uncertainty; give both, or none")
+        u = self.u_gain
+        if u is not None and u > 1.0:
+            raise q.wrong(
+                f"{self.expanded_uncertainty:g} is more than the reading; write 0.01 for 1 %, or the reading where it holds as "
+                "at",
+                "expanded_uncertainty",
+            )
+        return self
 
     @model_validator(mode="after")
     def _due_after_calibrated(self) -> InstrumentTable:

@@ -23,13 +23,14 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
+from mffit.config import uncertainty as stated
 from mffit.config.by_hand import Entries, as_in_the_file, check_coefficients, named
 from mffit.config.laboratory import LabTable
 from mffit.config.lines import ExcludeTable, check_exclusions
 from mffit.config.radii import effective_radius, path_radius
 from mffit.config.table import Table, list_of_tables
 from mffit.config.toml_file import line_of
-from mffit.rig_errors import BY_NAME, DECLARED, Declared
+from mffit.rig_errors import BY_NAME, CALIBRATED, DECLARED, Declared
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 
 SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
@@ -81,7 +82,14 @@ ALSO_CALLED = {"calspan": "sae"}
 """Other names of axes: data of Calspan's flat belt, published by the tyre test consortium, are in SAE axes."""
 
 
-U_RANGES = {"-": q.Fraction, "N": q.UForce, "Nm": q.UMoment, "deg": q.UAngle, "m": q.ULength}
+U_RANGES = {
+    "-": stated.Share,
+    "N": stated.Force,
+    "Nm": stated.Moment,
+    "deg": stated.Angle,
+    "m": stated.Length,
+    "deg/Nm": stated.Compliance,
+}
 """Accepted range of a standard uncertainty by its unit."""
 
 
@@ -106,9 +114,9 @@ class MachineTable(Table):
     path_centre: Literal["left", "right"] = "left"
     path_radius: q.PathRadius | None = None  #: [m]
     path: PathTable | None = None
-    u_length: q.ULength = 0.001  #: each tape measure [m]
+    u_length: stated.Length = 0.001  #: each tape measure [m]
     backlash_deg: q.Play = 0.0  #: full play of the sideslip axis
-    u_conicity: q.Fraction = float(constants.PLAUSIBLE_CONICITY)  #: of the tyre, force over load
+    u_conicity: stated.Share = float(constants.PLAUSIBLE_CONICITY)  #: of the tyre, force over load
 
     @property
     def on_disc(self) -> bool:
@@ -188,10 +196,10 @@ class RollingRadiusTable(Table):
     revolutions: q.Revolutions | None = None  #: whole turns of the wheel
     angle_start_deg: q.Inclination | None = None
     angle_end_deg: q.Inclination | None = None
-    u_angle_deg: q.UAngle = 1.0
-    u_arc_m: q.ULength = 0.001
+    u_angle_deg: stated.Angle = 1.0
+    u_arc_m: stated.Length = 0.001
     effective_radius: q.WheelRadius | None = None  #: [m]
-    u_effective_radius: q.ULength | None = None  #: [m]
+    u_effective_radius: stated.Length | None = None  #: [m]
 
     @property
     def is_measured(self) -> bool:
@@ -248,10 +256,10 @@ class SisterTable(Table):
     """[sister]: the base file is that of a sister tyre, whose longitudinal force is scaled by the measured side force."""
 
     Fx: Literal["scaled"]
-    u_friction: q.Fraction = float(
+    u_friction: stated.Share = float(
         constants.SISTER_FRICTION_SCATTER
     )  #: of longitudinal over lateral friction
-    u_stiffness: q.Fraction = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
+    u_stiffness: stated.Share = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
 
 
 class NormalTable(Table):
@@ -271,7 +279,7 @@ class ModelTable(Table):
 
     turn_slip: bool = True
     star: bool = False
-    u_coefficients: q.Fraction = 0.0
+    u_coefficients: stated.Share = 0.0
 
 
 class Column(Table):
@@ -380,6 +388,22 @@ class Config(Brief, Table):
         if not isinstance(rows, tuple) or not all(isinstance(row, dict) for row in rows):
             return given
         return {**given, "rolling_radius": tuple({"load_N": load, **row} for row in rows)}
+
+    @model_validator(mode="after")
+    def _calibrated_as_certified(self) -> Config:
+        """A key ``u_..._gain`` that the file leaves out is that of the certificate of the channel's instrument."""
+        of_channel: dict[str, float] = {}
+        for index, one in enumerate(self.lab.instruments):
+            if one.channel is not None and one.u_gain is not None:
+                if one.channel in of_channel:
+                    key = f"lab.instruments.{index}.channel"
+                    raise q.wrong(f"{one.channel} is read by an instrument above, too; remove one", key)
+                of_channel[one.channel] = one.u_gain
+        certified = {CALIBRATED[channel]: u for channel, u in of_channel.items()}
+        left_out = {key: u for key, u in certified.items() if key not in self.rig.model_fields_set}
+        if left_out:
+            object.__setattr__(self, "rig", self.rig.model_copy(update=left_out))
+        return self
 
     @model_validator(mode="after")
     def _sweeps_agree_with_rig(self) -> Config:

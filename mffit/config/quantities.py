@@ -53,8 +53,13 @@ PRESSURES = {
 }
 
 
+def length(lower: float, upper: float, usual: tuple[float, float] | None = None) -> Range:
+    """The range of a length [m]."""
+    return Range(lower, upper, "m", "write metres", "metres", LENGTHS, usual)
+
+
 def _length(lower: float, upper: float, usual: tuple[float, float] | None = None) -> AfterValidator:
-    return AfterValidator(Range(lower, upper, "m", "write metres", "metres", LENGTHS, usual))
+    return AfterValidator(length(lower, upper, usual))
 
 
 def _angle(lower: float, upper: float) -> AfterValidator:
@@ -79,8 +84,3 @@ CamberLimit = Annotated[float, _angle(5.0, 70.0)]
 Play = Annotated[float, AfterValidator(Range(0.0, 10.0, "deg", "write the full play in degrees"))]
 Revolutions = Annotated[float, AfterValidator(Range(0.0, 1e4, "revolutions"))]
 Inclination = Annotated[float, AfterValidator(Range(-360.0, 720.0, "deg"))]
-ULength = Annotated[float, _length(0.0, 0.1)]
-UForce = Annotated[float, AfterValidator(Range(0.0, 1e4, "N"))]
-UMoment = Annotated[float, AfterValidator(Range(0.0, 1e3, "Nm"))]
-UAngle = Annotated[float, AfterValidator(Range(0.0, 20.0, "deg"))]
-Fraction = Annotated[float, AfterValidator(Range(0.0, 1.0, "of the value", "write 0.05 for 5 %"))]

@@ -126,7 +126,7 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
-        held_rig=held_rig(config, points.used_setups, turned=turned),
+        held_rig=held_rig(config, points.used_setups, channels, turned=turned),
     )
     return _by_hand(plan, known.hand)
 

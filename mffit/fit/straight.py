@@ -11,6 +11,7 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.posterior import spread_through
 from mffit.fit.result import FitResult
+from mffit.fit.rig.rig_numbers import COMPLIANCE
 from mffit.measured import LoadResult
 from mffit.points import Points, main_path, main_pressure, make_points
 from mffit.rig import Simulation
@@ -43,7 +44,10 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
     covariance = posterior.covariance[np.ix_(rows, rows)]
     straight, curved = (_slope(tyre, points, row.load, path, names) for path in (0.0, phi_t))
     u, u_curved = (float(spread_through(x.by_coefficient[None], covariance)[0]) for x in (straight, curved))
-    gap = (curved.slope - row.C_alpha.value) ** 2 - u_curved**2 - row.C_alpha.u**2
+    # The measured slope is over the angle as read, which a steering that yields changes.
+    yielding = tyre.with_numbers({COMPLIANCE: fitted.simulation.faults[COMPLIANCE]})
+    as_read = _slope(yielding, points, row.load, phi_t, names).slope
+    gap = (as_read - row.C_alpha.value) ** 2 - u_curved**2 - row.C_alpha.u**2
     formula = constants.SPIN_CORRECTION_OF_MODEL * (straight.slope - curved.slope)
     return Quantity(straight.slope, math.hypot(u, formula, math.sqrt(max(gap, 0.0))), row.C_alpha.unit)
 

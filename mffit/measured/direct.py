@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from uncertainties import UFloat
@@ -22,6 +23,7 @@ from mffit.measured.axis import (
     split_of_zero,
 )
 from mffit.measured.drift import shares_of_sweeps
+from mffit.measured.calibration import Factors, calibration, powers_of_load
 from mffit.measured.epsilon import (
     corrected,
     epsilon_from_moments,
@@ -39,9 +41,11 @@ from mffit.measured.uncertain import agreed, budget, quantity, quantity_if
 from mffit.measured.zeros import LoadGroup, load_groups, zeros_by_path
 from mffit.parts import Parts
 from mffit.points import Points, levels, main_pressure
-from mffit.rig_errors import DECLARED, AtZero, Declared, RigError
+from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared, RigError
 from mffit.scatter import ALARM
 from tir import Quantity, Tyre
+
+COMPLIANCE = BY_NAME["compliance_deg_per_Nm"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,7 @@ class _AtLoad:
 
     row: LoadResult
     epsilon: UFloat | None
+    yields: float  #: relative change of C_alpha by a compliance of the steering of 1 deg/Nm
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
@@ -91,9 +96,10 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         axes, zeros = _sideslip_zeros(evidence, stiffnesses)
         evidence = replace(evidence, axes=axes)
     for group, slopes in stiffnesses:
+        calibrated = partial(calibration, evidence, group, powers_of_load(stiffnesses, group.load))
         # Camber sweeps in both directions are free of it: their mean is the stiffness at true zero.
         found, troubles = _at_load(
-            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes)
+            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes), calibrated
         )
         rows += [] if found is None else [found]
         warnings += troubles
@@ -165,19 +171,27 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> tuple[Points, d
 
 
 def _at_load(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes
+    evidence: DirectEvidence,
+    group: LoadGroup,
+    slopes: LoadSlopes,
+    calibrated: Callable[[LoadSlopes, Turning | None], Factors],
 ) -> tuple[_AtLoad | None, list[str]]:
     """Results and warnings at one load, with eps_gamma where everything that it needs was measured; None if nothing was."""
     C_alpha, rig = slopes.C_alpha, evidence.rig
     slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, C_alpha))
+    found, troubles = (None, []) if rig is None else turning(evidence, group, slopes)
+    factors = calibrated(slopes, found)
+    slopes = slopes.calibrated(factors.C_alpha, factors.C_gamma)
     if rig is None:
-        straight = _AtLoad(_row(evidence, group, slopes, None), None)
+        straight = _AtLoad(_row(evidence, group, slopes, None), None, factors.yields)
         return (straight if slopes.exists else None), []
-    found, troubles = turning(evidence, group, slopes)
+    found = found and found.calibrated(factors.F_phit)
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
     row = replace(_row(evidence, group, slopes, found), r_e=quantity_if(r_e, "m"), R=quantity_if(rig.R, "m"))
+    of_radii = {name: budget(radius) for name, radius in (("r_e", r_e), ("R", rig.R)) if radius is not None}
+    row = replace(row, budgets={**row.budgets, **of_radii})
     if found is None or slopes.C_gamma is None or r_e is None:
-        return _AtLoad(row, None), troubles
+        return _AtLoad(row, None, factors.yields), troubles
     stiffer = stiffer_in_camber(evidence, group)
     epsilon = factor(evidence, slopes.C_gamma, found, r_e, stiffer)
     slope, secant = (
@@ -194,7 +208,7 @@ def _at_load(
         setups=results_of_setups(evidence, found, C_alpha, slopes.C_gamma, r_e),
         budget=budget(epsilon.plain),
     )
-    return _AtLoad(row, epsilon.plain), troubles
+    return _AtLoad(row, epsilon.plain, factors.yields), troubles
 
 
 def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
@@ -202,10 +216,15 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
     C_alpha = float(slip_stiffness(slopes.C_alpha, slopes.bend, group.load).C_alpha.nominal_value)
     split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
+    stiffness = at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis)
+    numbers = {"C_alpha": stiffness, "C_gamma": slopes.C_gamma}
+    if found is not None:
+        numbers |= {"C_phit": found.C_phit, "F_phit": found.force}
     row = LoadResult(
         load=group.load,
-        C_alpha=quantity_if(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),
+        C_alpha=quantity_if(stiffness, "N/rad"),
         C_gamma=quantity_if(slopes.C_gamma, "N/rad"),
+        budgets={name: budget(number) for name, number in numbers.items() if number is not None},
     )
     if found is None:
         return row
@@ -230,16 +249,18 @@ def _assembled(
     """The results of all loads together, with eps_gamma over load and the remarks."""
     nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
+    nearest = min(rows, key=lambda found: abs(found.row.load - nominal_load), default=None)
+    steering = [] if nearest is None else _if_steering_yields(evidence.config, nearest)
     known = [(found, found.epsilon) for found in rows if found.epsilon is not None]
     measured = Measured(
         per_load=per_load,
-        nominal=min(per_load, key=lambda row: abs(row.load - nominal_load), default=None),
+        nominal=None if nearest is None else nearest.row,
         pecp1=None,
         pecp2=0.0,
         u_pecp2=None,
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=False,
-        notes=() if evidence.rig else (wording.STRAIGHT_PATH,),
+        notes=(*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *steering),
         warnings=(),
         camber_skew=skew,
     )
@@ -256,7 +277,7 @@ def _assembled(
     nominal = known[at][0]
     left = evidence.config.rig.u("alpha_0_deg")
     said, off = wording.alignment(nominal.row, left), nominal.row.axis_off(left)
-    notes = _notes(evidence, nominal.row, skew, law.note)
+    notes = (*_notes(evidence, nominal.row, skew, law.note), *steering)
     measured = replace(
         measured,
         nominal=nominal.row,
@@ -301,6 +322,15 @@ def _with_measured_skew(
     errors[error.name] = found
     measured = replace(evidence, rig=replace(evidence.rig, errors=errors))
     return measured, quantity(found, declared.unit)
+
+
+def _if_steering_yields(config: Config, found: _AtLoad) -> list[str]:
+    """A sentence if a steering declared as rigid that yields as usual would change C_alpha by more than its uncertainty."""
+    C_alpha, usual = found.row.C_alpha, COMPLIANCE.spread
+    if C_alpha is None or config.rig.u(COMPLIANCE.name) > 0.0:
+        return []
+    change = abs(usual * found.yields)
+    return [wording.steering(usual, change)] if change > abs(C_alpha.u / C_alpha.value) else []
 
 
 def _skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:

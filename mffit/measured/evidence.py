@@ -43,6 +43,7 @@ class DirectEvidence:
     spin_left: UFloat  #: bias of finite spin in a value that is not corrected for it, as :data:`constants.SPIN_LOSS` [m^2]
     spin_known: UFloat  #: the same with the usual value and its uncertainty, to correct with [m^2]
     warming: UFloat  #: relative change of stiffness with temperature [1/K]
+    calibration: Mapping[str, UFloat]  #: errors that multiply what is read, by name
     excess: Mapping[str, UFloat] = field(default_factory=dict)
     """Force by which each set-up scatters beyond what is declared [N]."""
     shares: SweepShares | None = None  #: of sweeps, where they drift for an unknown cause
@@ -78,6 +79,11 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
         # JCGM 100, F.2.4.5: a known effect that is left uncorrected counts with its size.
         spin_left=named(0.0, math.hypot(loss, u_loss), FINITE_SPIN, "m^2"),
         spin_known=named(loss, u_loss, FINITE_SPIN, "m^2"),
+        calibration={
+            error.name: named(0.0, u[error.name], declared.source, declared.unit)
+            for error, declared in DECLARED
+            if declared.calibrates
+        },
         warming=named(0.0, BY_NAME["k_T_stiffness_per_K"].spread, "temperature", "1/K"),
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config, wheel_turn
+from mffit.config.uncertainty import shape_of
 from mffit.measured.uncertain import named
 from tir import Tyre
 
@@ -30,9 +31,10 @@ def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, U
             assert row.effective_radius is not None
             out[load] = named(row.effective_radius, row.u_effective_radius or 0.0, "effective radius", "m")
             continue
-        arcs = named(0.0, np.sqrt(2.0) * row.u_arc_m, "disc notches", "m")
+        u_arcs, u_angle = np.sqrt(2.0) * row.u_arc_m, np.sqrt(2.0) * np.radians(row.u_angle_deg)
+        arcs = named(0.0, u_arcs, "disc notches", "m", **shape_of(row.u_arc_m))
         assert R is not None
-        angle = named(wheel_turn(row), np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
+        angle = named(wheel_turn(row), u_angle, "wheel angle", "rad", **shape_of(row.u_angle_deg))
         out[load] = (2.0 * np.pi * R + arcs) / angle
     return out
 

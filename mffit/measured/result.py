@@ -120,7 +120,9 @@ class LoadResult(Brief):
     conicity: Quantity | None = None  #: from zeros on both mounts [N]
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
-    budget: tuple[Contribution, ...] = ()
+    budget: tuple[Contribution, ...] = ()  #: of epsilon_gamma
+    budgets: Mapping[str, tuple[Contribution, ...]] = field(default_factory=dict)
+    """Of the other quantities that were measured, by their name in :data:`KEYS`."""
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
     setups: tuple[
         SetupResult, ...
@@ -249,6 +251,14 @@ class Measured(Brief):
     @property
     def budget(self) -> tuple[Contribution, ...]:
         return self.nominal.budget if self.nominal else ()
+
+    @property
+    def budgets(self) -> dict[str, tuple[Contribution, ...]]:
+        """Of every quantity at the nominal load, by its key in JSON."""
+        if self.nominal is None:
+            return {}
+        found = {"epsilon_gamma": self.nominal.budget, **self.nominal.budgets}
+        return {KEYS[name]: rows for name, rows in found.items() if rows}
 
     def by_load(self, key: str) -> dict[float, float]:
         """One quantity by load [N], such as "C_alpha"."""

@@ -149,6 +149,11 @@ class LoadSlopes:
         )
         return replace(self, C_gamma=C_gamma, slope=slope, secant=secant)
 
+    def calibrated(self, of_sideslip: UFloat, of_camber: UFloat) -> LoadSlopes:
+        """The same with the stiffnesses times a factor each."""
+        own = self.of_camber(lambda C_gamma: C_gamma * of_camber)
+        return own if self.C_alpha is None else replace(own, C_alpha=self.C_alpha * of_sideslip)
+
     @property
     def exists(self) -> bool:
         """Whether anything could be estimated."""

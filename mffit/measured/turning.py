@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +45,11 @@ class Turning:
     force: UFloat  #: on the usual path [N]
     conicity: UFloat | None  #: from both mounts [N]
     alpha_M: UFloat | None  #: sum of misalignment and ply-steer of the first set-up whose one is known [rad]
+
+    def calibrated(self, factor: UFloat) -> Turning:
+        """The same with all turn-slip forces times a factor."""
+        paths = tuple(path._replace(force=path.force * factor) for path in self.paths)
+        return replace(self, paths=paths, C_phit=self.C_phit * factor, force=self.force * factor)
 
     @property
     def zeros(self) -> PathZeros:

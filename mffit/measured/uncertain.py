@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtr, stdtrit
 from uncertainties import UFloat, ufloat
 
+from mffit.config.uncertainty import shape_of
 from mffit.constants import COVERAGE_FACTOR_95
 from tir import Quantity
 
@@ -24,10 +25,15 @@ class Source(NamedTuple):
     unit: str  #: of the input quantity
     kind: str = "B"  #: "A": evaluated from the scatter of readings; "B": by other means
     dof: float = math.inf  #: degrees of freedom
+    distribution: str = "normal"
 
 
 def named(value: float, u: float, source: str, unit: str, **more: Any) -> UFloat:
-    """An input quantity with its standard uncertainty; ``more`` are further fields of its :class:`Source`."""
+    """An input quantity with its standard uncertainty, of which the configuration may state dof and distribution.
+
+    ``more`` are further fields of its :class:`Source`.
+    """
+    more = {**shape_of(u), **more}
     return ufloat(value, max(u, 1e-12), Source(source, unit, **more))  # the propagation does not accept u = 0
 
 
@@ -115,11 +121,11 @@ class Contribution(NamedTuple):
     source: str
     u: float  #: standard uncertainty of the input quantity, in its own unit
     unit: str
-    contribution: float  #: to u(eps_gamma)
+    contribution: float  #: to the uncertainty of the result, in its unit
     type: str = "B"  #: "A": evaluated from the scatter of readings; "B": by other means
     distribution: str = "normal"
     value: float = 0.0  #: estimate of the input quantity
-    sensitivity: float = math.nan  #: change of eps_gamma with the input quantity, per unit
+    sensitivity: float = math.nan  #: change of the result with the input quantity, per unit
     dof: float = math.inf  #: degrees of freedom
 
 
@@ -132,18 +138,19 @@ class Expanded(NamedTuple):
     probability: float  #: that the interval +-U covers the true value
 
 
-def budget(epsilon: UFloat) -> tuple[Contribution, ...]:
-    """What each source contributes to u(eps_gamma), largest first; variables of one source share a row."""
+def budget(result: UFloat) -> tuple[Contribution, ...]:
+    """What each source contributes to the uncertainty of a result, largest first; variables of one source share a row."""
     sources: dict[str, list[Any]] = {}
-    for variable in epsilon.derivatives:
+    for variable in result.derivatives:
         sources.setdefault(variable.tag.name, []).append(variable)
-    rows = (_row(epsilon, variables) for variables in sources.values())
-    return tuple(sorted((row for row in rows if row.contribution > 1e-9), key=lambda row: -row.contribution))
+    rows = (_row(result, variables) for variables in sources.values())
+    least = 1e-6 * result.std_dev  # the sources that are exact
+    return tuple(sorted((row for row in rows if row.contribution > least), key=lambda row: -row.contribution))
 
 
-def _row(epsilon: UFloat, variables: Sequence[Any]) -> Contribution:
+def _row(result: UFloat, variables: Sequence[Any]) -> Contribution:
     """The row of one source; of several variables the largest is shown, and the contribution is that of all."""
-    parts = epsilon.error_components()
+    parts = result.error_components()
     largest = max(variables, key=lambda variable: parts[variable])
     source, size = largest.tag, math.degrees(1.0) if largest.tag.unit == "rad" else 1.0
     contribution = math.hypot(*(parts[variable] for variable in variables))
@@ -153,8 +160,9 @@ def _row(epsilon: UFloat, variables: Sequence[Any]) -> Contribution:
         unit="deg" if source.unit == "rad" else source.unit,
         contribution=contribution,
         type=source.kind,
+        distribution=source.distribution,
         value=largest.nominal_value * size,
-        sensitivity=math.copysign(contribution / largest.std_dev, epsilon.derivatives[largest]) / size,
+        sensitivity=math.copysign(contribution / largest.std_dev, result.derivatives[largest]) / size,
         dof=_effective_dof([(parts[variable], variable.tag.dof) for variable in variables]),
     )
 

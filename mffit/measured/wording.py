@@ -199,6 +199,15 @@ def epsilon_values(measured: Measured) -> str:
     )
 
 
+def steering(compliance: float, change: float) -> str:
+    """What a steering that yields would do to C_alpha."""
+    return (
+        f"C_alpha holds for a rigid steering, as declared: one that yields by {compliance:g} deg per Nm of Mz would change it by "
+        f"{100 * change:.1f} %. Measure the compliance and state it as u_steering_compliance_deg_per_Nm; without a model of the "
+        "tyre nothing else shows it."
+    )
+
+
 def expanded(measured: Measured) -> str:
     """The expanded uncertainty with its coverage factor; empty without a budget."""
     found = measured.nominal.expanded if measured.nominal else None

@@ -18,6 +18,7 @@ from mffit.fit.agreement import with_points
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
+from mffit.rig_errors import error_of
 from mffit.suspicion import (
     Doubt,
     FinishedFit,
@@ -66,6 +67,7 @@ def judged(
         against=tuple(against),
         cause=_cause([one for one in against if one.looks or not effect], left),
         cause_is_certain=bool(against or effect),
+        undeclared="" if against or not effect else _undeclared(left),
     )
     if against:
         left = replace(left, sweep=OddSweep(against[0].sweep, against[0].looks))
@@ -137,6 +139,16 @@ def _cause(against: Sequence[Doubt], left: Remains) -> str:
         looks = f" and looks like {against[0].looks}" if against[0].looks else ""
         return f"{against[0].sweep} contradicts the other sweeps{looks}"
     return wording.best_effect(left.effect) if left.effect else ""
+
+
+def _undeclared(left: Remains) -> str:
+    """Key of [rig] by which the best effect is a rig error that is declared as absent; empty if it is none."""
+    assert left.effect is not None
+    found = [
+        None if (error := error_of(name)) is None else error.declared for name in left.effect.best.numbers
+    ]
+    absent = not left.effect.best.known and len(found) == 1
+    return found[0].key if absent and found[0] is not None else ""
 
 
 def _used(points: Points, channels: Iterable[str], outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:

@@ -31,23 +31,28 @@ class MissedChannel:
     missed: np.ndarray
     """(m,) weights of the functions with the coefficients as they are in the file [unit of the channel]."""
     root: np.ndarray
-    """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of the coefficients."""
+    """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of coefficients and
+    calibrations."""
     noise: float  #: of a usual reading [unit of the channel]
     size: float  #: rms of what the formula misses at the readings [unit of the channel]
 
-    def at(self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What the file misses (n,), and its variance (n,).
+    def at(
+        self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray, of_tyre: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What the file misses (n,), and its variance (n,) as that of the tyre and as that of its reading.
 
         The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
         off counts in its variance.
 
-        ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by the coefficients, ``path`` (n,) the correlation
-        of what the formula misses with that on the measured path.
+        ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by coefficients and calibrations, ``path`` (n,) the
+        correlation of what the formula misses with that on the measured path, ``of_tyre`` (k,) which of them are coefficients.
         """
         likeness, functions = self._functions(settings, path)
-        columns = np.hstack([functions, slopes])
-        known = np.sum((columns @ self.root) ** 2, axis=1)
-        return functions @ self.missed, known + (1.0 - likeness**2) * self.components.missed**2
+        mean, reading = (
+            np.sum((np.hstack([functions, by]) @ self.root) ** 2, axis=1) for by in (slopes * of_tyre, slopes)
+        )
+        unlike = (1.0 - likeness**2) * self.components.missed**2
+        return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray, path: np.ndarray) -> np.ndarray:
         """What the file misses (n,), as :meth:`at`."""
@@ -64,7 +69,7 @@ class Predictor:
     """What the file of a build misses at any conditions, with its uncertainty."""
 
     path: float  #: path curvature of most readings [1/m], taken where none is stated; 0 on a flat track
-    names: tuple[str, ...]  #: (k,) of the uncertain coefficients
+    names: tuple[str, ...]  #: (k,) of the uncertain coefficients, and of the rig's calibrations
     channels: Mapping[str, MissedChannel]
     zeros: Mapping[
         str, float
@@ -97,10 +102,10 @@ class Predictor:
         as_read = simulation.with_numbers(self.zeros).readings(points, self.channels)
         found = conditions.copy()
         for name, channel in self.channels.items():
-            missed, variance, unstated = self._missed(channel, points, slopes[name])
+            missed, variance, of_reading = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
             of_rig = (as_read[name] - forces[name]) ** 2 + channel.noise**2
-            run = variance + unstated + channel.components.run_variance(best) + of_rig
+            run = of_reading + channel.components.run_variance(best) + of_rig
             found[column(name)] = plain[name]
             found[u_column(name)] = np.sqrt((best - plain[name]) ** 2 + run)
             found[column(name, "best")] = best
@@ -138,11 +143,14 @@ class Predictor:
     def _missed(
         self, channel: MissedChannel, points: Points, slopes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the file misses (n,), its variance (n,), and the variance (n,) over what the conditions do not state."""
-        path = self._of_path(channel, points)
-        found = [channel.at(settings, slopes, path) for settings in _settings(points, channel.smooth.inputs)]
-        means, variances = (np.array(own) for own in zip(*found, strict=True))
-        return means.mean(axis=0), variances.mean(axis=0), means.var(axis=0)
+        """What the file misses (n,), its variance (n,), and that of a reading (n,), what the conditions do not state included."""
+        path, of_tyre = self._of_path(channel, points), np.array([error_of(n) is None for n in self.names])
+        found = [
+            channel.at(settings, slopes, path, of_tyre)
+            for settings in _settings(points, channel.smooth.inputs)
+        ]
+        means, variances, readings = (np.array(own) for own in zip(*found, strict=True))
+        return means.mean(axis=0), variances.mean(axis=0), readings.mean(axis=0) + means.var(axis=0)
 
     def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
         """Correlation (n,) of what the formula misses with that on the measured path, as over a length of its curvature."""
@@ -175,11 +183,11 @@ def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> 
         error = error_of(number)
         if error in ZEROS and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    of_tyre = [i for i, number in enumerate(left.numbers) if error_of(number.name) is None]
+    kept = [i for i, n in enumerate(left.numbers) if (error := error_of(n.name)) is None or error.is_gain]
     channels = {}
     for name, own in left.channels.items():
         m = len(own.smooth.orders)
         found = own.posterior
-        root = np.vstack([found.root[:m], own.turn[of_tyre] @ found.root[m:]])
+        root = np.vstack([found.root[:m], own.turn[kept] @ found.root[m:]])
         channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
-    return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels, zeros)
+    return Predictor(main_path(points), tuple(left.numbers[i].name for i in kept), channels, zeros)

@@ -107,7 +107,7 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
 
 def _predictor(content: dict[str, Any]) -> Predictor:
     names, channels = tuple(content["coefficients"]), content["channels"]
-    if not (set(names) <= set(BY_NAME) and set(channels) <= set(CHANNELS)):
+    if not (set(names) <= {*BY_NAME, *ERROR_OF} and set(channels) <= set(CHANNELS)):
         raise ValueError("an unknown name")
     return Predictor(
         path=float(content["phi_t_per_m"]),

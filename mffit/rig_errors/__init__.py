@@ -4,6 +4,7 @@ from mffit.rig_errors.catalog import (
     AFTER,
     BEFORE,
     BY_NAME,
+    CALIBRATED,
     DECLARED,
     MEANINGS,
     RIG_ERRORS,
@@ -22,12 +23,13 @@ from mffit.rig_errors.faults import (
     unit_of,
     words_of,
 )
-from mffit.rig_errors.record import Appearance, AtZero, Declared, Place, RigError
+from mffit.rig_errors.record import Appearance, AtLoad, AtZero, Declared, Place, RigError, Slopes
 
 __all__ = [
     "AFTER",
     "BEFORE",
     "BY_NAME",
+    "CALIBRATED",
     "DECLARED",
     "MEANINGS",
     "NO_FAULTS",
@@ -37,11 +39,13 @@ __all__ = [
     "WORDS",
     "ZEROS",
     "Appearance",
+    "AtLoad",
     "AtZero",
     "Declared",
     "Faults",
     "Place",
     "RigError",
+    "Slopes",
     "error_of",
     "meaning_of",
     "number_of",

@@ -7,10 +7,18 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError, Slopes, calibration
 
 _of_angle = partial(RigError, kind="rig", place=Place.ANGLE, acts_on=("alpha",))
 
+SIDESLIP_GAIN = calibration(
+    "alpha",
+    "gain_alpha",
+    "true sideslip angle = gain_alpha times the reading, before its zero is added",
+    u=constants.ANGLE_GAIN,
+    place=Place.ANGLE,
+    slopes=lambda at: Slopes(C_alpha=1.0),
+)
 RELAXATION = RigError(
     name="relaxation_m",
     unit="m",
@@ -103,6 +111,13 @@ COMPLIANCE = _of_angle(
             axes=("alpha", "Mz"),
         ),
     ),
+    declared=Declared(
+        key="u_steering_compliance_deg_per_Nm",
+        unit="deg/Nm",
+        default=0.0,
+        source="steering compliance",
+        calibrates=lambda at: Slopes(*(RADIANS * share for share in at.by_moment)),
+    ),
 )
 BACKLASH = _of_angle(
     name="backlash_deg",
@@ -158,4 +173,4 @@ CAMBER_SKEW = _of_angle(
     ),
 )
 
-ANGLE_ERRORS = (RELAXATION, SIDESLIP_ZERO, CAMBER_SKEW, HYSTERESIS, COMPLIANCE, BACKLASH)
+ANGLE_ERRORS = (SIDESLIP_GAIN, RELAXATION, SIDESLIP_ZERO, CAMBER_SKEW, HYSTERESIS, COMPLIANCE, BACKLASH)

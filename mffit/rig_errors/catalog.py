@@ -24,6 +24,8 @@ DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declar
 """Those whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Those that every set-up of the rig has anew."""
+CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
+"""By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
 MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
 WORDS = {

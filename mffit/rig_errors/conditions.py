@@ -8,10 +8,25 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError, Slopes, calibration
 
 _of_camber = partial(RigError, kind="rig", place=Place.CAMBER, acts_on=("gamma",), limits=(-5.0, 5.0))
 
+CAMBER_GAIN = calibration(
+    "gamma",
+    "gain_gamma",
+    "true camber = gain_gamma times the reading, before its zero is added",
+    u=constants.ANGLE_GAIN,
+    place=Place.CAMBER,
+    slopes=lambda at: Slopes(C_gamma=1.0),
+)
+LOAD_GAIN = calibration(
+    "Fz",
+    "gain_Fz",
+    "true load = gain_Fz times the reading",
+    place=Place.LOAD,
+    slopes=lambda at: at.over_load,
+)
 CAMBER_ZERO = _of_camber(
     name="gamma_0_deg",
     unit="deg",
@@ -199,9 +214,11 @@ SLIP_ZERO = RigError(
 )
 
 CONDITION_ERRORS = (
+    CAMBER_GAIN,
     CAMBER_ZERO,
     CAMBER_ZERO_LOAD,
     DISC_TILT,
+    LOAD_GAIN,
     LOAD_CAMBER,
     LOAD_CAMBER_ODD,
     PATH_RADIUS,

@@ -8,6 +8,18 @@ REFERENCE_TEMPERATURE = Real(25.0, "degC", "Temperature of a property file unles
 CAMBER_SKEW = Real(
     0.1, "deg", "Standard uncertainty of the right angle of camber and steering axis if [rig] gives none."
 )
+FORCE_GAIN = Real(
+    0.005,
+    "-",
+    "Standard uncertainty of the calibration of a force, a moment and the load if neither [rig] nor a certificate gives one: a "
+    "chain of class 1, anywhere within 1 % of its reading, has 0.6 %.",
+)
+ANGLE_GAIN = Real(
+    0.002,
+    "-",
+    "Standard uncertainty of the calibration of sideslip and camber if neither [rig] nor a certificate gives one: 0.02 deg "
+    "of 10.",
+)
 LOADCELL_ZERO = Real(
     10.0, "N", "Standard uncertainty of the zero of Fy if [rig] gives none.", "Mottola and Massaro 2022, (24)"
 )

@@ -7,7 +7,14 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import (
+    Appearance,
+    Declared,
+    Place,
+    RigError,
+    Slopes,
+    calibration,
+)
 
 _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 _zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)
@@ -36,15 +43,11 @@ def _crosstalk(force: str, moment: str, *, spread: float, appearance: Appearance
     )
 
 
-GAIN = _of_reading(
-    name="gain",
-    unit="-",
-    meaning=FORCE,
-    acts_on=("Fy",),
-    formula=lambda gain, Fy, at: gain * Fy,
-    undisturbed=1.0,
-    spread=0.02,
-    limits=(0.5, 2.0),
+GAIN = calibration(
+    "Fy",
+    "gain",
+    FORCE,
+    slopes=lambda at: Slopes(1.0, 1.0, 1.0),
     seen_as=(
         Appearance(
             id="loadcell-gain",
@@ -250,15 +253,10 @@ ROLLING_ZERO = _zero_of(
     limits=(-100.0, 100.0),
     declared=Declared(key="u_My_offset_Nm", unit="Nm", default=constants.ROLLING_ZERO, source="zero of My"),
 )
-LONGITUDINAL_GAIN = _of_reading(
-    name="gain_Fx",
-    unit="-",
-    meaning="reported Fx = gain_Fx Fx + Fx0",
-    acts_on=("Fx",),
-    formula=lambda gain, Fx, at: gain * Fx,
-    undisturbed=1.0,
-    spread=0.02,
-    limits=(0.5, 2.0),
+LONGITUDINAL_GAIN = calibration(
+    "Fx",
+    "gain_Fx",
+    "reported Fx = gain_Fx Fx + Fx0",
     seen_as=(
         Appearance(
             id="loadcell-gain-fx",
@@ -268,7 +266,10 @@ LONGITUDINAL_GAIN = _of_reading(
             remedy="calibrate the longitudinal channel; or divide its readings by {value}",
         ),
     ),
-    declared=Declared(key="u_Fx_gain", unit="-", default=0.0, source="calibration of Fx"),
+)
+MOMENT_GAINS = tuple(
+    calibration(name, f"gain_{name}", f"reported {name} = gain_{name} {name}, before its zero is added")
+    for name in ("Mx", "My", "Mz")
 )
 LONGITUDINAL_DRAG = _of_reading(
     name="drag_Fx_N",
@@ -338,6 +339,7 @@ FY_INTO_MX = _crosstalk(
 
 FORCE_ERRORS = (
     GAIN,
+    *MOMENT_GAINS,
     NONLINEARITY,
     CROSSTALK,
     CROSSTALK_CAMBER,

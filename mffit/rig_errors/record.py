@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.quantities import CHANNELS
+from mffit.rig_errors import constants
 
 RADIANS = math.pi / 180.0
 
@@ -43,6 +44,21 @@ class AtZero(NamedTuple):
     side_of_play: float  #: sign of the sideslip that backlash adds to a reading of zero
 
 
+class Slopes(NamedTuple):
+    """One number for each stiffness and force that the direct method reads."""
+
+    C_alpha: float = 0.0
+    C_gamma: float = 0.0
+    F_phit: float = 0.0
+
+
+class AtLoad(NamedTuple):
+    """What the direct method knows of one load where it corrects its readings for an error of calibration."""
+
+    over_load: Slopes  #: relative change per relative change of load
+    by_moment: Slopes  #: relative change per angle [rad] by which one Nm turns the wheel: slopes of Mz, as sideslip acts on Fy
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declared:
     """How ``[rig]`` declares an error, and what a declared error does to the direct method.
@@ -59,6 +75,8 @@ class Declared:
     force_at_zero: Callable[[Any, AtZero], Any] | None = None  #: force at zero angles [N]
     camber_stiffness: Callable[[Any, AtZero], Any] | None = None  #: slope over camber, forwards [N/rad]
     turns_with_direction: bool = False  #: the force changes sign with the direction of rolling
+    calibrates: Callable[[AtLoad], Slopes] | None = None
+    """Relative change of the readings per unit of the error; None if it does not multiply them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,6 +123,11 @@ class RigError:
     declared: Declared | None = None
 
     @property
+    def is_gain(self) -> bool:
+        """Whether it is a factor, the calibration of a channel, which no reading tells from the tyre's own coefficients."""
+        return self.undisturbed == 1.0
+
+    @property
     def lower(self) -> float:
         """The least number that a rig can have."""
         return self.limits[0]
@@ -123,3 +146,37 @@ class RigError:
         if isinstance(number, float):
             return number != self.undisturbed and not math.isnan(number)
         return bool(np.any((number != self.undisturbed) & ~np.isnan(number)))
+
+
+def calibration(
+    channel: str,
+    name: str,
+    meaning: str,
+    *,
+    u: float = constants.FORCE_GAIN,
+    place: Place = Place.FORCE,
+    slopes: Callable[[AtLoad], Slopes] = lambda at: Slopes(),
+    seen_as: tuple[Appearance, ...] = (),
+) -> RigError:
+    """The factor between a channel and its reading, uncertain by ``u`` unless ``[rig]`` or a certificate says otherwise."""
+    return RigError(
+        name=name,
+        unit="-",
+        meaning=meaning,
+        kind="rig",
+        place=place,
+        acts_on=(channel,),
+        formula=lambda gain, quantity, at: gain * quantity,
+        undisturbed=1.0,
+        spread=0.02,
+        limits=(0.5, 2.0),
+        seen_as=seen_as,
+        word=f"calibration of {channel}",
+        declared=Declared(
+            key=f"u_{channel}_gain",
+            unit="-",
+            default=u,
+            source=f"calibration of {channel}",
+            calibrates=slopes,
+        ),
+    )

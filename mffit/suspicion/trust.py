@@ -78,6 +78,7 @@ class FinishedFit(JudgedMeasurement):
     """What the fit leaves; None if all that the model misses counts as noise."""
     against: tuple[Doubt, ...] = ()  #: sweeps that contradict the others, the worst first
     cause: str = ""  #: the effect that would explain most of the residuals, in words
+    undeclared: str = ""  #: key of [rig] that declares the cause as absent; empty if none does
     cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
     held: tuple[HeldNumber, ...] = ()
     left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
@@ -385,9 +386,20 @@ def far_below_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
-    said = any(any(r.find(fit)) for r in (above_noise, sweep_above_noise))
-    if fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said:
+    if _effect_is_left(fit) and not fit.undeclared:
         yield {"cause": fit.cause}
+
+
+@of_model(
+    id="error-declared-absent",
+    outcome=Outcome.DISTRUSTED,
+    sentence="the readings contradict [rig], which declares as absent what the coefficients have taken up: {cause}; state "
+    "{key} as large as that, and the fit finds it",
+)
+def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """The same test of a rig error that has a key of its own, declared as exactly known."""
+    if _effect_is_left(fit) and fit.undeclared:
+        yield {"cause": fit.cause, "key": fit.undeclared}
 
 
 @of_model(
@@ -454,11 +466,18 @@ OF_TRUST = (
     drift_between_sweeps,
     unpublished,
     hand_against_data,
+    declared_absent,
     far_below_noise,
     effect_left,
     structure_left,
 )
 """All rules of trust, the gravest first."""
+
+
+def _effect_is_left(fit: FinishedFit) -> bool:
+    """Whether an effect is in residuals of a stated noise, and no misfit says so already."""
+    said = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
+    return fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said
 
 
 def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:

@@ -69,12 +69,14 @@ def _grip(s: Settings, m: Machine) -> np.ndarray:
 
 
 STEERS: dict[str, Formula] = {
+    "gain_alpha": lambda x, s, m: x * s.alpha - s.alpha,
     "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
     "camber_skew_deg": lambda x, s, m: np.deg2rad(x * np.sin(_leant(s, m))),
     "hysteresis_deg": lambda x, s, m: np.where(s.sense > 0, -1.0, np.where(s.sense < 0, 1.0, 0.0)) * np.deg2rad(x),
 }  # fmt: skip
 """Added to the sideslip angle as read [rad]."""
 LEANS: dict[str, Formula] = {
+    "gain_gamma": lambda x, s, m: x * s.gamma - s.gamma,
     "gamma_0_deg": lambda x, s, m: np.deg2rad(x),
     "gamma_0_deg_per_kN": lambda x, s, m: np.deg2rad(x * (s.Fz / 1000.0 - m.tyre["FNOMIN"] / 1000.0)),
     "disc_tilt_deg_per_kN": lambda x, s, m: m.phi_t_sign * s.side * np.deg2rad(x * s.Fz / 1000.0),
@@ -83,6 +85,7 @@ LEANS: dict[str, Formula] = {
 SLIPS: dict[str, Formula] = {"kappa_0": lambda x, s, m: x}
 """Added to the longitudinal slip as read."""
 LOADS: dict[str, Formula] = {
+    "gain_Fz": lambda x, s, m: x,
     "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0,
     "load_camber_odd": lambda x, s, m: 1.0 - x * np.cos(np.pi / 2.0 + _leant(s, m)),
 }
@@ -114,7 +117,8 @@ YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
 CELL = (
     "gain", "nonlinearity_per_kN", "crosstalk", "crosstalk_camber", "F0_direction_N", "F0_N", "M0_Nm", "Fx0_N",
-    "Mx0_Nm", "My0_Nm", "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
+    "Mx0_Nm", "My0_Nm", "gain_Fx", "gain_Mx", "gain_My", "gain_Mz",
+    "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "relaxation_m")
@@ -231,12 +235,14 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
         + faults["F0_N"]
         + np.sign(settings.Vx) * faults["F0_direction_N"]
         + (faults["crosstalk"] + faults["crosstalk_camber"] * np.sin(_leant(settings, machine))) * true.Fz,
-        Mz=surroundings * true.Mz + faults["M0_Nm"] + faults["crosstalk_Fx_Mz_m"] * true.Fx,
-        Mx=true.Mx
+        Mz=faults["gain_Mz"] * surroundings * true.Mz
+        + faults["M0_Nm"]
+        + faults["crosstalk_Fx_Mz_m"] * true.Fx,
+        Mx=faults["gain_Mx"] * true.Mx
         + faults["Mx0_Nm"]
         + faults["crosstalk_Fx_Mx_m"] * true.Fx
         + faults["crosstalk_Fy_Mx_m"] * true.Fy,
-        My=faults["My0_Nm"] + true.My,
+        My=faults["My0_Nm"] + faults["gain_My"] * true.My,
         Fx=faults["Fx0_N"] + faults["gain_Fx"] * true.Fx - np.sign(settings.Vx) * faults["drag_Fx_N"],
         Fz=settings.Fz,
     )

@@ -22,6 +22,7 @@ from pydantic import (
 
 from mffit.config import Config, path_curvature, setup_names
 from mffit.config import quantities as q
+from mffit.config import uncertainty as stated
 from mffit.config.models import SetupName, SweepTable
 from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
@@ -145,9 +146,9 @@ class RollingRadiusPlan(Table):
     """[[rolling_radius]]: one disc revolution to simulate, or a radius given with its uncertainty."""
 
     load_N: q.Load
-    u_angle_deg: q.UAngle = 1.0
-    u_arc_m: q.ULength = 0.001
-    u_effective_radius: q.ULength | None = (
+    u_angle_deg: stated.Angle = 1.0
+    u_arc_m: stated.Length = 0.001
+    u_effective_radius: stated.Length | None = (
         None  #: if given, a radius with this uncertainty is written, no revolution
     )
 

@@ -21,6 +21,7 @@ from drawn_rigs import DECLARED, SAFE, backward_camber, front_or_rear, on_disk, 
 import mffit
 import tir
 from mffit.errors import InputError
+from mffit.rig_errors import CALIBRATED
 
 STEP = 1e-5  # rad, for the slopes of the true tyre
 
@@ -43,6 +44,8 @@ class World:
     warm_camber: float = 0.0  #: temperature of camber sweeps above that of the others [K]
 
 
+YIELDING, COMPLIANT = {"compliance_deg_per_Nm": 0.006}, {"u_steering_compliance_deg_per_Nm": 0.005}
+COEFFICIENTS = ("PKY1", "PDY1", "PKY6", "QDZ1")
 PLY_STEER = 0.002  # rad, standard deviation
 
 
@@ -79,6 +82,14 @@ WORLDS = {
     "three set-ups on one path": World(setups=3),
     "three set-ups on one path, twice the declared": World(setups=3, drawn_from=_zeros(2.0)),
     "five set-ups on one path, twice the declared": World(setups=5, drawn_from=_zeros(2.0)),
+    "calibration of Fy 1.5 %": World(declared={"u_Fy_gain": 0.015}),
+    "calibration of the load 1.5 %": World(declared={"u_Fz_gain": 0.015}),
+    "calibration of the angles 1 %": World(declared={"u_alpha_gain": 0.01, "u_gamma_gain": 0.01}),
+    "calibration of everything 1 %": World(declared=dict.fromkeys(CALIBRATED.values(), 0.01)),
+    "steering compliance 0.006 deg/Nm, 0.005 declared": World(faults=YIELDING, declared=COMPLIANT),
+    "steering compliance drawn from 0.005 deg/Nm": World(declared=COMPLIANT),
+    "steering compliance 0.006 deg/Nm, not declared": World(faults=YIELDING),
+    "steering compliance -0.006 deg/Nm, not declared": World(faults={"compliance_deg_per_Nm": -0.006}),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 
@@ -88,6 +99,7 @@ class Found:
     """Value, standard uncertainty and truth by quantity; the refusal of a campaign that was not measured."""
 
     numbers: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    trusted: bool = True
     refused: str = ""
 
 
@@ -119,10 +131,23 @@ def one(job: tuple[int, str, Any]) -> Found:
             sweep["T_degC"] = 28.0 + world.warm_camber
     with on_disk(true, content, seed, edit=lambda config: config["rig"].update(declared)) as (path, known):
         try:
-            measured = mffit.build(path).measured if given.build else mffit.spin(path)
+            result = mffit.build(path) if given.build else mffit.spin(path)
         except InputError as error:
             return Found(refused=str(error))
-    return Found(numbers=numbers(measured, known, true))
+    measured = result.measured if given.build else result
+    fitted = _fitted(result.fit, known, true) if given.build else {}
+    return Found({**numbers(measured, known, true), **fitted}, trusted=result.trusted)
+
+
+def _fitted(fit: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
+    """Coefficients, and the compliance of the steering where it was a number of the fit."""
+    found = {
+        name: (fit.coefficients[name].value, fit.coefficients[name].stderr, true[name])
+        for name in COEFFICIENTS
+    }
+    for name in YIELDING.keys() & fit.rig.keys():
+        found[name] = (*fit.rig[name], known.faults[name])
+    return found
 
 
 def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -206,7 +231,8 @@ def numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float,
 def table(name: str, rows: list[Found]) -> list[str]:
     """Lines of one world."""
     sound = [row.numbers for row in rows if not row.refused]
-    out = [f"\n## {name}: {len(rows)} rigs, {len(rows) - len(sound)} refused\n"]
+    distrusted = sum(not row.trusted for row in rows)
+    out = [f"\n## {name}: {len(rows)} rigs, {len(rows) - len(sound)} refused, {distrusted} not trusted\n"]
     out += [
         "| quantity | rms error | mean u | inside 95 % | mean pull | sd of pull |",
         "|---|---|---|---|---|---|",

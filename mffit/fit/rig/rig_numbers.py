@@ -15,6 +15,7 @@ from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
 SIDESLIP_ZERO = "alpha_0_deg"
 CAMBER_ZERO = "gamma_0_deg"
+COMPLIANCE = "compliance_deg_per_Nm"
 
 
 def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ()) -> Faults:
@@ -51,37 +52,43 @@ def rig_numbers(
 ) -> tuple[FreeNumber, ...]:
     """The declared rig errors with their priors, as far as they show in the ``channels`` of the fit.
 
-    On a disc without zeros, those of Fy and Mz and of the angles are left out. On a flat track their priors divide what they have
-    in common with ply-steer, conicity and residual torque; the camber zero is held (see :func:`held_rig`) unless the tyre was
-    also run ``turned`` on its rim. With several ``setups``, every one has zeros of its own, and where repeated set-ups scatter
-    more than declared, that scatter is the prior.
+    Calibrations are held, see :func:`held_rig`. On a disc without zeros, those of Fy and Mz and of the angles are left out, but
+    not the compliance of the steering. On a flat track their priors divide what they have in common with ply-steer, conicity and
+    residual torque; the camber zero is held (see :func:`held_rig`) unless the tyre was also run ``turned`` on its rim. With
+    several ``setups``, every one has zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the
+    prior.
     """
     others = [
         _number(name, prior, setup)
         for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
-        if _of_other_channels(name) and BY_NAME[name].shows_in(channels)
+        if _of_other_channels(name) and BY_NAME[name].shows_in(channels) and not BY_NAME[name].is_gain
         for setup in (setups if len(setups) > 1 else ("",))
     ]
     return (*_sideways(config, measured, setups, turned), *others)
 
 
-def held_rig(config: Config, setups: Sequence[str] = (), *, turned: bool = False) -> dict[str, float]:
-    """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients.
+def held_rig(
+    config: Config, setups: Sequence[str] = (), channels: Collection[str] = SIDEWAYS, *, turned: bool = False
+) -> dict[str, float]:
+    """Standard uncertainty of declared errors that no reading of the ``channels`` separates from coefficients.
 
-    The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: a skew of the camber
-    axis is camber stiffness. So is most of a camber zero; only the square of camber tells them apart, of which the formula of a
-    real tyre is not sure enough, so that misfit would look like a zero of degrees. Several ``setups`` or a tyre ``turned`` on its
-    rim separate it, and on a disc turn slip separates both; then they are numbers of the fit.
+    The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: the calibration of Fy
+    is grip and stiffness of any tyre. On a flat track a skew of the camber axis is camber stiffness. So is most of a camber zero;
+    only the square of camber tells them apart, of which the formula of a real tyre is not sure enough, so that misfit would look
+    like a zero of degrees. Several ``setups`` or a tyre ``turned`` on its rim separate it, and on a disc turn slip does for both;
+    then they are numbers of the fit.
     """
-    if config.rig.on_disc:
-        return {}
-    return {
-        name: prior.u
-        for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
-        if prior.u > 0.0
-        and not _of_other_channels(name)
-        and (not BY_NAME[name].of_setup or (name == CAMBER_ZERO and len(setups) < 2 and not turned))
-    }
+    one_zero = len(setups) < 2 and not turned
+
+    def is_held(name: str) -> bool:
+        if BY_NAME[name].is_gain:
+            return BY_NAME[name].shows_in(channels)
+        if config.rig.on_disc or _of_other_channels(name) or name == COMPLIANCE:
+            return False
+        return not BY_NAME[name].of_setup or (name == CAMBER_ZERO and one_zero)
+
+    declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
+    return {name: prior.u for name, prior in declared.items() if is_held(name)}
 
 
 def _of_other_channels(name: str) -> bool:
@@ -95,18 +102,18 @@ def _sideways(
     """The numbers of the errors that show in Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
-    if config.rig.on_disc and not several and not spin:
-        return ()
     usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
     declared = {
         name: prior
         for name, prior in declared_rig(
             config.rig, measured.C_alpha.value if measured.C_alpha else usual
         ).items()
-        if not _of_other_channels(name)
+        if not _of_other_channels(name) and not BY_NAME[name].is_gain
     }
     if not spin:
-        declared = {name: prior for name, prior in declared.items() if BY_NAME[name].of_setup}
+        zeros = several or not config.rig.on_disc
+        seen = {name for name in declared if (zeros and BY_NAME[name].of_setup) or name == COMPLIANCE}
+        declared = {name: prior for name, prior in declared.items() if name in seen}
     if not several and not config.rig.on_disc:
         if not turned:
             declared.pop(CAMBER_ZERO, None)

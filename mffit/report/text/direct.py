@@ -58,6 +58,7 @@ def spin_summary(measured: Measured) -> str:
         budget_table(measured.budget, measured.epsilon_gamma.u),
         wording.expanded(measured),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
+        _other_budgets(measured.nominal),
         _per_load(measured.per_load),
         setups_table(measured),
         paragraphs(measured.notes),
@@ -151,6 +152,22 @@ def _improve_first(budget: Sequence[Contribution], total: float) -> str:
     before, after = number(total, 3), number(math.sqrt(rest), 3)
     epsilon = DIRECT["epsilon_gamma"].ascii
     return f"Improve first: {largest.source}; half of it would bring u({epsilon}) from {before} to {after}."
+
+
+def _other_budgets(row: LoadResult | None) -> str:
+    """What makes the other results uncertain, in shares of their variance, the largest three of each."""
+    rows = [
+        (
+            DIRECT[name].ascii,
+            f"{number(own.u, digits=2)} {own.unit}",
+            ", ".join(
+                f"{line.source} {100.0 * (line.contribution / own.u) ** 2:.0f} %" for line in lines[:3]
+            ),
+        )
+        for name, lines in (row.budgets.items() if row else ())
+        if (own := getattr(row, name)) and own.u
+    ]
+    return table(("of", "u", "mostly from"), rows, left=3) if rows else ""
 
 
 def _per_load(rows: Sequence[LoadResult]) -> str:

@@ -22,7 +22,7 @@ NO_LOAD = {"load_N": None, **{key: None for name in KEYS.values() for key in wit
 
 keys(
     Measured,
-    "**judged **at_nominal epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget "
+    "**judged **at_nominal epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
     "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift notes "
     "per_load [made]",
     judged=lambda found: (

@@ -59,6 +59,14 @@ def test_one_line_may_be_a_number(tmp_path):
         (in_lab("2027-03-01", "2025-03-01"), "lab.instruments[1].due", "is before the calibration of 2026-03-01"),
         (in_lab('name = "pressure gauge"', 'serial = "1"'), "lab.instruments[2].name", "add it to this entry"),
         (in_lab('name = "pressure gauge"', 'name = ""'), "lab.instruments[2].name", "write the instrument"),
+        (in_lab('"pressure gauge"', '"p", channel = "p"'), "lab.instruments[2].channel", "Fy"),
+        (in_lab('"pressure gauge"', '"p", channel = "Fy"'), "lab.instruments[2]", "only one of channel and expanded_uncertainty"),
+        (
+            in_lab('"pressure gauge"', '"p", channel = "Fy", expanded_uncertainty = 40'),
+            "lab.instruments[2].expanded_uncertainty",
+            "as at",
+        ),
+        (in_lab("name =", 'channel = "Fy", expanded_uncertainty = 0.01, name ='), "lab.instruments[2].channel", "remove one"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_sentence_with_file_line_and_key(tmp_path, text, key, words):
@@ -85,6 +93,16 @@ def test_a_calibration_must_cover_the_measurement(tmp_path, measured, today, sai
     found = lab_warnings(lab, today)
     assert len(found) == len(said)
     assert all(words in sentence for words, sentence in zip(said, found, strict=True))
+
+
+def test_a_certificate_states_the_calibration_of_its_channel_unless_the_rig_does(tmp_path):
+    """U = 0.8 % with k = 2 is 0.4 %; 40 N of 5 kN with k = 2.5 is 0.32 %."""
+    share = in_lab('"pressure gauge"', '"p", channel = "Fz", expanded_uncertainty = 0.008')
+    force = in_lab('"pressure gauge"', '"p", channel = "Fz", expanded_uncertainty = 40, at = 5000, k = 2.5')
+    typed = share.replace("[rig]", "[rig]\nu_Fz_gain = 0.01")
+    found = [config.load(write(tmp_path, text)).rig for text in (share, force, typed)]
+    assert [rig.u("gain_Fz") for rig in found] == pytest.approx([0.004, 0.0032, 0.01])
+    assert {rig.u("gain") for rig in found} == {0.005}
 
 
 def test_both_tables_survive_resolving(tmp_path):

@@ -70,3 +70,39 @@ def test_the_camber_of_the_normal_file_is_in_degrees(tmp_path):
     (tmp_path / "tyre.toml").write_text(MINIMAL + "\n[normal]\ncamber_max_deg = 0.5\n")
     with pytest.raises(InputError, match="radians"):
         config.load(tmp_path / "tyre.toml")
+
+
+@pytest.mark.parametrize(
+    ("table", "u"),
+    [
+        ("{ value = 0.7, dof = 12 }", 0.7),
+        ('{ value = 0.7, distribution = "rectangular" }', 0.7 / 3.0**0.5),
+        ('{ value = 0.7, dof = 3, distribution = "triangular" }', 0.7 / 6.0**0.5),
+    ],
+)
+def test_an_uncertainty_is_resolved_as_it_was_stated(tmp_path, table, u):
+    text = MINIMAL.replace("[rig]", f"[rig]\nu_camber_alignment_deg = {table}")
+    (tmp_path / "tyre.toml").write_text(text)
+    found = config.load(tmp_path / "tyre.toml")
+    assert found.rig.u("gamma_0_deg") == pytest.approx(u)
+    again = config.load(written(found, tmp_path / "out"))
+    assert vars(again.rig.u("gamma_0_deg")) == vars(found.rig.u("gamma_0_deg"))
+    assert again.rig.u("gamma_0_deg") == found.rig.u("gamma_0_deg")
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("{ dof = 3 }", "has no value"),
+        ("{ value = 0.7, dof = 0 }", "dof below 1"),
+        ("{ value = 0.7, distribution = 'round' }", "known are normal, rectangular, triangular"),
+        ("{ value = 0.7, u = 3 }", 'unknown key "u"'),
+        ("{ value = 70 }", "outside 0 to 20 deg"),
+        ('{ value = "0.7" }', "number"),
+    ],
+)
+def test_a_wrong_table_of_an_uncertainty_is_refused_with_what_is_allowed(tmp_path, table, said):
+    (tmp_path / "tyre.toml").write_text(MINIMAL.replace("[rig]", f"[rig]\nu_camber_alignment_deg = {table}"))
+    with pytest.raises(InputError, match=said) as error:
+        config.load(tmp_path / "tyre.toml")
+    assert error.value.line == 8

@@ -53,6 +53,7 @@ NOTES = [
     (wording.slope_in_noise(0.05, 0.07), "the slope 0.050 per nominal load is within 2 u = 0.140"),
     (wording.EPSILON_IN_NOISE, "within 2 u of zero"),
     (wording.slope_too_steep(0.93), "would reach 0.93"),
+    (wording.steering(0.004, 0.0331), "yields by 0.004 deg per Nm of Mz would change it by 3.3 %"),
 ]
 WARNINGS = [
     (
