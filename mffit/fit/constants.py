@@ -43,10 +43,11 @@ USUAL_MISFIT_OF_RADIUS = Real(
     "m",
     "Scatter of a loaded or rolling radius where as many coefficients as means leave none to see.",
 )
-SPREADS_OVER_SPEED = Series(
-    (0.0007, 0.03),
+SPREADS_OF_RADII = Series(
+    (0.0007, 0.03, 0.2, 0.2, 1.0),
     "-",
-    "Standard deviations of Q_V1 and Q_V2 where nothing states them; published files have 0.0005 to 0.0008 and 0.02 to 0.05.",
+    "Standard deviations of Q_V1, Q_V2, Q_FCX, Q_FCY and Q_CAM3 where nothing states them; published files have 0.0005 to "
+    "0.0008, 0.02 to 0.05, -0.13 to 0.11, 0.12 to 0.23 and 0 to 0.5.",
 )
 
 # Rolling resistance: standard deviations among tyres, from published files

@@ -84,7 +84,8 @@ def fit(
     known = known_before_fit(config, points, measured, base, fleet, hand)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
-    known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
+    known = known.having({**{name: q.value for name, q in radii.found.items()}, **radii.switched}, "fitted")
+    known = known.having({n: known.values[n] for n in radii.found if n in radii.regularised}, "regularised")
     rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
     start = {

@@ -22,8 +22,8 @@ from mffit.measured.axis import (
     slip_stiffness,
     split_of_zero,
 )
-from mffit.measured.drift import shares_of_sweeps
 from mffit.measured.calibration import Factors, calibration, powers_of_load
+from mffit.measured.drift import shares_of_sweeps
 from mffit.measured.epsilon import (
     corrected,
     epsilon_from_moments,

@@ -201,6 +201,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
     phi_t = side / (machine.faults["path_radius_m"] + settings.outward - crown)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
     load = settings.Fz * _product(LOADS, settings, machine)
+    gamma = settings.gamma + _sum(LEANS, settings, machine)
     out, state = evaluate(
         mounted,
         load,
@@ -212,7 +213,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
         settings.p,
         turn_slip=machine.phi_t_sign != 0,
     )
-    radius = loaded_radius(machine.tyre.values, load, out.Fx, out.Fy, state.omega, settings.p)
+    radius = loaded_radius(machine.tyre.values, load, out.Fx, out.Fy, lean, state.omega, settings.p)
     slip = settings.kappa
     if machine.slip_against == "loaded-radius":
         slip = (1.0 + slip) * radius / state.Re - 1.0
@@ -268,23 +269,39 @@ def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine)
     return out
 
 
-def loaded_radius(p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, omega: Any, pressure: Any) -> Any:
-    """Distance (n,) of the wheel's centre from the contact point [m].
+def loaded_radius(
+    p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, gamma: Any, omega: Any, pressure: Any
+) -> Any:
+    """Distance (n,) of the wheel's centre from the contact point [m], by bisection of the load over it.
 
     Parameters
     ----------
     p : values of the property file
     Fz, Fx, Fy : forces (n,) [N]
+    gamma : camber (n,) [rad]
     omega : speed of rotation (n,) [rad/s]
     pressure : inflation pressure (n,) [Pa]
     """
     R0, Fz0 = p["UNLOADED_RADIUS"], p["FNOMIN"]
     rim_speed = np.abs(omega) * R0 / p["LONGVL"]
     free = R0 * (p["Q_RE0"] + p["Q_V1"] * rim_speed**2)
-    stiffer = 1.0 + p["Q_V2"] * rim_speed - (p["Q_FCX"] * Fx / Fz0) ** 2 - (p["Q_FCY"] * Fy / Fz0) ** 2
-    stiffer = stiffer * (1.0 + p["PFZ1"] * (pressure / p["NOMPRES"] - 1.0))
     linear = np.sqrt((p["VERTICAL_STIFFNESS"] * R0 / Fz0) ** 2 - 4.0 * p["Q_FZ2"])
-    load = Fz / Fz0 / stiffer
-    # Root of q2 d^2 + q1 d = load that stays finite where q2 is zero.
-    deflection = 2.0 * load / (linear + np.sqrt(linear**2 + 4.0 * p["Q_FZ2"] * load))
-    return free - R0 * deflection
+    leaning = np.abs(gamma) * (1.0 if p["Q_CAM1"] or p["Q_CAM2"] else 0.0)
+    edge = (1.075 - 0.5 * p["ASPECT_RATIO"]) * p["WIDTH"] / 8.0 * np.tan(leaning)
+    growth = p["Q_CAM2"] / p["Q_CAM1"] if p["Q_CAM1"] else np.inf
+    steepness = 2.0 if np.isinf(growth) else 1.0
+    lower, upper = 0.0 * free, free + edge
+    for _ in range(60):  # a rounding error is left
+        radius = 0.5 * (lower + upper)
+        ratio = (radius / free) ** steepness
+        if np.isfinite(growth):
+            ratio = ratio * (1.0 + growth * radius) / (1.0 + growth * free)
+        squeezed = free - radius
+        relative = np.maximum(squeezed + ratio**2 * edge - p["Q_CAM3"] * squeezed * np.abs(gamma), 1e-12) / R0
+        leaned = p["Q_FYS1"] + p["Q_FYS2"] * radius / free + p["Q_FYS3"] * (radius / free) ** 2
+        sideways = relative ** p["Q_FCY2"] * p["Q_FCY"] * (Fy - leaned * gamma) / Fz0
+        carried = Fz0 * (linear * relative + p["Q_FZ2"] * relative**2)
+        carried = carried * (1.0 + p["PFZ1"] * (pressure / p["NOMPRES"] - 1.0))
+        carried = carried * (1.0 + p["Q_V2"] * rim_speed - (p["Q_FCX"] * Fx / Fz0) ** 2 - sideways**2)
+        lower, upper = np.where(carried > Fz, radius, lower), np.where(carried > Fz, upper, radius)
+    return 0.5 * (lower + upper)

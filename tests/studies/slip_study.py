@@ -305,7 +305,11 @@ def _radius_errors(model: tir.Tyre, true: tir.Tyre, kind: Kind) -> dict[str, flo
 
     def rolling(tyre: tir.Tyre) -> tuple[np.ndarray, ...]:
         Re = tyre.state(Fz, Vx=V, p=p).Re
-        return 1e3 * loaded_radius(tyre.values, Fz, 0.0, 0.0, V / Re, p), 1e3 * Re, tyre(Fz, Vx=V, p=p).My
+        return (
+            1e3 * loaded_radius(tyre.values, Fz, 0.0, 0.0, 0.0, V / Re, p),
+            1e3 * Re,
+            tyre(Fz, Vx=V, p=p).My,
+        )
 
     names = ("loaded radius [mm]", "rolling radius [mm]", "My [Nm]")
     return {name: rms(a - b) for name, a, b in zip(names, rolling(model), rolling(true), strict=True)}

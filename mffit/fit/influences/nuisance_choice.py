@@ -200,7 +200,7 @@ def _of_runs(
     if not beyond_chance(differ.value - alike.value, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
     # A gain that few runs hold is theirs; a scatter shows in most of them.
-    of_run = np.unique(halves) // 2
+    of_run = np.unique(halves[joint.looked_at]) // 2
     if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):
         reason = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, reason, *gaps), {}

@@ -15,17 +15,21 @@ from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT, UPRIGHT
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
 from mffit.fit.beside import BesideNumbers
-from mffit.least_squares import FreeNumber, of_model, solve
+from mffit.fit.coverage import design
+from mffit.least_squares import FreeNumber, Solution, inverse, of_model, solve
+from mffit.left_out import moved_without
 from mffit.points import Points, levels
 from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
 from tir import Quantity
+from tir.derivatives import plain
 from tir.equations import vertical
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
 GROWTH = "growth"
-"""Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up."""
+"""Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up. Q_RE0 holds at the
+mean pressure of the readings."""
 BOUNDS = {
     "Q_RE0": (0.9, 1.1),
     "PFZ1": (-0.5, 2.0),
@@ -35,15 +39,26 @@ BOUNDS = {
     GROWTH: (-0.3, 0.3),
     "Q_V1": (-0.01, 0.02),
     "Q_V2": (-0.3, 0.5),
+    "Q_FCX": (0.0, 1.0),
+    "Q_FCY": (0.0, 1.0),
+    "Q_CAM3": (-8.0, 8.0),
 }
-OVER_SPEED = dict(zip(("Q_V1", "Q_V2"), constants.SPREADS_OVER_SPEED, strict=True))
-"""Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
+SPREADS = dict(zip(("Q_V1", "Q_V2", "Q_FCX", "Q_FCY", "Q_CAM3"), constants.SPREADS_OF_RADII, strict=True))
+"""Standard deviation among tyres of coefficients that few runs show."""
+OVER_SPEED = ("Q_V1", "Q_V2")
+"""Those that several speeds show; one of a single speed is part of the uncertainties."""
+EVEN = ("Q_FCX", "Q_FCY")
+"""Those of which only the square acts: the search starts at a usual size, because nothing pulls at zero."""
+USUAL = 0.1
 
-
+CONTOUR = {"Q_CAM1": 1.0}
+"""Turns on the deflection that a flat tread gets by camber: only the ratio of Q_CAM1 to Q_CAM2 acts, so that any size does."""
+ROUNDING = 1e-9
+"""Smallest misfit of a radius that counts as one, over the usual one."""
 OF_WHEEL_SPEED = ("DREFF", "FREFF", "BREFF")
 """Coefficients of the rolling radius."""
 SHOWN = {
-    "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *OVER_SPEED, GROWTH),
+    "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *SPREADS, GROWTH),
     "omega": ("Q_RE0", "Q_V1", *OF_WHEEL_SPEED, GROWTH),
 }
 """By channel, the numbers that it shows; what the first one has shown stays."""
@@ -51,6 +66,7 @@ NEEDED = {
     **{"Q_FZ2": ("loads", 3), "FREFF": ("loads", 3), "BREFF": ("loads", 4)},
     **dict.fromkeys(("PFZ1", GROWTH), ("pressures", 2)),
     **dict.fromkeys(OVER_SPEED, ("speeds", 2)),
+    **{"Q_FCX": ("kappa", 1), "Q_FCY": ("sideslips", 3), "Q_CAM3": ("camber", 1)},
 }
 """What must be varied for some of them, and how many levels of it; all need two loads."""
 
@@ -64,7 +80,11 @@ class Vertical:
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  #: (k, k)
     rms: Mapping[str, float] = field(default_factory=dict)
     """By channel, RL and omega, rms misfit of the radius [m]."""
-    rolling: RollingParts | None = None  #: the means that were fitted; None without any
+    regularised: frozenset[str] = frozenset()  #: numbers that their priors decide as much as the readings
+    switched: Mapping[str, float] = field(default_factory=dict)
+    """Coefficients of which only that they are not all zero acts, and that the readings ask for."""
+    rolling: RadiusReadings | None = None  #: means of the upright wheel that rolls freely; None without any
+    loaded: RadiusReadings | None = None  #: all readings of the loaded radius; None without any
 
     @property
     def found(self) -> dict[str, Quantity]:
@@ -84,90 +104,123 @@ class Vertical:
         return self.numbers.get(GROWTH, 0.0)
 
     def agreement(self, values: Mapping[str, Any]) -> dict[str, Agreement]:
-        """By channel, RL and omega, agreement of the radii [m] of these values with the means; as far as they were fitted."""
-        if self.rolling is None:
-            return {}
+        """By channel, as far as it was fitted, agreement of the radii [m] of these values with the readings.
+
+        RL with all of them, omega with the means of the upright wheel that rolls freely.
+        """
+        read = {"RL": self.loaded, "omega": self.rolling}
         return {
-            name: agreement(radius(values, self.rolling, name), self.rolling.radius(name))
+            name: agreement(radius(values, at, name), at.radius(name))
             for name in self.rms
+            if (at := read[name]) is not None
         }
 
 
 @dataclass(frozen=True, slots=True)
-class RollingParts:
-    """Means over the freely rolling parts of sweeps without camber (n,)."""
+class RadiusReadings:
+    """Radii of a wheel (n,) and the conditions on which they depend, in ISO-W."""
 
     Fz: np.ndarray  #: [N]
     p: np.ndarray  #: [Pa]
     V: np.ndarray  #: [m/s]
-    loaded: np.ndarray  #: [m]; NaN where it was not measured
+    gamma: np.ndarray  #: [rad]
+    Fx: np.ndarray  #: [N]
+    Fy: np.ndarray  #: [N]
+    omega: np.ndarray  #: speed of rotation [rad/s]; NaN where it was not measured
+    loaded: np.ndarray  #: [m]; the same
     effective: np.ndarray  #: [m]; the same
+    part: np.ndarray  #: number of the part of a sweep to which a reading belongs
 
     def radius(self, channel: str) -> np.ndarray:
         """The measured radius (n,) [m] of RL, or of omega."""
         return self.loaded if channel == "RL" else self.effective
 
-    def select(self, which: np.ndarray) -> RollingParts:
+    def select(self, which: np.ndarray) -> RadiusReadings:
         """Those of a boolean mask (n,)."""
-        return RollingParts(*(getattr(self, part.name)[which] for part in fields(self)))
+        return RadiusReadings(*(getattr(self, part.name)[which] for part in fields(self)))
+
+    @property
+    def means(self) -> RadiusReadings:
+        """The means of every part (m,)."""
+        groups = [self.part == k for k in np.unique(self.part)]
+        every = (getattr(self, part.name) for part in fields(self))
+        return RadiusReadings(*(np.array([float(np.mean(x[rows])) for rows in groups]) for x in every))
 
     def rim_speed(self, free_radius: float) -> np.ndarray:
         """Speed of rotation times a radius (n,) [m/s]; that of travel where the wheel speed was not measured."""
-        rolled = np.where(np.isfinite(self.effective), self.effective, free_radius)
-        found: np.ndarray = self.V * free_radius / rolled
-        return found
+        return np.where(np.isfinite(self.omega), np.abs(self.omega) * free_radius, self.V)
 
 
-def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
-    """Loaded radius, or effective rolling radius for omega, of the upright wheel [m]; plain or traced as the values are."""
+def radius(values: Mapping[str, Any], at: RadiusReadings, channel: str) -> Any:
+    """Loaded radius, or for omega the rolling radius of the upright wheel [m]; plain or traced as the values are."""
     p = SimpleNamespace(**values)
     if channel == "RL":
         rim_speed = at.rim_speed(float(values["UNLOADED_RADIUS"])) / float(values["LONGVL"])
-        free = p.UNLOADED_RADIUS * (p.Q_RE0 + p.Q_V1 * rim_speed**2)
-        return free - vertical.deflection(
-            p, at.Fz / (1.0 + p.Q_V2 * rim_speed), at.p / float(values["NOMPRES"]) - 1.0
-        )
+        conditions = at.Fx, at.Fy, at.gamma, rim_speed, at.p / float(values["NOMPRES"]) - 1.0
+        known = SimpleNamespace(**{name: plain(value) for name, value in values.items()})
+        found = vertical.loaded_radius(known, at.Fz, *conditions)
+        load, slope = vertical.load(
+            p, found, *conditions
+        )  # the load is given, so that the radius follows the numbers
+        return found - (load - at.Fz) / plain(slope)
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
 
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
     """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
 
-    The loaded radius comes first: DREFF, BREFF and FREFF appear only over the stiffness, and a zero of one reading does not
-    distort what the other shows. Coefficients ``held``, by hand or because they were measured, stay, and so does what too few
-    loads, pressures or speeds show. What speed does and a single speed does not show is part of the uncertainties, and so are
-    the errors of what was found before.
+    The loaded radius comes first, from every reading under Fx, Fy and camber: DREFF, BREFF and FREFF appear only over the
+    stiffness, and a zero of one reading does not distort what the other shows. Coefficients ``held``, by hand or because they
+    were measured, stay, and so does what too few settings show. What speed does and a single speed does not show is part of the
+    uncertainties, and so are the errors of what was found before. Parts of sweeps count as units: the radius has an offset in
+    each, and its errors along a sweep are alike.
     """
-    rolling = _rolling(points)
-    if rolling is None:
-        return Vertical()
-    run = {
-        "loads": levels.count(rolling.Fz, levels.LOAD),
-        "pressures": levels.count(rolling.p, levels.PRESSURE),
-        "speeds": levels.count(rolling.V, levels.SPEED),
+    loaded, rolling = _loaded(points), _rolling(points)
+    turning = None if rolling is None else rolling.select(np.isfinite(rolling.effective))
+    read = {"RL": loaded, "omega": turning if turning is not None and len(turning.V) else None}
+    run = {name: _run(points, at) for name, at in read.items() if at is not None}
+    names = {
+        channel: [n for n in SHOWN[channel] if n not in held and _is_shown(n, seen)]
+        for channel, seen in run.items()
+        if seen["loads"] > 1
     }
-    read = [c for c in SHOWN if np.any(np.isfinite(rolling.radius(c)))] if run["loads"] > 1 else []
-    names = {channel: [n for n in SHOWN[channel] if n not in held and _is_shown(n, run)] for channel in read}
     found = {
         name: float(values[name])
         for name in OVER_SPEED
         if name not in held and not any(name in own for own in names.values())
     }
-    u = [constants.SIMILAR_TYRES_SPREAD * abs(x) or float(OVER_SPEED[name]) for name, x in found.items()]
+    u = [constants.SIMILAR_TYRES_SPREAD * abs(x) or float(SPREADS[name]) for name, x in found.items()]
     covariance, unseen, misfit = np.diag(np.square(u)), len(found), dict[str, float]()
     known = {**values, GROWTH: 0.0, **{n: 0.0 for n in ("Q_FZ2", "PFZ1") if n in names.get("RL", ())}}
-    if "VERTICAL_STIFFNESS" in names.get("RL", ()):
-        known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
+    if loaded is not None and "VERTICAL_STIFFNESS" in names.get("RL", ()):
+        known["VERTICAL_STIFFNESS"] = _stiffness(loaded)
+    switched: dict[str, float] = {}
+    regularised: set[str] = set()
     for channel, every in names.items():
-        free = [name for name in every if name not in found]
-        fit = _fitted(free, list(found), {**known, **found}, rolling, channel)
+        free, at = [name for name in every if name not in found], read[channel]
+        assert at is not None
+        fit = _fitted(free, list(found), {**known, **found}, at, channel)
+        if "Q_CAM3" in free and not (known["Q_CAM1"] or known["Q_CAM2"] or {"Q_CAM1", "Q_CAM2"} & {*held}):
+            leaning = _fitted(free, list(found), {**known, **found, **CONTOUR}, at, channel)
+            if leaning.rms < fit.rms:
+                fit, switched = leaning, CONTOUR
+                known |= CONTOUR
         found |= fit.values
         misfit[channel] = fit.rms
+        regularised |= fit.regularised
         across = fit.moved @ covariance
         own = fit.covariance + across @ fit.moved.T
         covariance = np.block([[covariance, across.T], [across, own]])
     numbers = dict(list(found.items())[unseen:])
-    return Vertical(numbers, covariance[unseen:, unseen:], misfit, rolling)
+    return Vertical(
+        numbers=numbers,
+        covariance=covariance[unseen:, unseen:],
+        rms=misfit,
+        regularised=frozenset(regularised),
+        switched=switched,
+        rolling=rolling,
+        loaded=loaded,
+    )
 
 
 def _is_shown(name: str, run: Mapping[str, int]) -> bool:
@@ -175,31 +228,49 @@ def _is_shown(name: str, run: Mapping[str, int]) -> bool:
     return run[what] >= count
 
 
-def _rolling(points: Points) -> RollingParts | None:
-    """The parts of sweeps at which the wheel rolls freely straight on; None without radius or wheel speed."""
+def _run(points: Points, at: RadiusReadings) -> dict[str, int]:
+    """How many settings the readings have of what the coefficients need."""
+    return {
+        **design(points, "").run,
+        "loads": levels.count(at.Fz, levels.LOAD),
+        "pressures": levels.count(at.p, levels.PRESSURE),
+        "speeds": levels.count(at.V, levels.SPEED),
+    }
+
+
+def _loaded(points: Points) -> RadiusReadings | None:
+    """Every reading of the loaded radius of a wheel that rolls forwards on a straight path; None without any."""
+    used = (points.direction > 0) & (points.phi_t == 0.0) & np.isfinite(points.RL) & np.isfinite(points.Fy)
+    used &= np.isfinite(points.Fx) | points.free_rolling
+    return _readings(points, used)
+
+
+def _rolling(points: Points) -> RadiusReadings | None:
+    """Means of the upright wheel that rolls freely straight on; None without loaded radius or wheel speed."""
     used = points.free_rolling & (points.direction > 0) & (points.phi_t == 0.0)
     used &= np.abs(points.alpha) < STRAIGHT.rad
     used &= np.abs(points.gamma) < UPRIGHT.rad
-    turning = np.isfinite(points.omega) & (points.omega > 0.0)
-    used &= np.isfinite(points.RL) | turning
+    used &= np.isfinite(points.RL) | (points.omega > 0.0)
+    found = _readings(points, used)
+    return None if found is None else found.means
+
+
+def _readings(points: Points, used: np.ndarray) -> RadiusReadings | None:
     if not np.any(used):
         return None
     part = points.select(used)
-    effective = np.where(turning[used], part.rolling_radius, np.nan)
     # Radii grow with the square of speed, so that a mean over speeds belongs to none of them.
     speed = levels.nearest_labels(part.V, levels.SPEED)
-    group = parts_of_sweeps(part) * (int(np.max(speed)) + 2) + speed + 1
+    return RadiusReadings(
+        Fz=part.Fz, p=part.p, V=part.V, gamma=part.gamma, Fx=np.nan_to_num(part.Fx), Fy=np.nan_to_num(part.Fy),
+        omega=np.where(part.omega > 0.0, part.omega, np.nan), loaded=part.RL, effective=part.rolling_radius,
+        part=parts_of_sweeps(part) * (int(np.max(speed)) + 2) + speed + 1,
+    )  # fmt: skip
 
-    def mean(x: np.ndarray) -> np.ndarray:
-        return np.array([float(np.mean(x[group == k])) for k in np.unique(group)])
 
-    return RollingParts(*map(mean, (part.Fz, part.p, part.V, part.RL, effective)))
-
-
-def _stiffness(rolling: RollingParts) -> float:
+def _stiffness(at: RadiusReadings) -> float:
     """Load over loaded radius [N/m], the slope of a line."""
-    known = np.isfinite(rolling.loaded)
-    slope = float(np.polyfit(rolling.Fz[known], rolling.loaded[known], 1)[0])
+    slope = float(np.polyfit(at.Fz, at.loaded, 1)[0])
     return 1.0 / max(-slope, 1e-7)
 
 
@@ -210,53 +281,97 @@ class _OfRadius(NamedTuple):
     covariance: np.ndarray  #: (k, k) from the misfit; what was fitted before counts as exact
     moved: np.ndarray  #: (k, b) derivatives of the numbers by those that were fitted before
     rms: float  #: [m]
+    regularised: frozenset[str]  #: numbers that their priors decide
 
 
 def _fitted(
     names: Sequence[str],
     before: Sequence[str],
     values: Mapping[str, Any],
-    rolling: RollingParts,
+    at: RadiusReadings,
     channel: str,
 ) -> _OfRadius:
     """The best values of the named numbers, beside those that were fitted ``before``."""
-    rolling = rolling.select(np.isfinite(rolling.radius(channel)))
-    dpi = rolling.p / float(values["NOMPRES"]) - 1.0
-    measured = rolling.radius(channel)
-    unit = float(np.ptp(measured)) or 1e-3
-    stiffness, free_radius = float(values["VERTICAL_STIFFNESS"]), float(values["UNLOADED_RADIUS"])
-    relative = (stiffness * free_radius / float(values["FNOMIN"])) ** 2
-    bounds = {
-        **BOUNDS,
-        "VERTICAL_STIFFNESS": (0.2 * stiffness, 5.0 * stiffness),
-        "Q_FZ2": (-relative, 0.2 * relative),
-    }
-    numbers = [FreeNumber(name, float(values[name]), *bounds[name]) for name in names]
+    dpi = at.p / float(values["NOMPRES"]) - 1.0
+    measured = at.radius(channel)
+    free_radius = float(values["UNLOADED_RADIUS"])
 
     def radius_of(free: Mapping[str, Any]) -> Any:
         every = {**values, **free}
-        with np.errstate(invalid="ignore"):
-            found = radius(every, rolling, channel)
-        return found + free_radius * every[GROWTH] * dpi
+        with np.errstate(all="ignore"):
+            found = radius(every, at, channel)
+        return found + free_radius * every[GROWTH] * (dpi - np.mean(dpi))
 
-    end = solve(of_model(radius_of, names, measured, unit), numbers, tolerance=1e-9)
-    scale = _scatter(float(end.data @ end.data), len(measured) - len(names), unit) ** 2
+    def fitted(u: float, start: Mapping[str, Any]) -> Solution:
+        stiffness = float(start["VERTICAL_STIFFNESS"])
+        relative = (stiffness * free_radius / float(values["FNOMIN"])) ** 2
+        bounds = {
+            **BOUNDS,
+            "VERTICAL_STIFFNESS": (0.2 * stiffness, 5.0 * stiffness),
+            "Q_FZ2": (-relative, 0.2 * relative),
+        }
+        numbers = [_number(name, float(values[name]), float(start[name]), bounds[name]) for name in names]
+        return solve(of_model(radius_of, names, measured, u), numbers, tolerance=1e-9)
+
+    parts = [np.flatnonzero(at.part == k) for k in np.unique(at.part)]
+    end = fitted(u := float(constants.USUAL_MISFIT_OF_RADIUS), values)
+    covariance = end.covariance
+    if len(parts) > len(names):  # priors count beside the misfit that the first fit shows
+        end = fitted(u := u * _alike(end, parts), {**values, **end.values})
+        covariance = _of_units(end, parts)
     values = {**values, **end.values}
-    at = np.array([float(values[name]) for name in before])
-    slope = of_model(radius_of, before, measured, unit).linear(at).slope
+    x = np.array([float(values[name]) for name in before])
+    slope = of_model(radius_of, before, measured, u).linear(x).slope
+    stderr = np.sqrt(np.diag(covariance))
     return _OfRadius(
         values=dict(end.values),
-        covariance=end.covariance * scale,
+        covariance=covariance,
         moved=-end.covariance @ end.jacobian.T @ slope,
-        rms=unit * rms(end.data),
+        rms=u * rms(end.data),
+        regularised=frozenset(
+            n.name
+            for n, error in zip(end.objective.numbers, stderr.tolist(), strict=True)
+            if error > constants.FITTED_SHARE_OF_PRIOR * n.spread
+        ),
     )
 
 
-def _scatter(squares: float, freedom: int, unit: float) -> float:
-    """Scatter of the means in units, so that 1.96 of it hold 95 % although it is estimated from few of them."""
-    if freedom < 1:
-        return float(constants.USUAL_MISFIT_OF_RADIUS) / unit
-    return math.sqrt(squares / freedom) * float(stdtrit(freedom, 0.975)) / COVERAGE_FACTOR_95
+def _number(name: str, known: float, start: float, bounds: tuple[float, float]) -> FreeNumber:
+    if name in EVEN:
+        known, start = abs(known), max(abs(start), USUAL)
+    return FreeNumber(name, start, *bounds, expected=known, spread=float(SPREADS.get(name, math.inf)))
+
+
+def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Covariance (k, k) by the moves of the numbers when each part of a sweep is left out, and that of the priors.
+
+    Whatever makes the errors of a part alike counts. 1.96 standard errors hold 95 % although few parts may show the scatter.
+    """
+    free = np.array([name not in end.at_bound for name in end.names])
+    n, freedom = len(parts), len(parts) - int(np.sum(free))
+    wider = float(stdtrit(freedom, 0.975)) / COVERAGE_FACTOR_95
+    if len(end.data) == n:
+        return end.covariance * wider**2
+    slopes, prior = end.jacobian[:, free], end.prior[free]
+    information = slopes.T @ slopes + np.diag(prior)
+    gradient = slopes.T @ end.data + prior * (end.x - end.objective.expected)[free]
+    moves = np.array([moved_without(slopes[k], end.data[k], information, gradient) for k in parts])
+    of_priors = inverse(information) * np.sqrt(prior)
+    covariance = np.diag(np.diag(end.covariance))
+    covariance[np.ix_(free, free)] = wider**2 * (n - 1) / n * moves.T @ moves + of_priors @ of_priors.T
+    return covariance
+
+
+def _alike(end: Solution, parts: Sequence[np.ndarray]) -> float:
+    """Factor of the uncertainty of every reading by which errors that are alike in a part count as the few that they are.
+
+    The variance of a sum over a part, over that of as many independent errors: 1 without an offset of the parts.
+    """
+    squares = float(end.data @ end.data)
+    sums = sum(float(np.sum(end.data[rows])) ** 2 for rows in parts)
+    together = max(sums / squares, 1.0) if squares else 1.0
+    freedom = max(len(end.data) / together - len(end.names), 1.0)
+    return max(math.sqrt(squares / freedom), ROUNDING)
 
 
 def vertical_sentence(found: Vertical) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
 from mffit.constants import STEPS_OF_LINE
-from mffit.fit.wheel.vertical import RollingParts, radius
+from mffit.fit.wheel.vertical import RadiusReadings, radius
 from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import labels, style
@@ -39,7 +39,7 @@ def radii(view: BuildView) -> Sheet:
 
 
 def _panel(
-    view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
+    view: BuildView, rolling: RadiusReadings, channel: str, pressure: np.ndarray, colours: dict[float, str]
 ) -> Panel:
     series = []
     read, steps = rolling.radius(channel), STEPS_OF_LINE
@@ -49,14 +49,9 @@ def _panel(
         if not rows.any():
             continue
         load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
-        usual = {
-            "p": p,
-            "V": speed,
-            "loaded": np.nan,
-            "effective": finite_median(rolling.effective),
-        }
-        at = RollingParts(Fz=load, **{name: np.full(steps, value) for name, value in usual.items()})
-
+        usual = dict.fromkeys((field.name for field in fields(RadiusReadings)), 0.0)
+        usual |= {"p": p, "V": speed, "omega": finite_median(rolling.omega)}
+        at = RadiusReadings(**{name: np.full(steps, x) for name, x in (usual | {"Fz": load}).items()})
         line = np.asarray(radius(view.build.fit.tyre.values, at, channel))
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
         lined, dotted = replace(LINE, colour=colour), replace(READ, colour=colour)

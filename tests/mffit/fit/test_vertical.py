@@ -8,6 +8,7 @@ import pytest
 import tir
 from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.points import Points, make_points
+from mffit.virtual_rig.machine import loaded_radius
 from tir.equations import vertical
 
 R0, FNOMIN, NOMPRES = 0.3, 4000.0, 200e3
@@ -124,12 +125,122 @@ def test_wheel_speed_alone_gives_the_rolling_radius():
 
 def test_vertical_stiffness_is_the_slope_at_the_nominal_load():
     p = tir.Tyre.from_values({}).replace(**TRUTH, UNLOADED_RADIUS=R0, FNOMIN=FNOMIN).p
-    x = float(vertical.deflection(p, FNOMIN, 0.0))
-    two = [float(vertical.load_at_deflection(p, x + step, 0.0)) for step in (-1e-6, 1e-6)]
-    assert (two[1] - two[0]) / 2e-6 == pytest.approx(STIFFNESS, rel=1e-6)
-    assert float(vertical.load_at_deflection(p, vertical.deflection(p, 5200.0, 0.2), 0.2)) == pytest.approx(
-        5200.0
+    upright = (0.0, 0.0, 0.0, 1.0, 0.0)
+    RL = float(vertical.loaded_radius(p, FNOMIN, *upright))
+    carried, slope = vertical.load(p, RL, *upright)
+    assert float(carried) == pytest.approx(FNOMIN, rel=1e-12)
+    assert -float(slope) == pytest.approx(STIFFNESS, rel=1e-9)
+    two = [float(vertical.load(p, RL + step, *upright)[0]) for step in (-1e-6, 1e-6)]
+    assert (two[0] - two[1]) / 2e-6 == pytest.approx(STIFFNESS, rel=1e-6)
+
+
+LEANED = {
+    "VERTICAL_STIFFNESS": STIFFNESS, "Q_FZ2": Q_FZ2, "PFZ1": PFZ1, "Q_RE0": Q_RE0, "Q_V1": Q_V1, "Q_V2": Q_V2, "Q_FCX": 0.12,
+    "Q_FCY": 0.8, "Q_FCY2": 0.3, "Q_CAM1": 0.8, "Q_CAM2": 0.4, "Q_CAM3": 0.5, "Q_FYS1": -900.0, "Q_FYS2": 400.0, "Q_FYS3": 150.0,
+    "WIDTH": 0.225, "ASPECT_RATIO": 0.45, "UNLOADED_RADIUS": R0, "FNOMIN": FNOMIN, "NOMPRES": NOMPRES,
+}  # fmt: skip
+
+
+def test_the_load_follows_the_published_formula_under_every_force():
+    """MF-Tyre/MF-Swift 6.2, equation manual of July 2013, here as it is printed there."""
+    p = tir.Tyre.from_values({}).replace(**LEANED).p
+    RL, Fx, Fy, gamma, rim, dpi = 0.281, 2500.0, -3100.0, -0.07, 1.4, 0.15
+    R_omega = R0 * (Q_RE0 + Q_V1 * rim**2)
+    S_fyg = (-900.0 + 400.0 * RL / R_omega + 150.0 * (RL / R_omega) ** 2) * gamma
+    rho_zfr = R_omega - RL
+    rtw = (1.075 - 0.5 * 0.45) * 0.225
+    rho_zg = ((0.8 * RL + 0.4 * RL**2) * gamma) ** 2 * (rtw / 8.0) * abs(np.tan(gamma)) / (
+        (0.8 * R_omega + 0.4 * R_omega**2) * gamma
+    ) ** 2 - 0.5 * rho_zfr * abs(gamma)
+    rho = rho_zfr + rho_zg
+    f_corr = (
+        1.0 + Q_V2 * rim - (0.12 * Fx / FNOMIN) ** 2 - ((rho / R0) ** 0.3 * 0.8 * (Fy - S_fyg) / FNOMIN) ** 2
     )
+    Q_FZ1 = np.sqrt((STIFFNESS * R0 / FNOMIN) ** 2 - 4.0 * Q_FZ2)
+    Fz = f_corr * (1.0 + PFZ1 * dpi) * (Q_FZ1 * rho / R0 + Q_FZ2 * (rho / R0) ** 2) * FNOMIN
+    conditions = (Fx, Fy, gamma, rim, dpi)
+    assert float(vertical.load(p, RL, *conditions)[0]) == pytest.approx(Fz, rel=1e-12)
+    assert float(vertical.loaded_radius(p, Fz, *conditions)) == pytest.approx(RL, rel=1e-12)
+
+
+def on_the_rig(offset=0.0, seed=3, **differing: float) -> Points:
+    """Sweeps of slip at sideslips and cambers, RL by bisection as the virtual rig has it, with an offset of every sweep."""
+    draw = np.random.default_rng(seed)
+    values = {
+        **VALUES,
+        **LEANED,
+        "Q_FCY": 0.2,
+        "Q_FCY2": 0.0,
+        "Q_FYS1": 0.0,
+        "Q_FYS2": 0.0,
+        "Q_FYS3": 0.0,
+        **differing,
+    }
+    runs = [
+        (Fz, side, lean)
+        for Fz in (1500.0, 4000.0, 7000.0)
+        for side in (0.0, 2.0, 5.0)
+        for lean in (0.0, 2.0, 4.0)
+    ]
+    Fz, side, lean = (np.repeat(x, 21) for x in np.array(runs).T)
+    Fx = np.tile(np.linspace(-1.0, 1.0, 21), len(runs)) * Fz
+    Fy = -side / 5.0 * Fz * np.sqrt(1.0 - 0.7 * (Fx / Fz) ** 2)
+    p = np.repeat(np.resize([150e3, 200e3, 250e3], len(runs)), 21)
+    omega = 16.7 / 0.29 * (1.0 + 0.1 * Fx / Fz)
+    RL = loaded_radius(values, Fz, Fx, Fy, np.radians(lean), omega, p)
+    RL = RL + 2e-5 * draw.standard_normal(len(Fz)) + np.repeat(offset * draw.standard_normal(len(runs)), 21)
+    sweep = np.repeat(np.arange(len(runs)), 21)
+    return make_points(
+        np.radians(side), np.radians(lean), Fz, p=p, V=16.7, phi_t=0.0, sweep=sweep,
+        sweep_names=[f"run {k}" for k in range(len(runs))], Fx=Fx, Fy=Fy, RL=RL, omega=omega, kappa=0.1 * Fx / Fz,
+    )  # fmt: skip
+
+
+STATED = {**VALUES, "Q_V1": Q_V1, "Q_V2": Q_V2, "WIDTH": 0.225, "ASPECT_RATIO": 0.45}
+"""What single speeds do not show is stated."""
+
+
+def test_forces_and_camber_show_in_the_loaded_radius():
+    found = vertical_coefficients({**STATED, "Q_CAM2": 0.5, "Q_CAM1": 1.0}, on_the_rig())
+    for name in ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", "Q_FCX", "Q_FCY", "Q_CAM3"):
+        q, true = found.found[name], {**LEANED, "Q_FCY": 0.2}[name]
+        assert abs(q.value - true) < 0.02 * abs(true), name
+        assert q.u < 0.3 * abs(true), name
+    assert not found.switched
+    file = {**STATED, "Q_CAM2": 0.5, "Q_CAM1": 1.0, **{name: q.value for name, q in found.found.items()}}
+    assert found.agreement(file)["RL"].n == 27 * 21
+    assert found.agreement(file)["RL"].rmse < 3e-5
+
+
+def test_the_contour_acts_only_if_the_readings_ask_for_it():
+    flat = vertical_coefficients(STATED, on_the_rig())
+    assert flat.switched == {"Q_CAM1": 1.0}
+    assert flat.found["Q_CAM3"].value == pytest.approx(0.5, abs=0.1)
+    round_ = vertical_coefficients(STATED, on_the_rig(Q_CAM1=0.0, Q_CAM2=0.0))
+    assert not round_.switched
+    assert round_.found["Q_CAM3"].value == pytest.approx(0.5, abs=0.02)
+    assert not vertical_coefficients(STATED, on_the_rig(), held=("Q_CAM1",)).switched
+
+
+def test_an_offset_of_every_run_counts_once_however_many_its_readings():
+    pulls = {name: [] for name in ("VERTICAL_STIFFNESS", "Q_FCX", "Q_FCY", "Q_CAM3", "PFZ1")}
+    for seed in range(12):
+        found = vertical_coefficients(
+            {**STATED, "Q_CAM1": 0.8, "Q_CAM2": 0.4}, on_the_rig(offset=2e-4, seed=seed)
+        )
+        for name, own in pulls.items():
+            q = found.found[name]
+            own.append((q.value - {**LEANED, "Q_FCY": 0.2}[name]) / q.u)
+    for name, own in pulls.items():
+        assert 0.3 < np.sqrt(np.mean(np.square(own))) < 1.5, name
+
+
+def test_what_no_force_and_no_camber_shows_stays():
+    points = on_the_rig()
+    upright = points.select(np.flatnonzero((points.alpha == 0.0) & (points.gamma == 0.0)))
+    found = vertical_coefficients(STATED, upright).found
+    assert "Q_FCX" in found
+    assert not {"Q_FCY", "Q_CAM3"} & set(found)
 
 
 def test_several_speeds_show_how_the_wheel_grows_and_stiffens():
