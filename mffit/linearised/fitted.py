@@ -178,6 +178,28 @@ class LinearisedFit:
     numbers: tuple[Uncertain, ...]  #: (k,) coefficients and rig errors
     channels: Mapping[str, LinearisedChannel]
 
+    @property
+    def zeros(self) -> dict[str, tuple[float, float]]:
+        """The fitted zeros of the rig beside what the formula misses: changes of their values, and standard uncertainties.
+
+        The coefficients are as they are. A constant that the formula may miss belongs to a zero only as far as its declared
+        uncertainty exceeds the size of such constants; all channels together say how far.
+        """
+        rig = _of_rig(self.numbers)
+        free = np.array([error_of(number.name) in ZEROS and not number.held for number in rig], dtype=bool)
+        zeros = [number for number, own in zip(rig, free, strict=True) if own]
+        information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
+        for channel in self.channels.values():
+            m = len(channel.missed)
+            model = _beside(channel.alone, rig, m, free)
+            given = channel.variances._replace(common=channel.variances.common[:m])
+            found = replace(model, common=model.common[:, :m]).further(given, model.common[:, m:])
+            information, pull = information + found.information, pull + found.pull
+        covariance = inverse(information)
+        change = np.array([number.expected for number in zeros]) + covariance @ pull
+        u = np.sqrt(np.diag(covariance))
+        return dict(zip([n.name for n in zeros], zip(change.tolist(), u.tolist(), strict=True), strict=True))
+
 
 def linearised(
     points: Points,
@@ -279,15 +301,25 @@ def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given:
     """
     functions = len(given.common)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
-    expected = np.array([number.expected for number in rig])
-    columns = alone.common[:, functions:]
-    model = replace(
-        alone,
-        residual=alone.residual + columns[:, stays] @ expected[stays],
-        common=np.hstack([alone.common[:, :functions], columns[:, ~stays]]),
-    )
+    model = _beside(alone, rig, functions, ~stays)
     found = model.posterior(with_further(given, declared[~stays]))
     return np.asarray(found.mean[:functions])
+
+
+def _of_rig(numbers: Iterable[Uncertain]) -> list[Uncertain]:
+    """Those of the numbers that are errors of the rig."""
+    return [number for number in numbers if error_of(number.name) is not None]
+
+
+def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.ndarray) -> Mixed:
+    """The model with the coefficients as they are and only some (k,) errors of the rig free; all others are as fitted."""
+    columns = alone.common[:, functions:]
+    fitted = np.array([number.expected for number in rig])[~free]
+    return replace(
+        alone,
+        residual=alone.residual + columns[:, ~free] @ fitted,
+        common=np.hstack([alone.common[:, :functions], columns[:, free]]),
+    )
 
 
 def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np.ndarray:

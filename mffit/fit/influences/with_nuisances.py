@@ -12,7 +12,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import first_fit, polish
+from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
 from mffit.progress import Progress
 from mffit.rig import Simulation
@@ -38,6 +38,8 @@ def fit_with_nuisances(
     """The staged fit, then the influences that it should model, then the joint polish with these."""
     progress("fitting tyre and rig")
     fitted = first_fit(problem, start, plan)
+    if not config.rig.on_disc:
+        fitted, plan = with_known_zeros(fitted, problem, plan)
     choice = choose(config, fitted)
 
     if choice.modelled:
