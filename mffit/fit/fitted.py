@@ -64,16 +64,21 @@ def uncertain(number: FreeNumber) -> Uncertain:
     return Uncertain(number.name, 0.0, 0.5 * width)
 
 
-def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | None = None) -> LinearisedFit:
+def left_by(
+    fitted: Fitted,
+    of: FitProblem | None = None,
+    without: np.ndarray | None = None,
+    near: LinearisedFit | None = None,
+) -> LinearisedFit:
     """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
 
-    A coefficient at a bound stays there.
+    A coefficient at a bound stays there. The search for the components begins at those ``near``, if there are any.
     """
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     numbers += [Uncertain(name, 0.0, u, held=True) for name, u in fitted.taken_as_exact.items()]
     problem = of or fitted.problem
-    return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without)
+    return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

@@ -19,9 +19,11 @@ from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
 from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
+from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
-from mffit.rig_errors import ZEROS, error_of
+from mffit.rig_errors import BY_NAME as BY_ERROR
+from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 
@@ -59,18 +61,18 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     return _fitted(problem, plan.numbers(problem), plan)
 
 
-def with_known_zeros(fitted: Fitted, stated: FitProblem, plan: FitPlan) -> tuple[Fitted, FitPlan]:
-    """The fit with the zeros of a flat track as they are beside what the formula misses, and the plan that holds them so.
+def with_known_zeros(
+    fitted: Fitted, stated: FitProblem, plan: FitPlan
+) -> tuple[Fitted, FitPlan, LinearisedFit]:
+    """The fit with the zeros of a flat track as they are beside what the formula misses, the plan that holds them so, and what
+    the fit without left.
 
     No reading of one set-up tells a zero from an asymmetry that the formula misses: a free zero takes it up, tens of standard
     uncertainties from the readings at zero slip. As the fit was if nothing is missed for certain.
     """
-    free = [n.name for n in plan.rig if error_of(n.name) in ZEROS]
-    if not free:
-        return fitted, plan
     left = left_by(fitted)
     if not any(channel.is_proven for channel in left.channels.values()):
-        return fitted, plan
+        return fitted, plan, left
     zeros = {name: (fitted.problem.value(name) + change, u) for name, (change, u) in left.zeros.items()}
     plan = replace(
         plan,
@@ -78,7 +80,7 @@ def with_known_zeros(fitted: Fitted, stated: FitProblem, plan: FitPlan) -> tuple
         held_rig={**plan.held_rig, **{name: u for name, (_, u) in zeros.items()}},
     )
     here = replace(stated, simulation=fitted.simulation)
-    return polish(here.with_values({name: value for name, (value, _) in zeros.items()}), plan), plan
+    return polish(here.with_values({name: value for name, (value, _) in zeros.items()}), plan), plan, left
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
@@ -96,7 +98,7 @@ def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan |
     problem = problem.with_values(solution.values)
     posterior = joint(problem, solution, {**given.held, **given.held_rig})
     known = {name: problem.value(name) for name in given.held_rig}
-    absent = [name for name, value in known.items() if not error_of(name).acts(value)]
+    absent = [name for name, value in known.items() if value == BY_ERROR[name].undisturbed]
     posterior = posterior.without(absent)
     stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(

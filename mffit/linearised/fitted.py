@@ -158,7 +158,7 @@ class LinearisedChannel:
     def gain(self, change: np.ndarray) -> float:
         """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
-        found = _found(without, self.smooth, self.unit, self.declared)
+        found = _found(without, self.smooth, self.unit, self.declared, self.components)
         return self.stride * (_evidence(without, found, self.smooth, self.declared) - self._evidence)
 
 
@@ -208,6 +208,7 @@ def linearised(
     numbers: Sequence[Uncertain],
     only: Iterable[str] | None = None,
     without: np.ndarray | None = None,
+    near: LinearisedFit | None = None,
 ) -> LinearisedFit:
     """The linear model of what a simulation leaves of the points.
 
@@ -219,6 +220,7 @@ def linearised(
     numbers : of the fit, each with a prior
     only : channels to look at; all that were fitted if None
     without : rows of the points that the simulation was not fitted to, and that do not say what is usual
+    near : the same of a similar fit to these points, from which the search for the components begins
     """
     readings = simulation.readings(points, sigma)
     felt = simulation.felt(points)
@@ -227,7 +229,12 @@ def linearised(
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
             sight = _Sight(
-                points, felt, simulation, numbers, np.zeros(0, int) if without is None else without
+                points,
+                felt,
+                simulation,
+                numbers,
+                np.zeros(0, int) if without is None else without,
+                {} if near is None else {n: own.components for n, own in near.channels.items()},
             )
             found[name] = _channel(name, sight, readings[name], sigma[name], used)
     return LinearisedFit(tuple(numbers), found)
@@ -241,6 +248,7 @@ class _Sight(NamedTuple):
     simulation: Simulation
     numbers: Sequence[Uncertain]
     without: np.ndarray
+    near: Mapping[str, Components]  #: by channel
 
 
 def _channel(
@@ -274,7 +282,7 @@ def _channel(
         own=own / unit[:, None],
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
-    components = _found(alone, smooth, unit, declared)
+    components = _found(alone, smooth, unit, declared, sight.near.get(name))
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
     return LinearisedChannel(
@@ -337,8 +345,14 @@ def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np
     return model.evidence(with_further(given, further)).value
 
 
-def _found(model: Mixed, smooth: SmoothFunctions, unit: np.ndarray, further: np.ndarray) -> Components:
+def _found(
+    model: Mixed,
+    smooth: SmoothFunctions,
+    unit: np.ndarray,
+    further: np.ndarray,
+    near: Components | None = None,
+) -> Components:
     """The components of residuals over ``unit`` (n,); ``further`` are logarithms of the variances of further common numbers."""
     rows = np.concatenate(list(model.groups))
     misfit = max(rms((model.residual * unit)[rows]), 1e-12)
-    return most_probable(model, smooth, Components.guess(smooth, misfit), misfit, further)
+    return most_probable(model, smooth, near, misfit, further)
