@@ -13,6 +13,7 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
+from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 
@@ -63,15 +64,21 @@ def uncertain(number: FreeNumber) -> Uncertain:
     return Uncertain(number.name, 0.0, 0.5 * width)
 
 
-def left_by(fitted: Fitted, of: FitProblem | None = None, without: np.ndarray | None = None) -> LinearisedFit:
+def left_by(
+    fitted: Fitted,
+    of: FitProblem | None = None,
+    without: np.ndarray | None = None,
+    near: LinearisedFit | None = None,
+) -> LinearisedFit:
     """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
 
-    A number at a bound stays there.
+    A coefficient at a bound stays there. The search for the components begins at those ``near``, if there are any.
     """
-    numbers = [uncertain(number) for number in fitted.inner]
+    free = fitted.problem.starting_here(fitted.numbers)
+    numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
     numbers += [Uncertain(name, 0.0, u, held=True) for name, u in fitted.taken_as_exact.items()]
     problem = of or fitted.problem
-    return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without)
+    return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

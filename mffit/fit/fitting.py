@@ -180,10 +180,10 @@ def _fitted_and_judged(
         for name, weights in sigma.items():
             weights[without] = problem.sigma[name][without]
         return FittedModel(
-            fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without)
+            fitted.simulation, left_by(fitted, replace(found.full.problem, sigma=sigma), without, near=left)
         )
 
-    left = left_by(found.full)
+    left = left_by(found.full, near=found.left)
     fitted = FittedModel(found.full.simulation, left)
     with as_declared(config):
         doubts = after_the_fit(JudgedSweeps(problem.points, axis_signs(config), fitted, refit))

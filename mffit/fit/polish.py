@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.fitted import Fitted
+from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
@@ -18,8 +19,10 @@ from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
 from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
+from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.quantities import CHANNELS, column
+from mffit.rig_errors import BY_NAME as BY_ERROR
 from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
@@ -58,6 +61,28 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     return _fitted(problem, plan.numbers(problem), plan)
 
 
+def with_known_zeros(
+    fitted: Fitted, stated: FitProblem, plan: FitPlan
+) -> tuple[Fitted, FitPlan, LinearisedFit]:
+    """The fit with the zeros of a flat track as they are beside what the formula misses, the plan that holds them so, and what
+    the fit without left.
+
+    No reading of one set-up tells a zero from an asymmetry that the formula misses: a free zero takes it up, tens of standard
+    uncertainties from the readings at zero slip. As the fit was if nothing is missed for certain.
+    """
+    left = left_by(fitted)
+    if not any(channel.is_proven for channel in left.channels.values()):
+        return fitted, plan, left
+    zeros = {name: (fitted.problem.value(name) + change, u) for name, (change, u) in left.zeros.items()}
+    plan = replace(
+        plan,
+        rig=tuple(n for n in plan.rig if n.name not in zeros),
+        held_rig={**plan.held_rig, **{name: u for name, (_, u) in zeros.items()}},
+    )
+    here = replace(stated, simulation=fitted.simulation)
+    return polish(here.with_values({name: value for name, (value, _) in zeros.items()}), plan), plan, left
+
+
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
     """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
     for _ in range(2):
@@ -71,11 +96,18 @@ def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan |
     numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers)
     problem = problem.with_values(solution.values)
-    posterior = joint(problem, solution, {**given.held, **given.held_rig}).without(given.held_rig)
+    posterior = joint(problem, solution, {**given.held, **given.held_rig})
+    known = {name: problem.value(name) for name in given.held_rig}
+    absent = [name for name, value in known.items() if value == BY_ERROR[name].undisturbed]
+    posterior = posterior.without(absent)
     stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
-        rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
+        rig={
+            name: (value, stderr[name])
+            for name, value in {**solution.values, **known}.items()
+            if error_of(name) and name not in absent
+        },
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
         problem=problem,

@@ -25,7 +25,7 @@ from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.measured import Measured
 from mffit.points import Points
-from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.rig_errors import UNITS, WORDS, ZEROS, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
@@ -211,9 +211,9 @@ def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands
     )
     band, exact = (to_uncertainty(half, half) for half in (bands.half, bands.half_of_exact_zeros))
     return (
-        f"on a flat track with one set-up, zeros of the rig ({found}) look almost like ply-steer, conicity and residual torque: "
-        f"the 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with these known exactly. Turn the tyre on its rim "
-        "(mount), repeat set-ups (setup), or state a better rig (u_ keys of [rig])"
+        f"on a flat track with one set-up, zeros of the rig ({found}) look almost like the tyre's own asymmetries, such as "
+        f"ply-steer, conicity and residual torque: the 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with "
+        "these known exactly. Turn the tyre on its rim (mount), repeat set-ups (setup), or state a better rig (u_ keys of [rig])"
     )
 
 
@@ -291,7 +291,12 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
-    """The coefficients at a limit of the table, rare ones, and those at a limit of the curves; bounds by hand do not count."""
+    """What is at a limit, in words."""
+    return "; ".join(f"{word}: {', '.join(names)}" for word, names in at_limits(fitted).items() if names)
+
+
+def at_limits(fitted: Fitted) -> dict[str, list[str]]:
+    """Numbers at a limit of the table, rare ones, and those at a limit of the curves, by words; bounds by hand do not count."""
     at_bound = fitted.at_bound - fitted.hand.bounded.keys()
     rare = {
         n.name
@@ -301,15 +306,12 @@ def _held_by_bounds(fitted: Fitted) -> str:
         and BY_NAME[n.name].rare(fitted.values[n.name])
         and not BY_NAME[n.name].rare(n.expected)
     }
-    words = (
-        ("at the bound of plausible values", at_bound - fitted.at_limit),
-        (f"outside {RARE}", rare - at_bound),
-        (
-            "at a limit of the curves, such as E <= 1",
-            at_bound & fitted.at_limit,
-        ),
-    )
-    return "; ".join(f"{word}: {', '.join(sorted(names))}" for word, names in words if names)
+    words = {
+        "at the bound of plausible values": at_bound - fitted.at_limit,
+        f"outside {RARE}": rare - at_bound,
+        "at a limit of the curves, such as E <= 1": at_bound & fitted.at_limit,
+    }
+    return {word: sorted(names) for word, names in words.items()}
 
 
 SCALED = {
@@ -416,6 +418,5 @@ def remarks(
 
 
 def zeros_of_rig(fitted: Fitted) -> dict[str, tuple[float, float]]:
-    """The fitted zeros of the rig that show in Fy and Mz, with standard uncertainties."""
-    sideways = (error.name for error in ZEROS if error.shows_in(SIDEWAYS))
-    return {name: fitted.rig[name] for name in sideways if name in fitted.rig}
+    """The zeros of the rig as the fit has them, with standard uncertainties."""
+    return {error.name: fitted.rig[error.name] for error in ZEROS if error.name in fitted.rig}

@@ -94,15 +94,16 @@ def with_further(given: Variances, further: np.ndarray) -> Variances:
 
 
 def most_probable(
-    model: Mixed, smooth: SmoothFunctions, first: Components, misfit: float, further: np.ndarray
+    model: Mixed, smooth: SmoothFunctions, near: Components | None, misfit: float, further: np.ndarray
 ) -> Components:
-    """The components of the largest evidence, near their first guess; ``misfit`` is the size of the residuals.
+    """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
 
-    ``further`` are logarithms of the variances of numbers that the common ones have behind the functions of ``smooth``.
+    The search begins at those of a similar fit that are ``near``, if there is one. ``further`` are logarithms of the variances
+    of numbers that the common ones have behind the functions of ``smooth``.
     """
-    begin = first.logarithms
+    guess = Components.guess(smooth, misfit).logarithms
     usual = float(np.log(constants.USUAL_RATIO))
-    has_prior = np.ones(len(begin))
+    has_prior = np.ones(len(guess))
     has_prior[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
@@ -110,16 +111,17 @@ def most_probable(
         found = model.evidence(with_further(given, further))
         slope = found.common[: len(by_common)] @ by_common + found.own @ by_own
         slope[-1] += 2.0 * found.noise
-        far = has_prior * (x - begin) / usual
+        far = has_prior * (x - guess) / usual
         return -found.value + 0.5 * float(far @ far), -slope + far / usual
 
     readings = sum(len(group) for group in model.groups)
+    bounds = _bounds(smooth, misfit)
     found = minimize(
         loss,
-        begin,
+        guess if near is None else np.clip(near.logarithms, *np.transpose(bounds)),
         jac=True,
         method="L-BFGS-B",
-        bounds=_bounds(smooth, misfit),
+        bounds=bounds,
         options={
             "maxiter": int(constants.COMPONENT_STEPS),
             "ftol": constants.COMPONENT_TOLERANCE / max(readings, 1),

@@ -158,7 +158,7 @@ class LinearisedChannel:
     def gain(self, change: np.ndarray) -> float:
         """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
-        found = _found(without, self.smooth, self.unit, self.declared)
+        found = _found(without, self.smooth, self.unit, self.declared, self.components)
         return self.stride * (_evidence(without, found, self.smooth, self.declared) - self._evidence)
 
 
@@ -178,6 +178,28 @@ class LinearisedFit:
     numbers: tuple[Uncertain, ...]  #: (k,) coefficients and rig errors
     channels: Mapping[str, LinearisedChannel]
 
+    @property
+    def zeros(self) -> dict[str, tuple[float, float]]:
+        """The fitted zeros of the rig beside what the formula misses: changes of their values, and standard uncertainties.
+
+        The coefficients are as they are. A constant that the formula may miss belongs to a zero only as far as its declared
+        uncertainty exceeds the size of such constants; all channels together say how far.
+        """
+        rig = _of_rig(self.numbers)
+        free = np.array([error_of(number.name) in ZEROS and not number.held for number in rig], dtype=bool)
+        zeros = [number for number, own in zip(rig, free, strict=True) if own]
+        information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
+        for channel in self.channels.values():
+            m = len(channel.missed)
+            model = _beside(channel.alone, rig, m, free)
+            given = channel.variances._replace(common=channel.variances.common[:m])
+            found = replace(model, common=model.common[:, :m]).further(given, model.common[:, m:])
+            information, pull = information + found.information, pull + found.pull
+        covariance = inverse(information)
+        change = np.array([number.expected for number in zeros]) + covariance @ pull
+        u = np.sqrt(np.diag(covariance))
+        return dict(zip([n.name for n in zeros], zip(change.tolist(), u.tolist(), strict=True), strict=True))
+
 
 def linearised(
     points: Points,
@@ -186,6 +208,7 @@ def linearised(
     numbers: Sequence[Uncertain],
     only: Iterable[str] | None = None,
     without: np.ndarray | None = None,
+    near: LinearisedFit | None = None,
 ) -> LinearisedFit:
     """The linear model of what a simulation leaves of the points.
 
@@ -197,6 +220,7 @@ def linearised(
     numbers : of the fit, each with a prior
     only : channels to look at; all that were fitted if None
     without : rows of the points that the simulation was not fitted to, and that do not say what is usual
+    near : the same of a similar fit to these points, from which the search for the components begins
     """
     readings = simulation.readings(points, sigma)
     felt = simulation.felt(points)
@@ -205,7 +229,12 @@ def linearised(
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
             sight = _Sight(
-                points, felt, simulation, numbers, np.zeros(0, int) if without is None else without
+                points,
+                felt,
+                simulation,
+                numbers,
+                np.zeros(0, int) if without is None else without,
+                {} if near is None else {n: own.components for n, own in near.channels.items()},
             )
             found[name] = _channel(name, sight, readings[name], sigma[name], used)
     return LinearisedFit(tuple(numbers), found)
@@ -219,6 +248,7 @@ class _Sight(NamedTuple):
     simulation: Simulation
     numbers: Sequence[Uncertain]
     without: np.ndarray
+    near: Mapping[str, Components]  #: by channel
 
 
 def _channel(
@@ -252,7 +282,7 @@ def _channel(
         own=own / unit[:, None],
         groups=[own for own in (g[known[g]] for g in groups) if len(own)],
     )
-    components = _found(alone, smooth, unit, declared)
+    components = _found(alone, smooth, unit, declared, sight.near.get(name))
     turn = _turn(sight.numbers, (slopes / sigma[rows][:, None])[known], stride)
     of_functions, _, _ = variances(components.logarithms, smooth)
     return LinearisedChannel(
@@ -279,15 +309,25 @@ def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given:
     """
     functions = len(given.common)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
-    expected = np.array([number.expected for number in rig])
-    columns = alone.common[:, functions:]
-    model = replace(
-        alone,
-        residual=alone.residual + columns[:, stays] @ expected[stays],
-        common=np.hstack([alone.common[:, :functions], columns[:, ~stays]]),
-    )
+    model = _beside(alone, rig, functions, ~stays)
     found = model.posterior(with_further(given, declared[~stays]))
     return np.asarray(found.mean[:functions])
+
+
+def _of_rig(numbers: Iterable[Uncertain]) -> list[Uncertain]:
+    """Those of the numbers that are errors of the rig."""
+    return [number for number in numbers if error_of(number.name) is not None]
+
+
+def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.ndarray) -> Mixed:
+    """The model with the coefficients as they are and only some (k,) errors of the rig free; all others are as fitted."""
+    columns = alone.common[:, functions:]
+    fitted = np.array([number.expected for number in rig])[~free]
+    return replace(
+        alone,
+        residual=alone.residual + columns[:, ~free] @ fitted,
+        common=np.hstack([alone.common[:, :functions], columns[:, free]]),
+    )
 
 
 def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np.ndarray:
@@ -305,8 +345,14 @@ def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np
     return model.evidence(with_further(given, further)).value
 
 
-def _found(model: Mixed, smooth: SmoothFunctions, unit: np.ndarray, further: np.ndarray) -> Components:
+def _found(
+    model: Mixed,
+    smooth: SmoothFunctions,
+    unit: np.ndarray,
+    further: np.ndarray,
+    near: Components | None = None,
+) -> Components:
     """The components of residuals over ``unit`` (n,); ``further`` are logarithms of the variances of further common numbers."""
     rows = np.concatenate(list(model.groups))
     misfit = max(rms((model.residual * unit)[rows]), 1e-12)
-    return most_probable(model, smooth, Components.guess(smooth, misfit), misfit, further)
+    return most_probable(model, smooth, near, misfit, further)

@@ -57,6 +57,14 @@ class Mixed:
             readings=sum(len(r) for *_, r in parts),
         )
 
+    @cached_property
+    def _group_of(self) -> np.ndarray:
+        """Number (n,) of the group of every row; -1 of one in none."""
+        out = np.full(len(self.residual), -1)
+        for k, g in enumerate(self.groups):
+            out[g] = k
+        return out
+
     def evidence(self, given: Variances) -> MixedEvidence:
         """The evidence of some variances."""
         found, sums = self.posterior(given), self._sums
@@ -139,10 +147,10 @@ class Mixed:
         block = np.zeros(2 * (len(rows),))
         whitened, moved = [], []
         begin, order = 0, []
-        for k, g in enumerate(self.groups):
-            out = np.flatnonzero(np.isin(g, rows))
-            if not len(out):
-                continue
+        of_rows = self._group_of[rows]
+        for k in np.unique(of_rows[of_rows >= 0]).tolist():
+            g = self.groups[k]
+            out = np.flatnonzero(np.isin(g, rows[of_rows == k]))
             z, x, r = self.own[g], self.common[g], self.residual[g]
             inverse = w * np.eye(len(g)) - w * w * z @ found.own[k] @ z.T
             block[begin : begin + len(out), begin : begin + len(out)] = inverse[np.ix_(out, out)]

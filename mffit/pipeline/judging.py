@@ -15,6 +15,7 @@ from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre
 from mffit.diagnosis.remains import OddSweep, Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
+from mffit.fit.wording import at_limits
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
@@ -53,6 +54,9 @@ def judged(
         left_out=left.left_out,
         linear=linear,
         held=left.held,
+        rig=full.rig,
+        at_limits=tuple(sorted({name for names in at_limits(full).values() for name in names})),
+        free=len(full.values),
         left=fitted.left,
         broken=tuple(_refused(files)),
         nominal=measured.nominal,

@@ -81,6 +81,7 @@ HYSTERESIS = _of_angle(
     unit="deg",
     meaning="true sideslip angle = reading - hysteresis sense, sense 1 or -1 as the sweep goes up or down",
     formula=lambda width, alpha, at: alpha - width * (RADIANS * at.sense),
+    known_sign=1,
     spread=0.1,
     limits=(-2.0, 2.0),
     seen_as=(

@@ -20,7 +20,9 @@ def _warmed(k: Any, value: Any, at: Any) -> Any:
 
 
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
-_of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, limits=(-0.05, 0.05))
+_of_temperature = partial(
+    RigError, unit="1/K", kind="environment", formula=_warmed, limits=(-0.05, 0.05), known_sign=-1
+)
 _of_run = partial(
     RigError,
     unit="-",

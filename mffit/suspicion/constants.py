@@ -83,6 +83,11 @@ CERTAIN_SIGMA = Real(
 DOUBTFUL_SIGMA = Real(
     3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
 )
+LIMITS_IN_DOUBT = Real(
+    0.1,
+    "-",
+    "Share of the fitted coefficients at limits above which a file is in doubt: a fit to all that a tyre does has one or two.",
+)
 USUAL_PUBLISHED_EPSILON = Real(
     -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
 )

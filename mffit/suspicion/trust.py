@@ -18,7 +18,13 @@ from typing import Any
 import numpy as np
 from scipy.special import chdtr, chdtrc, fdtrc, ndtr
 
-from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
+from mffit.constants import (
+    COVERAGE_FACTOR_95,
+    FALSE_ALARM,
+    LEAST_PREDICTED_SHARE,
+    NAMED_IN_SENTENCE,
+    ODD_SWEEP_RATIO,
+)
 from mffit.linearised import LinearisedFit
 from mffit.linearised.inputs import word_of
 from mffit.measured import Drift, LoadResult, SideslipZeros
@@ -27,6 +33,8 @@ from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
 from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig import Readings
+from mffit.rig_errors import error_of, shown, words_of
+from mffit.rounding import rounded
 from mffit.scatter import EFFICIENCY, finite_median, rms
 from mffit.suspicion import constants
 from mffit.suspicion.others import Doubt
@@ -81,6 +89,12 @@ class FinishedFit(JudgedMeasurement):
     undeclared: str = ""  #: key of [rig] that declares the cause as absent; empty if none does
     cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
     held: tuple[HeldNumber, ...] = ()
+    rig: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Errors of the rig and terms of the environment as fitted, with standard uncertainties."""
+    at_limits: tuple[
+        str, ...
+    ] = ()  #: free coefficients at bounds, at physical limits or outside the range of usual tyres
+    free: int = 0  #: coefficients that the fit frees
     left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
     broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
     stranger: str = (
@@ -364,6 +378,34 @@ def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
+    id="many-at-limits",
+    outcome=Outcome.WARNED,
+    sentence="{count} of {free} fitted coefficients are at a limit or outside the range of usual tyres ({names}): these "
+    "limits decide what the sweeps do not show of this tyre; give a base of a similar tyre ([tyre] base), or more conditions",
+)
+def many_at_limits(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Share of the fitted coefficients that bounds, physical limits or no published tyre would have."""
+    if len(fit.at_limits) > constants.LIMITS_IN_DOUBT * fit.free:
+        yield {"count": len(fit.at_limits), "free": fit.free, "names": ", ".join(fit.at_limits)}
+
+
+@of_model(
+    id="sign-of-no-other-tyre",
+    outcome=Outcome.WARNED,
+    sentence="{what} is {value} +- {u} {unit}, and has the other sign in all published tyres and rigs: it takes up something "
+    "else; repeat a condition to see whether it is there",
+)
+def sign_of_no_other(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Sign of a temperature term or of a hysteresis, beyond its 95 % uncertainty."""
+    for name, (number, spread) in fit.rig.items():
+        error = error_of(name)
+        if error is not None and error.known_sign * number < -COVERAGE_FACTOR_95 * spread:
+            *found, unit = shown(name, number, spread)
+            value, u = rounded(*found)
+            yield {"what": words_of(name), "value": value, "u": u, "unit": unit}
+
+
+@of_model(
     id="misfit-far-below-noise",
     outcome=Outcome.WARNED,
     sentence="the model misses {channel} by {ratio:.2g} times its stated uncertainty only, so that the readings and their "
@@ -467,6 +509,8 @@ OF_TRUST = (
     unpublished,
     hand_against_data,
     declared_absent,
+    many_at_limits,
+    sign_of_no_other,
     far_below_noise,
     effect_left,
     structure_left,

@@ -201,7 +201,6 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
     phi_t = side / (machine.faults["path_radius_m"] + settings.outward - crown)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
     load = settings.Fz * _product(LOADS, settings, machine)
-    gamma = settings.gamma + _sum(LEANS, settings, machine)
     out, state = evaluate(
         mounted,
         load,

@@ -31,12 +31,20 @@ class Confounding:
 
     setting: str  #: in words, as in :data:`mffit.points.levels.KINDS`
     correlation: float  #: correlation ratio of temperature and setting, 0 to 1
-    coefficient: str  #: the one that suffers most
+    coefficient: (
+        str  #: of those that the setting determines the one that suffers most; empty if none is fitted
+    )
     growth: float  #: its standard uncertainty over that if the temperature terms were known
+
+    @property
+    def widens(self) -> bool:
+        """Whether a coefficient becomes uncertain by it."""
+        return self.growth > constants.WIDER_BANDS
 
 
 def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
-    """Settings with which the temperature runs along so much that coefficients become uncertain.
+    """Settings with which the temperature runs along so much that coefficients become uncertain, or that more than half of its
+    scatter is theirs.
 
     ``fitted`` may model the temperature or not; both cases are computed with its terms free.
     """
@@ -49,8 +57,9 @@ def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
     out = []
     for setting, r in along.items():
         worst = max(_determined_by(setting, growth), key=lambda name: growth[name], default=None)
-        if worst is not None and growth[worst] > constants.WIDER_BANDS:
-            out.append(Confounding(setting, r, worst, growth[worst]))
+        found = Confounding(setting, r, worst or "", growth[worst] if worst else 1.0)
+        if found.widens or r**2 > 0.5:
+            out.append(found)
     return tuple(out)
 
 
@@ -93,11 +102,12 @@ def _growth(fitted: Fitted, temperature: Nuisance) -> dict[str, float]:
 def confounding_sentence(found: Confounding, *, modelled: bool) -> str:
     """What runs along, what it costs and what to do."""
     growth = f"{found.coefficient} {found.growth:.1f} times as uncertain as at one temperature"
-    effect = (
-        f"this makes {growth}"
-        if modelled
-        else f"the coefficients may contain the warming, and temperature terms would make {growth}"
-    )
+    if not found.widens:
+        effect = f"what the formula misses over the {found.setting} is taken for an effect of the temperature, and the reverse"
+    elif modelled:
+        effect = f"this makes {growth}"
+    else:
+        effect = f"the coefficients may contain the warming, and temperature terms would make {growth}"
     return (
         f"the tyre's temperature runs along with the {found.setting} (correlation {found.correlation:.2f}): {effect}; "
         f"repeat one {found.setting} warm and cold, or mix the order of the runs"

@@ -12,8 +12,9 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
-from mffit.fit.polish import first_fit, polish
+from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
+from mffit.linearised import LinearisedFit
 from mffit.progress import Progress
 from mffit.rig import Simulation
 
@@ -25,6 +26,7 @@ class NuisanceFit:
     plain: Fitted  #: without temperature as an input: its coefficients take up the warming
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
+    left: LinearisedFit | None = None  #: by the first fit, where that was looked at
 
     @property
     def at_temperature(self) -> bool:
@@ -37,14 +39,16 @@ def fit_with_nuisances(
 ) -> NuisanceFit:
     """The staged fit, then the influences that it should model, then the joint polish with these."""
     progress("fitting tyre and rig")
-    fitted = first_fit(problem, start, plan)
+    fitted, left = first_fit(problem, start, plan), None
+    if not config.rig.on_disc:
+        fitted, plan, left = with_known_zeros(fitted, problem, plan)
     choice = choose(config, fitted)
 
     if choice.modelled:
         progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-        return NuisanceFit(full, full, choice)
+        return NuisanceFit(full, full, choice, left)
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
@@ -52,7 +56,7 @@ def fit_with_nuisances(
     shift = np.array(
         [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
     )
-    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice)
+    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, left)
 
 
 def _polished(
