@@ -148,8 +148,10 @@ class Chain:
 
     def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
         """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""
-        follows, slope = lagged_setting(self.points.replace(alpha=alpha), plain(sigma))
-        return sigma.derived(follows, slope) if isinstance(sigma, Traced) else follows
+        read = plain(alpha)
+        follows, slope = lagged_setting(self.points.replace(alpha=read), plain(sigma))
+        # Small changes of the reading count as of a wheel that follows at once.
+        return alpha + (follows - read) + slope * (sigma - plain(sigma))
 
     def turned_by_moment(self, alpha: Any, give: Any) -> Any:
         """Sideslip (n,) [rad] of a wheel that its own moment turns by ``give`` [rad/Nm] from ``alpha``."""
