@@ -11,7 +11,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import FALSE_ALARM, VISIBLE_TEMPERATURE
+from mffit.constants import VISIBLE_TEMPERATURE
 from mffit.measured import wording
 from mffit.measured.axis import (
     SetupAngle,
@@ -122,8 +122,7 @@ def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]
     shares = shares_of_sweeps(points)
     if shares is None:
         return evidence, None
-    seen = shares.drift.chance < FALSE_ALARM
-    return (replace(evidence, shares=shares) if seen else evidence), shares.drift
+    return (replace(evidence, shares=shares) if shares.drift.counts else evidence), shares.drift
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:

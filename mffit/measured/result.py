@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.constants import COVERAGE_FACTOR_95, USUAL_CORNERING_STIFFNESS
+from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.uncertain import Contribution, Expanded, expanded
@@ -55,6 +55,11 @@ class Drift(NamedTuple):
     least: str  #: sweep with the smallest forces
     most: str  #: sweep with the largest forces
     apart: float  #: by which the two differ
+
+    @property
+    def counts(self) -> bool:
+        """Whether chance does not explain it, and it is more than the uncertainty that every slope at zero has anyway."""
+        return self.chance < FALSE_ALARM and self.scatter > constants.SLOPE_SHAPE
 
 
 class SetupResult(NamedTuple):

@@ -357,7 +357,7 @@ def _apart(found: SideslipZeros) -> dict[str, Any]:
 )
 def drift_between_sweeps(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     """Forces of conditions without sideslip that several sweeps repeat, where temperatures are not known."""
-    if measured.drift is not None and measured.drift.chance < FALSE_ALARM:
+    if measured.drift is not None and measured.drift.counts:
         yield measured.drift._asdict() | {"percent": 100.0 * measured.drift.apart}
 
 

@@ -27,7 +27,9 @@ def sweeps():
 
 
 def test_both_forward_models_run_every_path():
-    faults = {"path_radius_m": TRUE, "F0_N": 7.0, "gamma_0_deg": 0.3}
+    faults = {
+        "path_radius_m": TRUE, "F0_N": 7.0, "gamma_0_deg": 0.3, "crown_m": 0.08, "disc_tilt_deg_per_kN": 0.3,
+    }  # fmt: skip
     content = disc(faults=faults, noise={}, sweep=sweeps())
     campaign = virtual_rig.run(virtual_rig.load_plan(content, folder=SAMPLE), truth())
     assert [{k: v for k, v in e.items() if k != "file"} for e in campaign.configuration["sweep"]] == list(

@@ -102,3 +102,33 @@ def test_only_conicity_changes_with_the_mount(tyre):
     assert change == pytest.approx(-conicity, rel=0.1)
     ply_steer = tyre.replace(PVY1=0.0, PVY2=0.0, PEY3=0.0)
     assert np.diff(steady(machine(ply_steer), s).Fy)[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_round_tread_that_leans_to_the_centre_rolls_on_a_smaller_circle(tyre):
+    """The centre is to the left, to which the top leans at negative camber: the contact point follows it."""
+    read = steady(machine(tyre, crown_m=0.08), settings(0.0, [-30.0, 30.0])).Fy
+    for Fy, lean, radius in zip(read, (-30.0, 30.0), (R - 0.04, R + 0.04), strict=True):
+        there = tyre(1400.0, 0.0, np.radians(lean), phi_t=-1.0 / radius, Vx=6.0, p=240e3)
+        assert Fy == pytest.approx(there.Fy)
+
+
+def test_a_disc_that_gives_way_slopes_outwards_under_the_wheel(tyre):
+    """Seen from a surface that slopes to the right, an upright wheel leans to the left: negative camber."""
+    read = steady(machine(tyre, disc_tilt_deg_per_kN=0.5), settings(0.0)).Fy
+    assert read[0] == pytest.approx(tyre(1400.0, 0.0, np.radians(-0.7), phi_t=-1 / R, Vx=6.0, p=240e3).Fy)
+
+
+def test_a_load_cell_that_leans_further_than_the_wheel_reads_part_of_the_load(tyre):
+    """Its axis is turned by a share of the sine of camber: the component of the whole force along that axis."""
+    lean = np.radians([-40.0, 25.0])
+    true = steady(machine(tyre), settings(0.0, np.degrees(lean)))
+    read = steady(machine(tyre, crosstalk_camber=1e-3), settings(0.0, np.degrees(lean)))
+    turned = 1e-3 * np.sin(lean)
+    np.testing.assert_allclose(read.Fy, true.Fy * np.cos(turned) + 1400.0 * np.sin(turned), atol=1e-3)
+    assert np.max(np.abs(read.Fy - true.Fy)) > 0.5
+
+
+def test_a_zero_that_turns_with_the_rolling_looks_like_a_sideslip_force(tyre):
+    way = np.array([1, -1])
+    read = steady(machine(tyre, F0_direction_N=10.0), settings(0.0, direction=way)).Fy
+    np.testing.assert_allclose(read - steady(machine(tyre), settings(0.0, direction=way)).Fy, 10.0 * way)
