@@ -73,14 +73,16 @@ def with_known_zeros(
     left = left_by(fitted)
     if not any(channel.is_proven for channel in left.channels.values()):
         return fitted, plan, left
-    zeros = {name: (fitted.problem.value(name) + change, u) for name, (change, u) in left.zeros.items()}
+    found = left.zeros
+    spread = {n.name: n.spread for n in plan.rig if n.name in found}
+    # What is known with the coefficients as they are, and what these leave open, but no more than was declared.
+    u = {n: min(math.hypot(own, fitted.stderr[n]), spread[n]) for n, (_, own) in found.items()}
     plan = replace(
-        plan,
-        rig=tuple(n for n in plan.rig if n.name not in zeros),
-        held_rig={**plan.held_rig, **{name: u for name, (_, u) in zeros.items()}},
+        plan, rig=tuple(n for n in plan.rig if n.name not in found), held_rig={**plan.held_rig, **u}
     )
     here = replace(stated, simulation=fitted.simulation)
-    return polish(here.with_values({name: value for name, (value, _) in zeros.items()}), plan), plan, left
+    values = {name: fitted.problem.value(name) + change for name, (change, _) in found.items()}
+    return polish(here.with_values(values), plan), plan, left
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:

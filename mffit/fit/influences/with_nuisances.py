@@ -40,7 +40,8 @@ def fit_with_nuisances(
     """The staged fit, then the influences that it should model, then the joint polish with these."""
     progress("fitting tyre and rig")
     fitted, left = first_fit(problem, start, plan), None
-    if not config.rig.on_disc:
+    one_mount = len(np.unique(problem.points.mount)) < 2
+    if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
         fitted, plan, left = with_known_zeros(fitted, problem, plan)
     choice = choose(config, fitted)
 

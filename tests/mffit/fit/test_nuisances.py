@@ -16,7 +16,7 @@ import tir
 from mffit import config as configuration
 from mffit import fit as fitting
 from mffit.errors import InputError
-from mffit.fit.influences.confounding import confoundings
+from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
@@ -204,6 +204,22 @@ def test_a_temperature_that_follows_the_sideslip_is_criticised(warmed):
     assert row.correlation > 0.9
     assert row.coefficient[:2] in ("PD", "PE", "PC", "PK")
     assert row.growth > 1.5
+
+
+def test_a_temperature_that_mostly_follows_the_load_is_said_though_no_coefficient_suffers(warmed):
+    """What the formula misses over the load is then taken for the warming, however well the readings tell both apart."""
+    search = warmed[0].fit.search
+    points = search.problem.points
+    random = np.random.default_rng(7)
+    T = 30.0 + 10.0 * (
+        points.Fz / points.Fz.mean()
+        + 0.6 * np.std(points.Fz) / points.Fz.mean() * random.normal(size=len(points))
+    )
+    found = confoundings(replace(search, problem=replace(search.problem, points=points.replace(T=T))))
+    (row,) = [row for row in found if row.setting == "load"]
+    assert 0.75 < row.correlation < 0.95
+    assert not row.widens
+    assert "what the formula misses over the load" in confounding_sentence(row, modelled=True)
 
 
 def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):

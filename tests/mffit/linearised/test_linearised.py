@@ -78,3 +78,28 @@ def test_a_single_reading_shows_a_constant_at_most():
     assert channel.size <= np.abs(one.Fy - simulation().readings(one).Fy)[0]
     assert channel.smooth.inputs == ()
     assert np.all(np.isfinite(channel.posterior.root))
+
+
+def zero_of_Fy(points: Points, fitted: float) -> tuple[float, float]:
+    """The zero of Fy beside the miss, where a fit has some value [N] and 10 N were declared, and its uncertainty."""
+    numbers = (*NUMBERS, Uncertain("F0_N", -fitted, 10.0))
+    rig = simulation().with_numbers({"F0_N": fitted})
+    change, u = linearised(points, rig, {"Fy": np.full(len(points), NOISE)}, numbers).zeros["F0_N"]
+    return fitted + change, u
+
+
+@pytest.mark.parametrize("fitted", [0.0, 30.0])
+def test_a_zero_takes_up_no_constant_that_the_formula_may_miss(fitted):
+    """35 N at all readings are a third of the miss and three and a half declared uncertainties: they are the miss."""
+    points = drawn()
+    zero, u = zero_of_Fy(points.replace(Fy=points.Fy + 35.0), fitted)
+    assert abs(zero) < 15.0
+    assert 5.0 < u <= 10.0
+
+
+def test_a_zero_is_found_where_the_tyre_is_of_the_formula():
+    """To the mean of the offsets that the 24 runs have of their own."""
+    points = drawn(missed=0.0)
+    zero, u = zero_of_Fy(points.replace(Fy=points.Fy + 15.0), 0.0)
+    assert u == pytest.approx(OFFSET / np.sqrt(RUNS), rel=0.4)
+    assert zero == pytest.approx(15.0, abs=3.0 * u)

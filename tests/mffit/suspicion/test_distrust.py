@@ -255,3 +255,28 @@ def test_a_reversed_sign_comes_first_if_it_would_explain_the_value():
 def test_a_radius_that_cancels_is_not_blamed():
     (said,) = camber_reduction(0.6, R=1.32, radius_counts=False).reasons
     assert "does not change it" in said
+
+
+@pytest.mark.parametrize(("count", "doubted"), [(3, False), (12, True)])
+def test_a_file_that_limits_decide_is_in_doubt(count, doubted):
+    found = judged(noise(), at_limits=tuple(f"P{k}" for k in range(count)), free=90)
+    assert found.trusted
+    assert any(f"{count} of 90 fitted coefficients" in said for said in found.doubts) == doubted
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "u", "doubted"),
+    [
+        ("k_T_grip_per_K", 0.0032, 0.001, True),
+        ("k_T_grip_per_K", 0.0032, 0.002, False),
+        ("k_T_grip_per_K", -0.013, 0.001, False),
+        ("hysteresis_deg", -0.03, 0.005, True),
+        ("hysteresis_deg", 0.03, 0.005, False),
+        ("F0_N", -30.0, 1.0, False),
+    ],
+)
+def test_a_sign_that_no_other_tyre_has_is_a_doubt(name, value, u, doubted):
+    """Rubber loses grip and stiffness as it warms up, and a force lags behind its angle; a zero may have either sign."""
+    found = judged(noise(), rig={name: (value, u)})
+    assert found.trusted
+    assert any("has the other sign" in said for said in found.doubts) == doubted
