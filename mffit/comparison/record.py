@@ -10,6 +10,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.fit import Posterior
 from mffit.points import Points
+from mffit.prediction import Predictor
 from mffit.rig import Simulation
 from tir import Tyre
 from tir.parameters import BY_NAME
@@ -26,6 +27,9 @@ class ComparedSubject:
     tyre: Tyre
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
     known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
+    foretold: tuple[Predictor, Tyre] | None = (
+        None  #: what its build knows, and the fitted model of that; None if unknown
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,6 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, without_outliers
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.points.loading import Reading
-from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult
 from tir import Tyre
@@ -74,13 +73,6 @@ def build(
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress)
-        search = fitted.search
-        assert search is not None
-        assert fitted.left_by_formula is not None
-        left_by_formula = fitted.left_by_formula
-        if fitted.full is not search:
-            progress("finding what the formula of the plain file misses")
-            left_by_formula = fitting.left_by(search)
         progress("judging what the fit leaves")
         assert fitted.files is not None
         files = fitted.files.by_use
@@ -122,9 +114,7 @@ def build(
         seconds=time.perf_counter() - began,
         trust=trust,
         remains=left,
-        prediction=predictor(
-            reading.points, left_by_formula, {name: value for name, (value, _) in search.rig.items()}
-        ),
+        prediction=fitted.prediction,
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import tir
 from mffit import config as configuration
-from mffit import fleet
+from mffit import fleet, prediction
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
@@ -98,7 +98,12 @@ def _subject(path: Path) -> ComparedSubject:
     posterior = posterior_of(tyre, path)
     if posterior is None:
         return subject
-    return replace(subject, known=Posterior(posterior.names, posterior.root @ posterior.root.T))
+    subject = replace(subject, known=Posterior(posterior.names, posterior.root @ posterior.root.T))
+    try:
+        known, _, fitted = prediction.load(path.parent)
+    except InputError:  # of an earlier version
+        return subject
+    return replace(subject, foretold=(known, fitted))
 
 
 def _build_in(folder: Path) -> Specimen:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from mffit.linearised import LinearisedFit
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
@@ -17,7 +18,7 @@ from mffit.points import Points, main_path, make_points
 from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
-from mffit.rig import Simulation
+from mffit.rig import Readings, Simulation
 from mffit.rig_errors import ZEROS, error_of
 from tir import Tyre
 
@@ -35,6 +36,12 @@ class MissedChannel:
     noise: float  #: of a usual reading [unit of the channel]
     size: float  #: rms of what the formula misses at the readings [unit of the channel]
 
+    @property
+    def of_coefficients(self) -> np.ndarray:
+        """Covariance (k, k) of the coefficients."""
+        own = self.root[len(self.missed) :]
+        return np.asarray(own @ own.T)
+
     def at(self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What the file misses (n,), and its variance (n,).
 
@@ -49,6 +56,21 @@ class MissedChannel:
         known = np.sum((columns @ self.root) ** 2, axis=1)
         missed = columns[:, : len(self.missed)] @ self.missed
         return missed, known + (1.0 - likeness**2) * self.components.missed**2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictedForce:
+    """The force of a tyre at conditions (n,), and what is uncertain of it, in the unit of the channel."""
+
+    file: np.ndarray  #: of the property file
+    best: np.ndarray  #: with what the formula misses
+    variance: np.ndarray  #: of that as the mean force of the tyre
+    of_run: np.ndarray  #: variance of a reading of a new run around that mean
+
+    @property
+    def u_file(self) -> np.ndarray:
+        """Standard uncertainty with which a reading of a new run lies around the file."""
+        return np.asarray(np.sqrt((self.best - self.file) ** 2 + self.variance + self.of_run))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,22 +105,44 @@ class Predictor:
             The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
         """
         points = self._points(tyre, conditions)
-        plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
-        simulation = Simulation.of(fitted, turn_slip=self.curved)
-        forces, slopes = simulation.sensitivities(points, self.names, self.channels)
-        as_read = simulation.with_numbers(self.zeros).readings(points, self.channels)
+        plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
         found = conditions.copy()
-        for name, channel in self.channels.items():
+        simulation = Simulation.of(fitted, turn_slip=self.curved)
+        for name, one in self.forces(plain, simulation, points).items():
+            found[column(name)] = one.file
+            found[u_column(name)] = one.u_file
+            found[column(name, "best")] = one.best
+            found[f"u_{column(name, 'best')}"] = np.sqrt(one.variance)
+            found[f"u_{column(name, 'run')}"] = np.sqrt(one.variance + one.of_run)
+        return found
+
+    def forces(
+        self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
+    ) -> dict[str, PredictedForce]:
+        """The forces of a file of the build at points, whose conditions are used, in some or all fitted channels.
+
+        ``file`` and the fitted model are on a rig without errors.
+        """
+        names = [name for name in self.channels if channels is None or name in channels]
+        plain = file.readings(points, names)
+        forces, slopes = fitted.sensitivities(points, self.names, names)
+        as_read = fitted.with_numbers(self.zeros).readings(points, names)
+        found = {}
+        for name in names:
+            channel = self.channels[name]
             missed, variance, unstated = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
             of_rig = (as_read[name] - forces[name]) ** 2 + channel.noise**2
-            run = variance + unstated + channel.components.run_variance(best) + of_rig
-            found[column(name)] = plain[name]
-            found[u_column(name)] = np.sqrt((best - plain[name]) ** 2 + run)
-            found[column(name, "best")] = best
-            found[f"u_{column(name, 'best')}"] = np.sqrt(variance)
-            found[f"u_{column(name, 'run')}"] = np.sqrt(run)
+            of_run = unstated + channel.components.run_variance(best) + of_rig
+            found[name] = PredictedForce(plain[name], best, variance, of_run)
         return found
+
+    def band(
+        self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
+    ) -> Readings:
+        """Half widths (n,) of the 95 % bands of readings of a new run around a file of the build, as :meth:`forces`."""
+        found = self.forces(file, fitted, points, channels)
+        return Readings(**{name: COVERAGE_FACTOR_95 * one.u_file for name, one in found.items()})
 
     def _points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
         """The conditions as points; a temperature that is not stated is NaN, all others are nominal then."""
@@ -146,7 +190,9 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
         yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
 
 
-def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> Predictor:
+def predictor(
+    points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
+) -> Predictor:
     """What a build knows, for its folder.
 
     Parameters
@@ -154,17 +200,33 @@ def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> 
     points : of the build
     left : what its fitted model leaves of them
     rig : errors of the rig as fitted
+    known : those of them that count as exactly known, for what they cost otherwise
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():
         error = error_of(number)
-        if error in ZEROS and abs(value) >= abs(zeros.get(error.name, 0.0)):
+        if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    of_tyre = [i for i, number in enumerate(left.numbers) if error_of(number.name) is None]
-    channels = {}
-    for name, own in left.channels.items():
-        m = len(own.smooth.orders)
-        found = own.posterior
-        root = np.vstack([found.root[:m], own.turn[of_tyre] @ found.root[m:]])
-        channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
-    return Predictor(main_path(points), tuple(left.numbers[i].name for i in of_tyre), channels, zeros)
+    names = [number.name for number in left.numbers]
+    exact = [i for i, name in enumerate(names) if name in known]
+    of_tyre = [i for i, name in enumerate(names) if error_of(name) is None]
+    channels = {
+        name: MissedChannel(
+            own.smooth, own.components, own.missed, _root(own, of_tyre, exact), own.noise, own.size
+        )
+        for name, own in left.channels.items()
+    }
+    return Predictor(main_path(points), tuple(names[i] for i in of_tyre), channels, zeros)
+
+
+def _root(own: LinearisedChannel, of_tyre: Sequence[int], exact: Sequence[int]) -> np.ndarray:
+    """(m + k, r) whose product with its transpose is the covariance of weights and coefficients, given the exact numbers."""
+    functions, found = len(own.missed), own.posterior.root
+    of_numbers = own.turn @ found[functions:]
+    whole = np.vstack([found[:functions], of_numbers[of_tyre]])
+    if not exact:
+        return whole
+    # What the exact numbers share with the others is taken away.
+    directions, size, _ = np.linalg.svd(of_numbers[exact].T, full_matrices=False)
+    shared = directions[:, size > 1e-9 * size.max(initial=0.0)]
+    return np.asarray(whole - (whole @ shared) @ shared.T)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from mffit.config import Config
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
@@ -48,11 +46,7 @@ def fit_with_nuisances(
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
-    # The shift of all its coefficients together from those at one temperature is one more error of known size.
-    shift = np.array(
-        [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
-    )
-    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice)
+    return NuisanceFit(plain, full, choice)
 
 
 def _polished(
