@@ -207,26 +207,34 @@ def predictor(
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    names = [number.name for number in left.numbers]
-    exact = [i for i, name in enumerate(names) if name in known]
-    of_tyre = [i for i, name in enumerate(names) if error_of(name) is None]
+    of_tyre = [i for i, number in enumerate(left.numbers) if error_of(number.name) is None]
+    spread = {
+        i: 0.0 if number.name in known else number.spread
+        for i, number in enumerate(left.numbers)
+        if number.held or number.name in known
+    }
     channels = {
         name: MissedChannel(
-            own.smooth, own.components, own.missed, _root(own, of_tyre, exact), own.noise, own.size
+            own.smooth, own.components, own.missed, _root(own, of_tyre, spread), own.noise, own.size
         )
         for name, own in left.channels.items()
     }
-    return Predictor(main_path(points), tuple(names[i] for i in of_tyre), channels, zeros)
+    names = tuple(left.numbers[i].name for i in of_tyre)
+    return Predictor(main_path(points), names, channels, zeros)
 
 
-def _root(own: LinearisedChannel, of_tyre: Sequence[int], exact: Sequence[int]) -> np.ndarray:
-    """(m + k, r) whose product with its transpose is the covariance of weights and coefficients, given the exact numbers."""
+def _root(own: LinearisedChannel, of_tyre: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:
+    """(m + k, r) whose product with its transpose is the covariance of the weights and of the tyre's coefficients.
+
+    Numbers that the fit took as exact keep their values whatever the readings tell of them: they are as uncertain as before
+    (``spread``, by place among all numbers), and the others follow them.
+    """
     functions, found = len(own.missed), own.posterior.root
     of_numbers = own.turn @ found[functions:]
     whole = np.vstack([found[:functions], of_numbers[of_tyre]])
-    if not exact:
+    if not spread:
         return whole
-    # What the exact numbers share with the others is taken away.
-    directions, size, _ = np.linalg.svd(of_numbers[exact].T, full_matrices=False)
-    shared = directions[:, size > 1e-9 * size.max(initial=0.0)]
-    return np.asarray(whole - (whole @ shared) @ shared.T)
+    held = of_numbers[list(spread)]
+    back = np.linalg.pinv(held, rcond=1e-9)
+    follow = whole @ back  # also of themselves: 1
+    return np.hstack([whole - follow @ held, follow * [*spread.values()]])
