@@ -134,15 +134,18 @@ def _curves(
                 x=x,
                 first=a[channel],
                 second=b[channel],
-                half_first=None if half_a is None else half_a[channel],
-                half_second=None if half_b is None else half_b[channel],
+                half_first=None if half_a is None else half_a.get(channel),
+                half_second=None if half_b is None else half_b.get(channel),
             )
 
 
 def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tuple[Readings, Readings | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
-    band = None if side.known is None else side.known.band(simulation, where, channels)
+    band = None
+    if side.foretold is not None:
+        known, fitted = side.foretold
+        band = known.band(simulation, Simulation.of(fitted, turn_slip=known.curved), where, channels)
     return simulation.readings(where, channels), band
 
 

@@ -12,6 +12,7 @@ from mffit.brief import Brief
 from mffit.fit import Posterior
 from mffit.fleet import Specimen
 from mffit.points import Points
+from mffit.prediction import Predictor
 from mffit.rig import Simulation
 from tir import Tyre
 from tir.parameters import BY_NAME
@@ -32,6 +33,8 @@ class ComparedSubject:
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
     known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
     build: Specimen | None = None  #: that wrote the file with this covariance
+    #: What its build knows, and the fitted model of that; None if unknown.
+    foretold: tuple[Predictor, Tyre] | None = None
 
 
 @dataclass(frozen=True, slots=True)

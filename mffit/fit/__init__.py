@@ -3,7 +3,7 @@
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.drawn import ensemble
-from mffit.fit.fitted import left_by, with_free_epsilon
+from mffit.fit.fitted import with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
@@ -19,7 +19,6 @@ __all__ = [
     "file_names",
     "fit",
     "fitted_use",
-    "left_by",
     "name_at_temperature",
     "plain_use",
     "straight_cornering_stiffness",

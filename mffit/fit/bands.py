@@ -7,15 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import STRAIGHT
+from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
 from mffit.fit import constants
 from mffit.fit.coverage import side_run
-from mffit.fit.posterior import Posterior, spread_through
 from mffit.fit.ranges import sideslips_with_slip, tested_ranges
 from mffit.points import Points, levels, main_pressure, make_points
+from mffit.prediction import Predictor
 from mffit.rig import Simulation
 from mffit.scatter import rms
-from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,61 +56,61 @@ class Bands:
 
 
 def bands(
-    posterior: Posterior, held: Collection[str], tyre: Simulation, points: Points, zeros: Collection[str] = ()
+    known: Predictor,
+    held: Collection[str],
+    tyre: Simulation,
+    points: Points,
+    exact_zeros: Predictor | None = None,
 ) -> Bands:
-    """The bands of a fitted tyre on a straight path.
+    """The bands of a fitted tyre on a straight path, in which readings of a new run lie.
 
-    ``held`` names the coefficients that the fit took as exact, ``zeros`` the zeros of the rig that it determined with the tyre.
+    ``held`` names the coefficients that the fit took as exact; ``exact_zeros`` is what would be known with the zeros of the rig.
     """
     main = float(np.median(points.p[main_pressure(points)]))
     pressures = [*levels.level_values(points.p, levels.PRESSURE), float(tyre.values["NOMPRES"])]
     others = tuple(sorted({float(p) for p in pressures if abs(p - main) > levels.PRESSURE.tolerance}))
-    alone = posterior.given(zeros)
-    beside = {band.channel: band for band in _beside_sweeps(posterior, tyre, points)}
+    beside = {band.channel: band for band in _beside_sweeps(known, tyre, points)}
     elsewhere = _grid(points, others) if others else None
-    unseen, share = _widest(posterior, held, tyre, elsewhere) if elsewhere is not None else ("", 0.0)
+    unseen, share = _widest(known, held, tyre, elsewhere) if elsewhere is not None else ("", 0.0)
     return Bands(
         main=main,
-        half=_half(posterior, tyre, _grid(points, (main,))),
+        half=_half(known, tyre, _grid(points, (main,))),
         others=others,
-        half_of_others=_half(posterior, tyre, elsewhere) if elsewhere is not None else 0.0,
+        half_of_others=_half(known, tyre, elsewhere) if elsewhere is not None else 0.0,
         unseen=unseen if share > 0.5 else "",
         share=share,
-        half_of_exact_zeros=_half(alone, tyre, _grid(points, (main,))),
+        half_of_exact_zeros=_half(exact_zeros or known, tyre, _grid(points, (main,))),
         combined=beside.get("Fx"),
         other_side=beside.get("Fy"),
     )
 
 
-def _beside_sweeps(posterior: Posterior, tyre: Simulation, points: Points) -> Iterator[BandBesideSweeps]:
+def _beside_sweeps(known: Predictor, tyre: Simulation, points: Points) -> Iterator[BandBesideSweeps]:
     """The bands of Fx halfway to the only sideslip with slip, and of Fy opposite to the only side that was run."""
     found = []
     run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > STRAIGHT.rad]
-    if run and "Fx" in points.measured and len(set(levels.nearest_labels(np.abs(run), levels.SIDESLIP))) == 1:
+    if run and "Fx" in known.channels and len(set(levels.nearest_labels(np.abs(run), levels.SIDESLIP))) == 1:
         found.append(("Fx", run[-1], 0.5 * run[-1]))
     if side_run(points) and not np.any(points.phi_t):
         alpha = float(points.alpha[np.argmax(np.abs(points.alpha))])
         found.append(("Fy", alpha, -alpha))
     for channel, at, beside in found:
-        halves = [_half(posterior, tyre, _at_sideslip(points, channel, x), channel) for x in (at, beside)]
+        halves = [_half(known, tyre, _at_sideslip(points, channel, x), channel) for x in (at, beside)]
         yield BandBesideSweeps(channel, at, halves[0], beside, halves[1])
 
 
-def _half(posterior: Posterior, tyre: Simulation, where: Points, channel: str = "Fy") -> float:
+def _half(known: Predictor, tyre: Simulation, where: Points, channel: str = "Fy") -> float:
     """Rms half width of the 95 % band of a channel."""
-    return rms(posterior.band(tyre, where, (channel,))[channel])
+    return rms(known.band(tyre, tyre, where, (channel,))[channel])
 
 
-def _widest(
-    posterior: Posterior, held: Collection[str], tyre: Simulation, where: Points
-) -> tuple[str, float]:
+def _widest(known: Predictor, held: Collection[str], tyre: Simulation, where: Points) -> tuple[str, float]:
     """The held coefficient that, if it were exactly known, would narrow the band of Fy most, and its share of the variance."""
-    rows = [i for i, name in enumerate(posterior.names) if name in BY_NAME]
-    names, covariance = [posterior.names[i] for i in rows], posterior.covariance[np.ix_(rows, rows)]
-    slopes = tyre.sensitivities(where, names)[1].Fy
+    covariance = known.channels["Fy"].covariance
+    slopes = tyre.sensitivities(where, known.names, ("Fy",))[1].Fy
     across = np.mean((slopes @ covariance) ** 2, axis=0) / np.maximum(np.diag(covariance), 1e-300)
-    whole = float(np.mean(spread_through(slopes, covariance) ** 2))
-    shares = {n: float(x) / whole for n, x in zip(names, across, strict=True) if n in held and whole}
+    whole = (_half(known, tyre, where) / COVERAGE_FACTOR_95) ** 2
+    shares = {n: float(x) / whole for n, x in zip(known.names, across, strict=True) if n in held and whole}
     return max(shares.items(), key=lambda row: row[1], default=("", 0.0))
 
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.posterior import Posterior
+from mffit.fit.posterior import Posterior, beside_held
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber, solve
+from mffit.least_squares import FreeNumber, inverse, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
@@ -79,6 +79,43 @@ def left_by(
     numbers += [Uncertain(name, 0.0, u, held=True) for name, u in fitted.taken_as_exact.items()]
     problem = of or fitted.problem
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
+
+
+def told_by_readings(
+    fitted: Fitted, left: LinearisedFit, names: Sequence[str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Information (k, k) of all readings about numbers, and the pull (k,) on them where they are; without priors.
+
+    The errors of the readings are those of the linear model of what the fit leaves: what the formula misses is common to all
+    runs, and each run has its own, so that runs count and not readings.
+    """
+    problem = fitted.problem
+    residual, by_radii = problem.radii_rows(names)
+    information, pull = by_radii.T @ by_radii, -by_radii.T @ residual
+    for name, channel in left.channels.items():
+        part = problem.points.select(channel.rows, with_table=False)
+        told = channel.told_of(fitted.simulation.sensitivities(part, names, [name])[1][name])
+        information, pull = information + told.information, pull + told.pull
+    return information, pull
+
+
+def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
+    """The fit with the uncertainty of its numbers by errors of the readings as the linear model of what it leaves describes them.
+
+    The fit weighs its readings as independent. That its numbers are not the most probable ones of that model counts as an error
+    of this size.
+    """
+    held = {**fitted.held, **fitted.held_rig}
+    numbers = [uncertain(number) for number in fitted.problem.starting_here(fitted.numbers)]
+    free, k = [number.name for number in numbers], len(numbers)
+    information, pull = told_by_readings(fitted, left, [*free, *held])
+    precision = np.array([number.spread**-2.0 for number in numbers])
+    covariance = inverse(information[:k, :k] + np.diag(precision))
+    moved = covariance @ (pull[:k] + precision * [number.expected for number in numbers])
+    posterior = beside_held(free, covariance, held, information[:k, k:]).without(fitted.held_rig)
+    posterior.covariance[:k, :k] += np.outer(moved, moved)
+    rig = {name: (value, posterior.stderr[name]) for name, (value, _) in fitted.rig.items()}
+    return replace(fitted, posterior=posterior, rig=rig)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

@@ -18,7 +18,7 @@ from mffit.fit.borrowed.sister import sister_of
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import left_by
+from mffit.fit.fitted import left_by, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -45,6 +45,7 @@ from mffit.linearised import LinearisedFit
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
@@ -97,6 +98,10 @@ def fit(
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
+    left_by_file = left_by(fitted, near=left_by_formula) if found.at_temperature else left_by_formula
+    fitted = with_errors_of(fitted, left_by_file)
+    full = with_errors_of(full, left_by_formula) if found.at_temperature else fitted
+    found = replace(found, plain=fitted, full=full)
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
 
@@ -116,7 +121,11 @@ def fit(
     channels = agreement.with_points(readings, points)
     tyre = files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
-    wide = bands(made.posterior, fitted.held, simulation, points, zeros_of_rig(fitted))
+    found_rig = {name: value for name, (value, _) in fitted.rig.items()}
+    known_forces, with_zeros = (
+        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted))
+    )
+    wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
     modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)
     moved, contradicted = (
         ("", False) if turning is None else zeros_sentence(turning, fitted, from_base=base is not None)
@@ -159,6 +168,7 @@ def fit(
         confounded=confounded,
         radii=radii,
         bands=wide,
+        prediction=known_forces,
         lent=made.lent,
         relaxation=made.relaxation,
     )

@@ -55,15 +55,11 @@ class Posterior(Brief):
         part = across @ np.linalg.solve(self.covariance[np.ix_(known, known)], across.T)
         return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)] - part)
 
-    def shifted(self, shift: np.ndarray) -> Posterior:
-        """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""
-        return Posterior(self.names, self.covariance + np.outer(shift, shift))
-
     def band(self, tyre: Simulation, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
-        """Half width (n,) of the 95 % band of some channels at any conditions (n,).
+        """Half width (n,) of the 95 % band of some channels at any conditions (n,), if only the coefficients were uncertain.
 
-        It is the band of the tyre's forces, not of the rig's readings: rig errors count only through the coefficients that they
-        made uncertain. Of ``points`` only the set-points are used; ``tyre`` has no rig errors.
+        For channels that were not measured, of which nothing else is known. Of ``points`` only the set-points are used; ``tyre``
+        has no rig errors.
         """
         rows = [i for i, name in enumerate(self.names) if error_of(name) is None]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows], channels)[1]

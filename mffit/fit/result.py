@@ -20,6 +20,7 @@ from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
 from mffit.linearised import LinearisedFit
+from mffit.prediction import Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
 from mffit.suspicion import Doubt, Outlier
@@ -48,6 +49,7 @@ class FitResult(Brief):
     left_by_formula: LinearisedFit | None = field(
         default=None, repr=False
     )  #: of the readings by the full fit
+    prediction: Predictor | None = field(default=None, repr=False)  #: of forces at any conditions
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients

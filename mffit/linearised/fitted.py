@@ -13,7 +13,7 @@ from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import Components, most_probable, own_columns, variances, with_further
 from mffit.linearised.inputs import along, inputs_of, settings_of
-from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
+from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
@@ -68,6 +68,18 @@ class LinearisedChannel:
     def misfit(self) -> float:
         """Root mean square of the residuals over their stated noise."""
         return rms(self.model.residual)
+
+    def told_of(self, slopes: np.ndarray) -> FurtherColumns:
+        """What all readings tell of numbers beside the miss, runs and noise.
+
+        ``slopes`` (n, k) are derivatives of the readings of :attr:`rows` by the numbers.
+        """
+        functions, given = len(self.missed), self.variances
+        plain = replace(self.model, common=self.model.common[:, :functions])
+        of_all = given._replace(
+            common=given.common[:functions], noise=given.noise - float(np.log(self.stride))
+        )
+        return plain.further(of_all, slopes / self.unit[:, None])
 
     def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
         """Each sweep, or each set of ``rows`` counted as those of :attr:`rows`, as all other readings predict it."""

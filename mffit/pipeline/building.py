@@ -26,7 +26,7 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, without_outliers
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.points.loading import Reading
-from mffit.prediction import correction, predictor
+from mffit.prediction import correction
 from mffit.progress import Progress, silent
 from mffit.results import CORRECTION, BuildResult
 from tir import Tyre
@@ -75,13 +75,6 @@ def build(
         refuse_early(Path(out), (*names.values(), special, table, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress)
-        search = fitted.search
-        assert search is not None
-        assert fitted.left_by_formula is not None
-        left_by_formula = fitted.left_by_formula
-        if fitted.full is not search:
-            progress("finding what the formula of the plain file misses")
-            left_by_formula = fitting.left_by(search)
         progress("judging what the fit leaves")
         assert fitted.files is not None
         files = fitted.files.by_use
@@ -95,9 +88,10 @@ def build(
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
-        rig = {name: value for name, (value, _) in search.rig.items()}
-        known = predictor(reading.points, left_by_formula, rig)
-        proven = [name for name, own in left_by_formula.channels.items() if own.is_proven]
+        known = fitted.prediction
+        assert known is not None
+        assert fitted.left_by_formula is not None
+        proven = [name for name, own in fitted.left_by_formula.channels.items() if own.is_proven]
         missed = correction(known, files[fitting.fitted_use(names)].tyre, proven)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     notes = (*base_notes(config, base), *(f"{note}." for note in reading.notes))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import tir
 from mffit import config as configuration
-from mffit import fleet
+from mffit import fleet, prediction
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
@@ -105,7 +105,12 @@ def _subject(path: Path) -> ComparedSubject:
     if posterior is None:
         return subject
     known = Posterior(posterior.names, posterior.root @ posterior.root.T)
-    return replace(subject, known=known, build=build)
+    subject = replace(subject, known=known, build=build)
+    try:
+        foretold, _, fitted = prediction.load(path.parent)
+    except InputError:  # of an earlier version
+        return subject
+    return replace(subject, foretold=(foretold, fitted))
 
 
 def _build_in(folder: Path) -> Specimen:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from mffit.linearised import LinearisedFit
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.linearised import LinearisedChannel, LinearisedFit
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
@@ -17,7 +18,7 @@ from mffit.points import Points, main_path, make_points
 from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
-from mffit.rig import Simulation
+from mffit.rig import Readings, Simulation
 from mffit.rig_errors import ZEROS, error_of
 from tir import Tyre
 
@@ -35,6 +36,12 @@ class MissedChannel:
     calibrations."""
     noise: float  #: of a usual reading [unit of the channel]
     size: float  #: rms of what the formula misses at the readings [unit of the channel]
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance (k, k) of the coefficients and calibrations."""
+        own = self.root[len(self.missed) :]
+        return np.asarray(own @ own.T)
 
     def at(
         self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray, of_tyre: np.ndarray
@@ -62,6 +69,21 @@ class MissedChannel:
         """Correlation (n,) with what is missed at the nearest tested conditions, and the functions (n, m) times it."""
         likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
         return likeness, likeness[:, None] * self.smooth.columns(settings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictedForce:
+    """The force of a tyre at conditions (n,), and what is uncertain of it, in the unit of the channel."""
+
+    file: np.ndarray  #: of the property file
+    best: np.ndarray  #: with what the formula misses
+    variance: np.ndarray  #: of that as the mean force of the tyre
+    of_run: np.ndarray  #: variance of a reading of a new run on the same rig around the best estimate
+
+    @property
+    def u_file(self) -> np.ndarray:
+        """Standard uncertainty with which a reading of a new run lies around the file."""
+        return np.asarray(np.sqrt((self.best - self.file) ** 2 + self.of_run))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,22 +118,44 @@ class Predictor:
             The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
         """
         points = self.points(tyre, conditions)
-        plain = Simulation.of(tyre, turn_slip=tyre.turn_slip).readings(points, self.channels)
-        simulation = Simulation.of(fitted, turn_slip=self.curved)
-        forces, slopes = simulation.sensitivities(points, self.names, self.channels)
-        as_read = simulation.with_numbers(self.zeros).readings(points, self.channels)
+        plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
         found = conditions.copy()
-        for name, channel in self.channels.items():
+        simulation = Simulation.of(fitted, turn_slip=self.curved)
+        for name, one in self.forces(plain, simulation, points).items():
+            found[column(name)] = one.file
+            found[u_column(name)] = one.u_file
+            found[column(name, "best")] = one.best
+            found[f"u_{column(name, 'best')}"] = np.sqrt(one.variance)
+            found[f"u_{column(name, 'run')}"] = np.sqrt(one.of_run)
+        return found
+
+    def forces(
+        self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
+    ) -> dict[str, PredictedForce]:
+        """The forces of a file of the build at points, whose conditions are used, in some or all fitted channels.
+
+        ``file`` and the fitted model are on a rig without errors.
+        """
+        names = [name for name in self.channels if channels is None or name in channels]
+        plain = file.readings(points, names)
+        forces, slopes = fitted.sensitivities(points, self.names, names)
+        as_read = fitted.with_numbers(self.zeros).readings(points, names)
+        found = {}
+        for name in names:
+            channel = self.channels[name]
             missed, variance, of_reading = self._missed(channel, points, slopes[name])
             best = forces[name] + missed
             of_rig = (as_read[name] - forces[name]) ** 2 + channel.noise**2
-            run = of_reading + channel.components.run_variance(best) + of_rig
-            found[column(name)] = plain[name]
-            found[u_column(name)] = np.sqrt((best - plain[name]) ** 2 + run)
-            found[column(name, "best")] = best
-            found[f"u_{column(name, 'best')}"] = np.sqrt(variance)
-            found[f"u_{column(name, 'run')}"] = np.sqrt(run)
+            of_run = of_reading + channel.components.run_variance(best) + of_rig
+            found[name] = PredictedForce(plain[name], best, variance, of_run)
         return found
+
+    def band(
+        self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
+    ) -> Readings:
+        """Half widths (n,) of the 95 % bands of readings of a new run around a file of the build, as :meth:`forces`."""
+        found = self.forces(file, fitted, points, channels)
+        return Readings(**{name: COVERAGE_FACTOR_95 * one.u_file for name, one in found.items()})
 
     def missed(self, name: str, points: Points) -> np.ndarray:
         """What the file misses (n,) of a channel, without uncertainty."""
@@ -169,7 +213,9 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
         yield np.array(columns, dtype=float).reshape(len(inputs), len(points)).T
 
 
-def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> Predictor:
+def predictor(
+    points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
+) -> Predictor:
     """What a build knows, for its folder.
 
     Parameters
@@ -177,17 +223,41 @@ def predictor(points: Points, left: LinearisedFit, rig: Mapping[str, float]) -> 
     points : of the build
     left : what its fitted model leaves of them
     rig : errors of the rig as fitted
+    known : those of them that count as exactly known, for what they cost otherwise
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():
         error = error_of(number)
-        if error in ZEROS and abs(value) >= abs(zeros.get(error.name, 0.0)):
+        if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
     kept = [i for i, n in enumerate(left.numbers) if (error := error_of(n.name)) is None or error.is_gain]
-    channels = {}
-    for name, own in left.channels.items():
-        m = len(own.smooth.orders)
-        found = own.posterior
-        root = np.vstack([found.root[:m], own.turn[kept] @ found.root[m:]])
-        channels[name] = MissedChannel(own.smooth, own.components, own.missed, root, own.noise, own.size)
-    return Predictor(main_path(points), tuple(left.numbers[i].name for i in kept), channels, zeros)
+    spread = {
+        i: 0.0 if number.name in known else number.spread
+        for i, number in enumerate(left.numbers)
+        if number.held or number.name in known
+    }
+    channels = {
+        name: MissedChannel(
+            own.smooth, own.components, own.missed, _root(own, kept, spread), own.noise, own.size
+        )
+        for name, own in left.channels.items()
+    }
+    names = tuple(left.numbers[i].name for i in kept)
+    return Predictor(main_path(points), names, channels, zeros)
+
+
+def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:
+    """(m + k, r) whose product with its transpose is the covariance of the weights and of the numbers kept.
+
+    Numbers that the fit took as exact keep their values whatever the readings tell of them: they are as uncertain as before
+    (``spread``, by place among all numbers), and the others follow them.
+    """
+    functions, found = len(own.missed), own.posterior.root
+    of_numbers = own.turn @ found[functions:]
+    whole = np.vstack([found[:functions], of_numbers[kept]])
+    if not spread:
+        return whole
+    held = of_numbers[list(spread)]
+    back = np.linalg.pinv(held, rcond=1e-9)
+    follow = whole @ back  # also of themselves: 1
+    return np.hstack([whole - follow @ held, follow * [*spread.values()]])

@@ -37,7 +37,7 @@ u_slip_alignment_N = 25
 
 
 class Brush(NamedTuple):
-    """Numbers of the tyre, at 1700 N."""
+    """Numbers of the tyre, at its nominal load."""
 
     a: float = 0.05  #: half length of the contact [m]
     stiffness: float = 4.0e6  #: of the bristles [N/m^2]
@@ -46,21 +46,37 @@ class Brush(NamedTuple):
     fading: float = 0.6  #: relative loss of grip per slip of 1
     crown: float = 0.3  #: pressure in the middle over a parabola's
     reduction: float = -0.1  #: camber reduction factor
+    softening: float = -0.2  #: exponent of the load in the stiffness
+    b: float = 0.0  #: half width of the contact [m]
+    r_e: float = 0.3  #: [m]
+    nominal: float = 1700.0  #: load [N]
 
-    def forces(self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Fy [N] and Mz [Nm] in ISO-W at angles [rad] and loads [N], each (n,)."""
+    def forces(
+        self, alpha: np.ndarray, gamma: np.ndarray, Fz: np.ndarray, phi_t: float = 0.0, direction: float = 1.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Fy [N] and Mz [Nm] in ISO-W at angles [rad] and loads [N], each (n,), on a path of turn slip ``phi_t`` [1/m].
+
+        Rolling backwards (``direction`` -1) mirrors the contact front to rear.
+        """
         alpha, gamma, Fz = (np.asarray(x, dtype=float)[:, None] for x in (alpha, gamma, Fz))
         x = np.linspace(1.0, -1.0, 801)
-        over = Fz / 1700.0
+        over = Fz / self.nominal
         a = self.a * np.sqrt(over)
-        spin = -(1.0 - self.reduction) * np.sin(gamma) / 0.3
-        wanted = a * (1.0 - x) * -np.tan(alpha) + 0.5 * spin * a**2 * (1.0 - x**2)
+        spin = phi_t - (1.0 - self.reduction) * np.sin(gamma) / self.r_e
+        stiffness = self.stiffness * over**self.softening
+        sideways = stiffness * (a * (1.0 - x) * -np.tan(direction * alpha) + 0.5 * spin * a**2 * (1.0 - x**2))
         shape = (1.0 - x**2) * (1.0 + self.crown * (1.0 - 5.0 * x**2) / 4.0)
         grip = self.mu * (1.0 + self.mu_load * (over - 1.0)) / (1.0 + self.fading * np.abs(np.tan(alpha)))
         most = grip * Fz * 0.75 / a * np.maximum(shape, 0.0)
-        force = np.clip(self.stiffness * over**-0.2 * wanted, -most, most)
         length = 2.0 * a[:, 0] / (len(x) - 1)
-        return force.sum(axis=1) * length, (force * a * x).sum(axis=1) * length
+        Fy, Mz = np.zeros(len(length)), np.zeros(len(length))
+        strips = (0.0,) if self.b == 0.0 else self.b * np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
+        for y in strips:
+            along = -stiffness * spin * y * a * (1.0 - x)
+            held = np.minimum(1.0, most / np.maximum(np.hypot(along, sideways), 1e-9)) / len(strips)
+            Fy += (held * sideways).sum(axis=1) * length
+            Mz += (held * (sideways * a * x - along * y)).sum(axis=1) * length
+        return Fy, direction * Mz
 
 
 def sweeps() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:

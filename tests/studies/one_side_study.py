@@ -21,7 +21,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import STAGED, Band, Draw, on_disk
+from drawn_rigs import STAGED, Band, Draw, half_of_mean, on_disk
 from slip_study import FOUND, RIGHT, SPEED, UNSETTLED, VEHICLES, Kind, _drawn, sweeps
 
 import mffit
@@ -123,7 +123,7 @@ def _in_bands(
     tyre, truth = (Simulation(t.values, turn_slip=False) for t in (fit.tyre, true))
     channels = CHANNELS if combined else CHANNELS[1:]
     found, right = tyre.readings(where, channels), truth.readings(where, channels)
-    half = fit.posterior.band(tyre, where, channels)
+    half = half_of_mean(fit, tyre, where)
     return {
         name: Band(
             float(np.mean(np.abs(found[name] - right[name]) <= half[name])),

@@ -24,7 +24,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import SAMPLES, STAGED, Draw, on_disk, scaled
+from drawn_rigs import SAMPLES, STAGED, Draw, half_of_mean, on_disk, scaled
 from recovery_study import coverage
 
 import mffit
@@ -252,7 +252,7 @@ def _compare(
     for word, where in _ranges(kind, rng).items():
         found, truth = (tyre(**where, Vx=SPEED, turn_slip=False) for tyre in (fit.written, true))
         points = make_points(**where, V=SPEED, phi_t=0.0)
-        half = fit.posterior.band(Simulation(fit.written.values, turn_slip=False), points, CHANNELS)
+        half = half_of_mean(fit, Simulation(fit.written.values, turn_slip=False), points)
         for name in CHANNELS:
             gap = np.abs(getattr(found, name) - getattr(truth, name))
             within, banded = (float(np.mean(gap < reach)) for reach in (2.0 * sigma[name], half[name]))

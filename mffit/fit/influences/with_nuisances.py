@@ -53,11 +53,7 @@ def fit_with_nuisances(
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
-    # The shift of all its coefficients together from those at one temperature is one more error of known size.
-    shift = np.array(
-        [plain.values[n] - full.values[n] if n in full.values else 0.0 for n in plain.posterior.names]
-    )
-    return NuisanceFit(replace(plain, posterior=plain.posterior.shifted(shift)), full, choice, left)
+    return NuisanceFit(plain, full, choice, left)
 
 
 def _polished(

@@ -106,7 +106,11 @@ def model_curve(
         alpha, gamma, load, kappa=kappa, p=float(view.build.fit.tyre["NOMPRES"]), V=10.0, phi_t=0.0
     )
     line = tyre.readings(where, (channel,))[channel]
-    half = view.build.fit.posterior.band(tyre, where, (channel,))[channel]
+    known = view.build.prediction
+    if known is not None and channel in known.channels:
+        half = known.band(tyre, tyre, where, (channel,))[channel]
+    else:  # lent by a sister tyre: nothing but its coefficients is known
+        half = view.build.fit.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
     return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)
 

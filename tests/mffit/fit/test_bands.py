@@ -7,13 +7,23 @@ import pytest
 import small_rigs
 
 from mffit.fit.bands import BandBesideSweeps, Bands, bands
-from mffit.fit.posterior import Posterior
 from mffit.fit.wording import bands_sentence, beside_sentence
+from mffit.linearised.components import Components
+from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import make_points
+from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.rig import Simulation
 from tests.mffit.fit import combined_programme as belt
 
 U = {"PKY1": 0.1, "PPY2": 0.7}
+
+
+def known(names, root):
+    """What is known of a tyre of the formula without noise: the covariance of its coefficients is root times its transpose."""
+    root = np.vstack([np.zeros((1, root.shape[1])), root])
+    nothing = Components(0.0, (), 0.0, 0.0, 0.0, 0.3, 0.0)
+    own = MissedChannel(SmoothFunctions.over(()), nothing, np.zeros(1), root, 0.0, 0.0)
+    return Predictor(0.0, names, {"Fx": own, "Fy": own}, {})
 
 
 def found(pressures, **changes):
@@ -21,8 +31,7 @@ def found(pressures, **changes):
     tyre = small_rigs.truth().replace(**changes)
     p = 1e3 * np.array([*[250.0] * 20, *np.repeat(pressures, 10)])
     points = make_points(np.linspace(-0.1, 0.1, len(p)), 0.0, 1400.0, p=p, V=10.0, phi_t=0.0)
-    posterior = Posterior((*U, "F0_N"), np.diag([*np.square(list(U.values())), 25.0]))
-    return tyre, bands(posterior, {"PPY2"}, Simulation.of(tyre), points)
+    return tyre, bands(known((*U,), np.diag([*U.values()])), {"PPY2"}, Simulation.of(tyre), points)
 
 
 def by_differences(tyre, name, p):
@@ -76,11 +85,11 @@ def test_one_sideslip_with_slip_leaves_the_way_there_to_the_formula():
     reach = np.radians(5.0) * tyre["RBX1"]
     slope = -np.arctan(reach) * (1.0 + reach**2) / reach * tyre["RBX1"] / tyre["RCX1"]
     together = np.array([1.0, slope]) * 0.1
-    posterior = Posterior(("RCX1", "RBX1"), np.outer(together, together))
+    of_shape = known(("RCX1", "RBX1"), together[:, None])
     simulation = Simulation.of(tyre.replace(REX1=0.0, REX2=0.0, RBX2=0.0), turn_slip=False)
 
     def combined(**programme):
-        return bands(posterior, (), simulation, belt.programme(**programme)).combined
+        return bands(of_shape, (), simulation, belt.programme(**programme)).combined
 
     one = combined(sideslips=(0.0, 5.0))
     assert one.sideslip == pytest.approx(np.radians(5.0), rel=0.01)
@@ -113,13 +122,13 @@ def test_the_side_that_was_not_run_shares_what_friction_and_conicity_leave_open(
     still = tyre(1400.0, 0.15, phi_t=0.0, Vx=10.0, p=250e3).Fy
     u = 0.045
     together = np.array([u, -u * (far["PVY1"] - still) / (far["PDY1"] - still)])
-    posterior = Posterior(("PVY1", "PDY1"), np.outer(together, together))
+    of_sides = known(("PVY1", "PDY1"), together[:, None])
     simulation = Simulation.of(tyre, turn_slip=False)
-    band = bands(posterior, (), simulation, points).other_side
+    band = bands(of_sides, (), simulation, points).other_side
     assert band.half_at < 0.1 * band.half_beside
     assert band.half_beside == pytest.approx(
         2 * 1.96 * u * np.sqrt((900.0**2 + 1150.0**2 + 1400.0**2) / 3), rel=0.1
     )
     assert f"+-{band.half_beside:.0f} N at -8.6 deg" in beside_sentence(band)
     both = points.replace(alpha=np.linspace(-0.1, 0.1, 16))
-    assert bands(posterior, (), simulation, both).other_side is None
+    assert bands(of_sides, (), simulation, both).other_side is None

@@ -164,7 +164,8 @@ def test_on_a_flat_track_the_uncertainty_of_shifts_contains_the_zeros_of_the_rig
         assert abs(value - off[name]) < 2.5 * u
     assert any("ply-steer, conicity and residual torque" in text for text in build.fit.explanations)
     assert build.fit.bands.half_of_exact_zeros < build.fit.bands.half
-    Fy = build.fit.posterior.band(Simulation.of(build.fit.tyre), AT_ZERO).Fy
+    simulation = Simulation.of(build.fit.tyre, turn_slip=False)
+    Fy = build.fit.prediction.band(simulation, simulation, AT_ZERO).Fy
     assert abs(build.fit.tyre(1400.0, Vx=6.0).Fy - true(1400.0, Vx=6.0).Fy) < 1.3 * Fy[0]
 
 

