@@ -112,7 +112,9 @@ def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
     precision = np.array([number.spread**-2.0 for number in numbers])
     covariance = inverse(information[:k, :k] + np.diag(precision))
     moved = covariance @ (pull[:k] + precision * [number.expected for number in numbers])
-    posterior = beside_held(free, covariance, held, information[:k, k:]).without(fitted.held_rig)
+    posterior = beside_held(free, covariance, held, information[:k, k:]).without(
+        fitted.held_rig.keys() - fitted.rig.keys()
+    )
     posterior.covariance[:k, :k] += np.outer(moved, moved)
     rig = {name: (value, posterior.stderr[name]) for name, (value, _) in fitted.rig.items()}
     return replace(fitted, posterior=posterior, rig=rig)
