@@ -8,6 +8,7 @@ from typing import Any
 INK = "#1c2833"
 MUTED = "#5d6d7b"
 FAINT = "#a9b4be"
+GRID = "#e3e8ec"
 ACCENT = "#0b62a4"
 CONTRAST = "#c4501b"
 CALM = "#2b8a6e"
@@ -36,18 +37,8 @@ SETTINGS: dict[str, Any] = {
     "axes.edgecolor": FAINT,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
     "axes.formatter.useoffset": False,
     "axes.formatter.limits": (-9, 9),
-    "grid.color": "#e3e8ec",
-    "grid.linewidth": 0.7,
-    "xtick.bottom": False,
-    "ytick.left": False,
-    "xtick.minor.bottom": False,
-    "ytick.minor.left": False,
-    "xtick.labelcolor": MUTED,
-    "ytick.labelcolor": MUTED,
     "legend.frameon": False,
     "legend.fontsize": 8.2,
     "legend.borderpad": 0.0,

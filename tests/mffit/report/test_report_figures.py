@@ -279,17 +279,9 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
 
 
 def boxes(axes):
-    """Every text of axes with the box around its letters [pixels]; numbers beyond an axis are not drawn."""
-    undrawn = []
-    ends = axes.get_window_extent()
-    for label in axes.get_xticklabels():
-        box = label.get_window_extent()
-        undrawn += [] if ends.x0 - 1 <= 0.5 * (box.x0 + box.x1) <= ends.x1 + 1 else [label]
-    for label in axes.get_yticklabels():
-        box = label.get_window_extent()
-        undrawn += [] if ends.y0 - 1 <= 0.5 * (box.y0 + box.y1) <= ends.y1 + 1 else [label]
+    """Every text of axes with the box around its letters [pixels]."""
     texts = [text for text in axes.findobj(Text) if text.get_text().strip() and text.get_visible()]
-    return [(text.get_text(), text.get_window_extent()) for text in texts if text not in undrawn]
+    return [(text.get_text(), text.get_window_extent()) for text in texts]
 
 
 def crossing(found):
