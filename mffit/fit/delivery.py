@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce
@@ -90,9 +91,12 @@ def _rolling_resistance(config: Config, known: Known, points: Points) -> Resista
     declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
     hand, side = known.hand.held, config.tyre.side
     if np.any(np.isfinite(points.My)):
-        return rolling_resistance(known.values, points, declared.get(MY_ZERO, NO_ZERO), hand, side)
+        u_gain = math.hypot(config.rig.u("gain_My"), config.rig.u("gain_Fz"))
+        return rolling_resistance(known.values, points, declared.get(MY_ZERO, NO_ZERO), hand, side, u_gain)
     zero = declared.get(FX_ZERO, NO_ZERO)
     radius = float(known.values["UNLOADED_RADIUS"])
     of_moment = Declaration(zero.value * radius, zero.u * radius)
-    found = rolling_resistance(known.values, coasting(points, known.values), of_moment, hand, side)
+    u_gain = math.hypot(config.rig.u("gain_Fx"), config.rig.u("gain_Fz"))
+    coasted = coasting(points, known.values)
+    found = rolling_resistance(known.values, coasted, of_moment, hand, side, u_gain)
     return replace(found, zeros={})  # that of Fx is a number of the fit

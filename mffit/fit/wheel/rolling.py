@@ -75,11 +75,12 @@ def rolling_resistance(
     zero: Declaration,
     held: Collection[str] = (),
     side: str = "left",
+    u_gain: float = 0.0,
 ) -> Resistance:
     """Coefficients of rolling resistance and the zeros of the rig, with standard uncertainties; empty if My was not measured.
 
     ``zero`` is the prior of the zero, which every set-up has anew. Coefficients ``held`` stay, and so do those of which loads,
-    pressures, speeds and cambers show nothing. Points with longitudinal slip are not used: their My depends on the arm of Fx.
+    pressures, speeds and cambers show nothing. ``u_gain`` is the relative uncertainty of the calibration of My over load. Points with longitudinal slip are not used: their My depends on the arm of Fx.
     """
     rolling = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
     if not np.any(rolling):
@@ -109,10 +110,13 @@ def rolling_resistance(
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
     covariance = inverse(information)
     stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    scaled = np.array([0.0 if n in BOUNDS else end.values[n] for n in names])  # exponents are no factors
+    of_gain = u_gain**2 * np.outer(scaled, scaled)
     of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(
         beside=BesideNumbers(
-            {name: end.values[name] for name in names}, covariance[: len(names), : len(names)]
+            {name: end.values[name] for name in names},
+            covariance[: len(names), : len(names)] + of_gain,
         ),
         regularised=frozenset(of_prior.intersection(names)),
         zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in of_prior and zero.u > 0.0},

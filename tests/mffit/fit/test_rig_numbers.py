@@ -151,6 +151,28 @@ def test_a_straight_path_has_its_zeros_and_a_disc_without_any_has_none():
     assert rig_numbers(rig(), direct(per_load=(SimpleNamespace(F_phit=None),))) == ()
 
 
+def test_calibrations_are_held_wherever_they_show_and_a_declared_compliance_is_a_number_of_the_fit():
+    """Nothing but a certificate tells a factor of Fy from the tyre's own grip."""
+    flat = {"type": "flat-track", "path_radius": None, "u_path_radius": None}
+    disc = {
+        name: held_rig(rig(u_Fy_gain=0.01, u_Fz_gain=0.0, **of)).get(name)
+        for of in ({}, flat)
+        for name in ("gain", "gain_alpha", "gain_Fz", "gain_Fx")
+    }
+    assert disc == {"gain": 0.01, "gain_alpha": 0.002, "gain_Fz": None, "gain_Fx": None}
+    assert held_rig(rig(), channels=("Fy", "Fx"))["gain_Fx"] == 0.005
+    yielding = {"u_steering_compliance_deg_per_Nm": 0.005}
+    without_zeros = direct(per_load=(SimpleNamespace(F_phit=None),))
+    for config, measured in (
+        (rig(**yielding), direct()),
+        (rig(**yielding), without_zeros),
+        (rig(**flat, **yielding), direct(setup_scatter=None)),
+    ):
+        assert by_name(config, measured)["compliance_deg_per_Nm"].spread == 0.005
+        assert not any("gain" in name for name in by_name(config, measured))
+        assert "compliance_deg_per_Nm" not in held_rig(config)
+
+
 def test_on_a_flat_track_the_uncertainty_of_shifts_contains_the_zeros_of_the_rig(tmp_path):
     """All four are half as large again as declared; without them among the errors PHY1 and QDZ6 would be 8 and 20 u away."""
     off = {"alpha_0_deg": 0.11, "gamma_0_deg": 0.75, "F0_N": 15.0, "M0_Nm": 1.5}
