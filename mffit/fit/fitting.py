@@ -137,7 +137,7 @@ def fit(
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
-        rig={**fitted.rig, **made.zeros},
+        rig={**fitted.rig, **found.beside_the_file, **made.zeros},
         model=readings,
         posterior=made.posterior,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),

@@ -18,7 +18,7 @@ from mffit.fit.coverage import why_held
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Gaps, Verdict
-from mffit.fit.influences.nuisances import TEMPERATURE
+from mffit.fit.influences.nuisances import PRESSURE, TEMPERATURE
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
@@ -359,7 +359,11 @@ def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str
             f"hold for the mean of the runs, and leave {_gaps(_rms(runs.alone))} rms"
         )
     stated = (f"{words_of(n)} {_stated(n, *found.full.rig[n])}" for n in verdict.nuisance.numbers)
-    return ascii_only(f"{', '.join(stated)}, and the files are without it")
+    told = f"{', '.join(stated)}, and the files are without it"
+    if verdict.nuisance.key == PRESSURE:
+        mean = 1e-3 * float(np.mean(found.full.problem.points.p))
+        told += f": MF 6.2 has no term for it, and a simulation that has one takes it from {mean:.1f} kPa"
+    return ascii_only(told)
 
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:

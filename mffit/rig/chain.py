@@ -127,6 +127,11 @@ class Chain:
         return np.nan_to_num(self.points.V - self._history.usual_speed)
 
     @cached_property
+    def pressure_above_mean(self) -> np.ndarray:
+        """Pressure above the mean of all points (n,) [kPa]."""
+        return 1e-3 * (self.points.p - self._history.mean_pressure)
+
+    @cached_property
     def time(self) -> np.ndarray:
         """Time of every point (n,) [s]; 0 where it is not known."""
         return np.asarray(np.nan_to_num(self.points.t))

@@ -1,4 +1,4 @@
-"""What a point owes to the points before it: distance rolled, sense of the sweep, usual path and usual speed."""
+"""What a point owes to the points before it: distance rolled, sense of the sweep, usual path, usual speed and mean pressure."""
 
 from __future__ import annotations
 
@@ -41,6 +41,11 @@ class History:
     def usual_speed(self) -> float:
         """The most frequent speed [m/s]."""
         return reference_speed(self.points)
+
+    @cached_property
+    def mean_pressure(self) -> float:
+        """[Pa]."""
+        return float(np.mean(self.points.p))
 
 
 def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:

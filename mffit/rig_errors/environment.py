@@ -119,6 +119,28 @@ TEMPERATURE = _of_temperature(
         ),
     ),
 )
+PRESSURE_ARM = RigError(
+    name="k_p_arm_per_kPa",
+    word="QSX3 over pressure",
+    shown_in=("% per kPa", 100.0),
+    unit="1/kPa",
+    kind="tyre",
+    meaning="arm of the side force in Mx, QSX3, times 1 + k (p - p_mean), p_mean the mean pressure of the data",
+    place=Place.COEFFICIENTS,
+    acts_on=("QSX3",),
+    formula=lambda k, QSX3, at: QSX3 * (1.0 + k * at.pressure_above_mean),
+    spread=0.005,
+    limits=(-0.1, 0.1),
+    seen_as=(
+        Appearance(
+            id="overturning-pressure",
+            name="overturning moment of the side force over pressure",
+            physics="A harder tyre moves less sideways under a side force, so that the load stays nearer to the middle of the "
+            "wheel; MF 6.2 has a term of pressure for camber only (PPMX1).",
+            needs=("pressures", "overturning"),
+        ),
+    ),
+)
 RUN_GRIP = _of_run(
     name="run_grip",
     meaning="friction times 1 + run_grip, a number of every run",
@@ -237,6 +259,7 @@ COEFFICIENT_ERRORS = (
     TEMPERATURE_CAMBER,
     TEMPERATURE_DRIVE_GRIP,
     TEMPERATURE_SLIP_STIFFNESS,
+    PRESSURE_ARM,
     RUN_GRIP,
     RUN_STIFFNESS,
     SWEEP_HEATING,

@@ -6,6 +6,7 @@ record. Everything is in ISO-W, contact frame.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import SimpleNamespace
@@ -42,6 +43,9 @@ class Machine(NamedTuple):
     usual_speed: float  #: [m/s], where the speed has no influence
     drag: float = 0.0  #: moment against the rotation of a wheel that rolls freely [Nm]
     slip_against: str = "free-rolling"  #: what the slip that the rig reports is against
+    mean_pressure: float = (
+        math.nan
+    )  #: [Pa] of all points, at which the arm of the side force is that of the file
 
     def with_faults(self, added: Mapping[str, float]) -> Machine:
         """The machine with ``added`` rig errors, for a sweep that has errors of its own."""
@@ -100,11 +104,12 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_drive_grip_per_K": ("LMUX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: 1.0 + x * (s.p - m.mean_pressure) / 1000.0),
     "run_grip": ("LMUY", lambda x, s, m: 1.0 + x),
     "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
     "sweep_heating": ("LMUY", lambda x, s, m: 1.0 + x * np.arange(len(s)) / max(len(s) - 1, 1)),
 }
-"""Factors on scaling factors of the tyre."""
+"""Factors on scaling factors and coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
     "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
     "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),

@@ -12,13 +12,15 @@ from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
-from mffit.points import Points
+from mffit.points import Points, levels
 from mffit.rig.histories import distance_km, sense
 from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
 """Key of [fit] with the influences of the tyre's temperature, which a second file states."""
+PRESSURE = "pressure"
+"""The same of what pressure does and no coefficient says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +44,11 @@ class Nuisance:
             return tuple(_number(name) for name in self.numbers)
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
         return tuple(_number(name, run, scatter[name]) for name in self.numbers for run in runs)
+
+    @property
+    def is_averaged(self) -> bool:
+        """Whether the coefficients of the plain file are to contain its usual size, and the prediction what they miss of it."""
+        return self.key in (TEMPERATURE, PRESSURE)
 
     def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
@@ -81,6 +88,12 @@ def _cambers(points: Points) -> str:
 def _slips(points: Points) -> str:
     driven = ~points.free_rolling & np.isfinite(points.Fx)
     return "" if np.any(driven) else "no sweep varies longitudinal slip"
+
+
+def _pressures_of_moment(points: Points) -> str:
+    if not np.any(np.isfinite(points.Mx)):
+        return "Mx_Nm was not measured"
+    return "" if levels.count(points.p, levels.PRESSURE) > 1 else "a single pressure was run"
 
 
 def _senses(points: Points) -> str:
@@ -173,6 +186,13 @@ NUISANCES = (
         numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
         lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
+    ),
+    Nuisance(
+        id="pressure-arm",
+        name="arm of the side force in Mx over pressure",
+        key=PRESSURE,
+        numbers=("k_p_arm_per_kPa",),
+        lacking=_pressures_of_moment,
     ),
     Nuisance(
         id="run-scale",

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
-from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
+from mffit.fit.influences.nuisances import PRESSURE, TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
@@ -21,9 +21,9 @@ from mffit.rig import Simulation
 
 @dataclass(frozen=True, slots=True)
 class NuisanceFit:
-    """Two fits of the same points; they are one if no temperature is modelled."""
+    """Two fits of the same points; they are one if nothing is modelled that the plain file averages over."""
 
-    plain: Fitted  #: without temperature as an input: its coefficients take up the warming
+    plain: Fitted  #: without temperature as an input: its coefficients take up the warming, and the mean over pressure
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
     left: LinearisedFit | None = None  #: by the first fit, where that was looked at
@@ -31,7 +31,13 @@ class NuisanceFit:
     @property
     def at_temperature(self) -> bool:
         """Whether the full fit knows the temperature."""
-        return self.full is not self.plain
+        return any(nuisance.key == TEMPERATURE for nuisance in self.choice.modelled)
+
+    @property
+    def beside_the_file(self) -> dict[str, tuple[float, float]]:
+        """Numbers of the tyre that no coefficient says and the plain file averages over, with standard errors, but for warmth."""
+        names = {name for n in self.choice.modelled if n.key == PRESSURE for name in n.numbers}
+        return {name: found for name, found in self.full.rig.items() if name in names}
 
 
 def fit_with_nuisances(
@@ -48,10 +54,10 @@ def fit_with_nuisances(
     if choice.modelled:
         progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
-    if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
+    if not any(nuisance.is_averaged for nuisance in choice.modelled):
         return NuisanceFit(full, full, choice, left)
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
-    others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
+    others = [n for n in choice.modelled if not n.is_averaged and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
     return NuisanceFit(plain, full, choice, left)
 
