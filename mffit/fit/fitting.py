@@ -49,6 +49,7 @@ from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
+from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
 
 
@@ -104,6 +105,7 @@ def fit(
     found = replace(found, plain=fitted, full=full)
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
+    at_turns = full.problem.turning()
 
     progress("deriving the property files")
     use = plain_use(config)
@@ -152,12 +154,14 @@ def fit(
         warnings=(
             *([moved] if contradicted else []),
             *warnings(fitted, full, doubts, outlying, files.untested),
+            *turning_sentences(points, best, at_turns),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(made.known.values, points, measured),
         doubts=doubts,
         outliers=outlying,
+        at_turns=at_turns,
         search=fitted,
         full=full,
         left_by_formula=left_by_formula,

@@ -24,6 +24,7 @@ from mffit.points.noise import estimated_noise, stating
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation, reference_speed, successive
 from mffit.scatter import rms
+from mffit.suspicion.reversals import Reversals
 from tir.derivatives import gradient, plain, traced
 
 
@@ -70,14 +71,25 @@ class FitProblem:
     def reweighted(self) -> FitProblem:
         """The problem with weights from its own misfit.
 
-        A channel that the model misses by more than the noise must not dominate the other one.
+        A channel that the model misses by more than the noise must not dominate the other one. Readings beside the turns of
+        moving sweeps that depart from their legs count by their own scatter.
         """
-        sigma = {
-            name: self.sigma[name]
-            * weights.enlarged(z, self.points.sweep, self.nominal.get(name, np.ones_like(z)))
-            for name, z in self.misfit().items()
-        }
+        sigma, misfit = {}, self.misfit()
+        for name, turning in self.turning(misfit).items():
+            z, least = misfit[name], self.nominal.get(name, np.ones_like(misfit[name]))
+            factor = weights.enlarged(np.where(turning, 0.0, z), self.points.sweep, least)
+            if np.any(turning):
+                factor = np.where(turning, factor * max(rms(z[turning]) / rms(z[~turning]), 1.0), factor)
+            sigma[name] = self.sigma[name] * factor
         return replace(self, sigma=sigma)
+
+    def turning(self, misfit: Mapping[str, np.ndarray] | None = None) -> dict[str, np.ndarray]:
+        """By channel, mask (n,) of the readings that depart from their sweep because it turns back there."""
+        reversals, misfit = Reversals(self.points), self.misfit() if misfit is None else misfit
+        return {
+            name: reversals.off(np.where(self._used(name), z * self.sigma[name], np.nan))
+            for name, z in misfit.items()
+        }
 
     def with_noise_of_misfit(self) -> FitProblem:
         """The problem whose readings that state no uncertainty have one no larger than the scatter of their misfit.

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import Bands
@@ -51,6 +53,8 @@ class FitResult(Brief):
     )  #: of the readings by the full fit
     prediction: Predictor | None = field(default=None, repr=False)  #: of forces at any conditions
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
+    at_turns: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
+    """By channel, mask (n,) of the readings where sweeps turn back, which count by their own scatter."""
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
     bands: Bands | None = None  #: where the 95 % bands are narrow

@@ -282,6 +282,10 @@ def _channel(
     smooth = SmoothFunctions.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], along(at_tyre, inputs))
+    if (
+        len(groups) == 1
+    ):  # a single run does not show how runs differ, and would take up what the formula misses
+        own = np.zeros_like(own)
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
     of_rig = [i for i, number in enumerate(sight.numbers) if error_of(number.name) is not None]

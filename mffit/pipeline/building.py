@@ -26,7 +26,7 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, without_outliers
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.points.loading import Reading
-from mffit.prediction import correction
+from mffit.prediction import correction, missed_at_readings, missed_sentence
 from mffit.progress import Progress, silent
 from mffit.results import CORRECTION, BuildResult
 from tir import Tyre
@@ -71,8 +71,8 @@ def build(
     names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
-        table = f"{config.tyre.name}{CORRECTION}"
-        refuse_early(Path(out), (*names.values(), special, table, *WRITTEN), inputs_of(config))
+        further = f"{config.tyre.name}{CORRECTION}"
+        refuse_early(Path(out), (*names.values(), special, further, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress)
         progress("judging what the fit leaves")
@@ -92,7 +92,12 @@ def build(
         assert known is not None
         assert fitted.left_by_formula is not None
         proven = [name for name, own in fitted.left_by_formula.channels.items() if own.is_proven]
-        missed = correction(known, files[fitting.fitted_use(names)].tyre, proven)
+        model = files[fitting.fitted_use(names)].tyre
+        missed = missed_at_readings(known, model, reading.points, fitted.model, proven)
+        table = correction(known, model, proven)
+        if trust.trusted:
+            remarks = (missed_sentence(missed[name]) for name in trust.limited if name in missed)
+            trust = replace(trust, remarks=tuple(remarks))
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     notes = (*base_notes(config, base), *(f"{note}." for note in reading.notes))
     fitted = replace(fitted, explanations=(*fitted.explanations, *notes))
@@ -122,7 +127,8 @@ def build(
         trust=trust,
         remains=left,
         prediction=known,
-        correction=missed,
+        missed=missed,
+        correction=table,
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,

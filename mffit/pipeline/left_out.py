@@ -18,6 +18,7 @@ from mffit.suspicion import Misread, Outlier
 from mffit.suspicion.misread import misread_sweep
 from mffit.suspicion.others import doubtful_sweep
 from mffit.suspicion.outliers import OUTLYING
+from mffit.suspicion.reversals import TURNING
 
 HUBER = "huber-weight"
 """Name of the rule that gives readings far from the model less weight."""
@@ -74,18 +75,27 @@ def _discounted(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
         for own in (used & states, used & ~states):  # the uncertainty of those that state none was estimated
             weight[own] = (np.min(factor[own], initial=np.inf) / factor[own]) ** 2
         reduced = weight < 1.0 - 1e-6  # rounding
-        for file in np.unique(points.file[reduced]).tolist():
-            rows = np.flatnonzero(reduced & (points.file == file))
-            yield LeftOut(
-                file=points.files[file],
-                lines=line_text(points.line[rows]),
-                count=len(rows),
-                by="rule",
-                rule=HUBER,
-                channel=channel,
-                weight=float(np.min(weight[rows])),
-                why="the model misses these readings by more than most others, so they have less weight",
-            )
+        turning = fitted.at_turns.get(channel, np.zeros(len(points), dtype=bool))
+        for rule, why, which in (
+            (
+                HUBER,
+                "the model misses these readings by more than most others, so they have less weight",
+                ~turning,
+            ),
+            (TURNING.id, "a moving sweep turns back here, and the rig accelerates", turning),
+        ):
+            for file in np.unique(points.file[reduced & which]).tolist():
+                rows = np.flatnonzero(reduced & which & (points.file == file))
+                yield LeftOut(
+                    file=points.files[file],
+                    lines=line_text(points.line[rows]),
+                    count=len(rows),
+                    by="rule",
+                    rule=rule,
+                    channel=channel,
+                    weight=float(np.min(weight[rows])),
+                    why=why,
+                )
 
 
 def _doubts(points: Points, fitted: FitResult) -> Iterator[LeftOut]:

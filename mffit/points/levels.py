@@ -57,7 +57,7 @@ def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 def _labels(values: np.ndarray, kind: LevelKind) -> tuple[np.ndarray, np.ndarray]:
     """:func:`labels` and :func:`nearest_labels` (n,)."""
-    scaled = _scaled(values, kind)
+    scaled = in_tolerances(values, kind)
     centres = _centres(scaled)
     near = _nearest(scaled, centres)
     far = np.abs(scaled - _at(centres, near)) >= 1.0
@@ -77,7 +77,7 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     kind : of the setting
     """
     held = np.array(values, dtype=float)
-    scaled = _scaled(values, kind)
+    scaled = in_tolerances(values, kind)
     known = np.flatnonzero(np.isfinite(scaled))
     order = known[np.lexsort((held[known], sweep[known]))]  # sweep after sweep, each with rising values
     for rows in np.split(order, np.flatnonzero(np.diff(sweep[order])) + 1):
@@ -117,12 +117,12 @@ def level_values(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 def count(values: np.ndarray, kind: LevelKind) -> int:
     """Number of levels among the values; evenly spread values are three or more from four tolerances on."""
-    return len(_centres(_scaled(values, kind)))
+    return len(_centres(in_tolerances(values, kind)))
 
 
 def spread(values: np.ndarray, kind: LevelKind) -> bool:
     """Whether the values wander through their range instead of keeping to two or more levels."""
-    scaled = _scaled(values, kind)
+    scaled = in_tolerances(values, kind)
     centres = _centres(scaled)
     if len(centres) < 2:
         return False
@@ -166,7 +166,7 @@ def main_path(points: Points) -> float:
     return float(paths[counts.argmax()]) if len(paths) else 0.0
 
 
-def _scaled(values: np.ndarray, kind: LevelKind) -> np.ndarray:
+def in_tolerances(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """The values (n,) in tolerances; NaN where they are not finite."""
     values = np.asarray(values, dtype=float)
     if kind.relative:

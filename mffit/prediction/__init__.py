@@ -3,14 +3,19 @@
 from mffit.prediction.conditions import write_table
 from mffit.prediction.correction import CorrectionTable, correction, write_correction
 from mffit.prediction.predictor import Predictor, predictor
+from mffit.prediction.region import MissedAtReadings, missed_at_readings
 from mffit.prediction.stored import FILE, load, predict, write
+from mffit.prediction.wording import missed_sentence
 
 __all__ = [
     "FILE",
     "CorrectionTable",
+    "MissedAtReadings",
     "Predictor",
     "correction",
     "load",
+    "missed_at_readings",
+    "missed_sentence",
     "predict",
     "predictor",
     "write",

@@ -12,3 +12,6 @@ INTERPOLATION_ADDS = Real(
 MOST_NODES = Count(
     8000, "-", "Most nodes of the table of the miss: with four channels they are a file of 0.8 MB."
 )
+LARGE_FORCE = Real(
+    0.9, "-", "Force over the largest of its sweep from which it counts as grip, where the curve is flat."
+)

@@ -17,7 +17,7 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.prediction import CorrectionTable, Predictor
+from mffit.prediction import CorrectionTable, MissedAtReadings, Predictor
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
@@ -47,6 +47,8 @@ class BuildResult(Brief):
     made: Made = field(default_factory=made_now)
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
     prediction: Predictor | None = None  #: of forces at any conditions
+    missed: Mapping[str, MissedAtReadings] = field(default_factory=dict)
+    """By channel, what the formula is proven to miss at the readings."""
     correction: CorrectionTable | None = None  #: what the formula misses, where that is proven
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
 

@@ -23,6 +23,7 @@ from mffit.suspicion import (
 )
 from mffit.suspicion.misread import misread_sweep
 from mffit.suspicion.outliers import OUTLYING
+from mffit.suspicion.reversals import TURNING
 from mffit.suspicion.rule import Outcome, Rule, When
 
 SAMPLES = tuple(
@@ -61,6 +62,7 @@ RULES: tuple[Rule, ...] = (
     others.contradicting_sweep,
     others.doubtful_sweep,
     OUTLYING,
+    TURNING,
     *trust.OF_TRUST,
     misread_sweep,
 )

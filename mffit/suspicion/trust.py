@@ -31,7 +31,7 @@ from mffit.measured import Drift, LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
 from mffit.points.noise import OverNoise, estimated_noise, over_noise, stating
-from mffit.quantities import CHANNELS, CONDITIONS, column
+from mffit.quantities import CHANNELS, column
 from mffit.rig import Readings
 from mffit.rig_errors import error_of, shown, words_of
 from mffit.rounding import rounded
@@ -182,6 +182,7 @@ class Trust:
     reasons: tuple[str, ...] = ()  #: against trusting it; empty for a sound one
     doubts: tuple[str, ...] = ()  #: what the engineer should look at
     remarks: tuple[str, ...] = ()  #: what limits a result that is sound
+    limited: tuple[str, ...] = ()  #: channels that the formula limits, not the noise
     over_noise: Mapping[str, float] = field(default_factory=dict)
     """By channel, misfit over stated noise; NaN where none is stated."""
 
@@ -469,12 +470,6 @@ def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
         yield {"why": fit.stranger}
 
 
-REMARKED = (
-    "what limits {channel} is the formula, not the readings: alike in all sweeps it misses {size:.3g} {unit} rms, {percent:.1f} "
-    "% of the largest {channel}, and most at {where} ({most:.3g} {unit})"
-)
-
-
 def judge(found: JudgedMeasurement) -> Trust:
     """The judgement by all rules of trust, or without a fit by those that need none; another tyre's model ends the search."""
 
@@ -493,7 +488,8 @@ def judge(found: JudgedMeasurement) -> Trust:
         return Trust(reasons=strange, over_noise=found.over_noise)
     reasons = said(*OF_TRUST, doubtful=False)
     doubts = said(*OF_TRUST, doubtful=True)
-    return Trust(reasons, doubts, () if reasons else tuple(_remarks(found)), found.over_noise)
+    limited = tuple(name for name in found.used if found.of_the_formula(name))
+    return Trust(reasons, doubts, over_noise=found.over_noise, limited=limited)
 
 
 OF_READINGS = (above_noise, sweep_above_noise, unexplained)
@@ -527,30 +523,6 @@ def _effect_is_left(fit: FinishedFit) -> bool:
 def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
     """Whether a rule finds a reason, not only a doubt."""
     return any(not facts.get("doubtful", False) for facts in rule.find(fit))
-
-
-def _remarks(fit: FinishedFit) -> Iterator[str]:
-    """What limits a sound result, where that is not the noise."""
-    for name in fit.used:
-        if fit.linear is None or not fit.of_the_formula(name):
-            continue
-        seen = fit.linear.channels[name]
-        missed = seen.missed_at_readings
-        worst = int(np.argmax(np.abs(missed)))
-        at = fit.points.select(seen.rows[[worst]])
-        where = ", ".join(
-            f"{at.condition(heading)[0]:.{digits}f} {CONDITIONS[heading].unit} of {CONDITIONS[heading].word}"
-            for heading, digits in (("alpha_deg", 1), ("gamma_deg", 0), ("Fz_N", 0))
-        )
-        largest = float(np.max(np.abs(fit.model[name][seen.rows])))
-        yield REMARKED.format(
-            channel=name,
-            unit=CHANNELS[name].unit,
-            size=seen.size,
-            percent=100.0 * seen.size / max(largest, 1e-12),
-            where=where,
-            most=abs(missed[worst]),
-        )
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:

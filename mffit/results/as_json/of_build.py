@@ -20,8 +20,9 @@ from mffit.fit.written.files import Files
 from mffit.fit.written.misfit import FileFigures
 from mffit.fleet import information, to_json
 from mffit.points.left_out import LeftOut
+from mffit.prediction import MissedAtReadings, missed_sentence
 from mffit.results.records import BuildOutcome, BuildResult
-from mffit.results.values import Json, document, keys, with_u
+from mffit.results.values import Json, document, keys, plain, with_u
 from mffit.rig_errors import unit_of
 from mffit.suspicion import Doubt, HeldNumber, Outlier
 
@@ -31,9 +32,10 @@ Estimates = Mapping[str, tuple[float, float]]
 
 keys(
     BuildResult,
-    "trusted reasons in_doubt=trust.doubts tyre=config.tyre spin=measured fit residuals=remains remarks=trust.remarks "
+    "trusted reasons in_doubt=trust.doubts tyre=config.tyre spin=measured fit residuals remarks=trust.remarks "
     "tir=tir_path files made lab=config.lab left_out warnings doubts=fit.doubts outliers=fit.outliers",
     fit=lambda found: fit(found.fit, found.trust.over_noise),
+    residuals=lambda found: residuals(found.remains, found.missed),
     files=lambda found: {
         **found.files,
         **({"correction": found.correction_name} if found.correction else {}),
@@ -175,6 +177,17 @@ keys(
         for name, one in (found.linear.channels if found.linear else {}).items()
     },
 )
+
+
+def residuals(remains: Remains, missed: Mapping[str, MissedAtReadings]) -> dict[str, Json]:
+    """What the fit leaves, and where the file misses each channel most."""
+    found = document(remains)
+    for name, one in missed.items():
+        of_channel = found["missed"][name]  # type: ignore[call-overload, index]
+        of_channel |= {"of_file": one.size, "most": plain(one.region), "sentence": missed_sentence(one)}  # type: ignore[operator]
+    return found
+
+
 keys(OddSweep, "name looks_like=looks")
 keys(HeldNumber, "name sigma share")
 keys(

@@ -74,7 +74,9 @@ def by_the_chain(tyre, s: Settings, **faults):
 
 
 def by_the_virtual_rig(tyre, s: Settings, **faults):
-    return steady(Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0, mean_pressure=float(np.mean(s.p))), s)
+    return steady(
+        Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0, mean_pressure=float(np.mean(s.p))), s
+    )
 
 
 FREED = {name for nuisance in NUISANCES for name in nuisance.numbers}

@@ -1,0 +1,133 @@
+"""Readings where a moving sweep turns back: the rig accelerates there, and its inertia and filters are in what it reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import fdtrc
+
+from mffit.constants import FALSE_ALARM
+from mffit.linearised.inputs import LEVELS, inputs_of, swept_of
+from mffit.points import Points, levels
+from mffit.quantities import CHANNELS
+from mffit.scatter import rms
+from mffit.suspicion import constants
+from mffit.suspicion.rule import Outcome, Rule, When
+
+NEAR = int(constants.FEWEST)
+"""Readings of a leg through which a line foretells the next, and the most beside a turn that are looked at: farther away, smooth
+misses of a formula look like departures."""
+
+
+class Leg(NamedTuple):
+    """Places from which the next reading towards one end of its leg is foretold."""
+
+    rows: np.ndarray  #: (k,) that are foretold
+    behind: np.ndarray  #: (k, NEAR) the readings of the same leg behind each of them
+    lines: np.ndarray  #: (k, NEAR) factors of these, by which a line foretells it
+    from_turn: np.ndarray  #: (k,) readings between it and the turn ahead; NEAR: it is not beside one
+
+
+class Reversals:
+    """The turns of the moving sweeps of some points (n,), in the order of measuring."""
+
+    def __init__(self, points: Points) -> None:
+        swept = swept_of(points, inputs_of(points))
+        x = np.full(len(points), np.nan)
+        for k, name in swept.items():
+            x[points.sweep == k] = getattr(points, name)[points.sweep == k]
+        self.n = len(points)
+        self.legs = tuple(_legs(x, _senses(points, x, swept))) if self.n > NEAR else ()
+
+    def off(self, residual: np.ndarray) -> np.ndarray:
+        """Mask (n,) of the readings beside turns that depart from their legs as others do not.
+
+        ``residual`` (n,), measured less model in any unit, is NaN where a reading is not used. From every leg inwards to the
+        turn: from the first place at which the departures of all turns together are beyond chance, nothing is steady.
+        """
+        out = np.zeros(self.n, dtype=bool)
+        departures = [
+            residual[leg.rows] - np.sum(leg.lines * residual[leg.behind], axis=1) for leg in self.legs
+        ]
+        of_others = np.concatenate(
+            [d[leg.from_turn >= NEAR] for d, leg in zip(departures, self.legs, strict=True)] or [[]]
+        )
+        of_others = of_others[np.isfinite(of_others)]
+        if len(of_others) < NEAR:
+            return out
+        usual = float(np.mean(of_others**2))
+        for leg, departure in zip(self.legs, departures, strict=True):
+            for place in range(NEAR - 1, -1, -1):
+                own = departure[(leg.from_turn == place) & np.isfinite(departure)]
+                if not len(own) or not usual > 0.0:
+                    continue
+                chance = fdtrc(len(own), len(of_others), float(np.mean(own**2)) / usual)
+                if 2 * NEAR * chance < FALSE_ALARM:
+                    out[leg.rows[leg.from_turn <= place]] = True
+                    break
+        return out
+
+
+def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarray:
+    """Sense (n - 1,) in which the swept condition ``x`` (n,) moves to the next reading; 0 where another condition changes."""
+    same = points.sweep[1:] == points.sweep[:-1]
+    names = np.array([swept[k] for k in points.sweep.tolist()])[:-1]
+    for name, kind in LEVELS.items():
+        apart = np.abs(np.diff(levels.in_tolerances(getattr(points, name), kind)))
+        same &= (apart < 1.0) | (names == name)
+    return np.where(same, np.sign(np.diff(x)), 0.0)
+
+
+def _legs(x: np.ndarray, senses: np.ndarray) -> Iterator[Leg]:
+    """Before the turns, then behind them."""
+    rows = np.arange(len(x))
+    for ahead in (1, -1):
+        steps = senses if ahead == 1 else senses[::-1]
+        # Along the way to the turn: row i is foretold by the NEAR rows passed before, all of one leg.
+        passed = np.array([np.concatenate([np.zeros(NEAR), steps])[k : k + len(x)] for k in range(NEAR)]).T
+        whole = np.all(passed == passed[:, -1:], axis=1) & (passed[:, -1] != 0.0)
+        turn = np.zeros(len(x), dtype=bool)
+        turn[1:-1] = steps[1:] * steps[:-1] < 0.0
+        until = np.full(len(x), NEAR)
+        for k in range(NEAR - 1, -1, -1):
+            there = np.zeros(len(x), dtype=bool)
+            there[: len(x) - k] = turn[k:]
+            until[there] = k
+        at = rows[whole]
+        behind = at[:, None] - np.arange(1, NEAR + 1)
+        if ahead == -1:
+            at, behind = len(x) - 1 - at, len(x) - 1 - behind
+        yield Leg(at, behind, _line(x, at, behind), until[whole])
+
+
+def _line(x: np.ndarray, at: np.ndarray, behind: np.ndarray) -> np.ndarray:
+    """Factors (k, NEAR) of readings ``behind`` that give the value of the line of least squares through them ``at`` (k,)."""
+    middle = x[behind].mean(axis=1, keepdims=True)
+    away = x[behind] - middle
+    return 1.0 / NEAR + away * (x[at][:, None] - middle) / np.sum(away**2, axis=1, keepdims=True)
+
+
+TURNING = Rule(
+    id="turning-sweep",
+    when=When.AFTER,
+    looks_at="Residuals beside the turns of moving sweeps, foretold from their legs, against those elsewhere in the legs",
+    outcome=Outcome.WARNED,
+    sentence="{channel} is off the model by {off:.3g} {unit} rms where sweeps turn back ({number} readings), and by {usual:.3g} "
+    "{unit} elsewhere: the rig accelerates there, so that its inertia is in what it reads; these readings count by their own "
+    "scatter",
+    find=Reversals.off,
+)
+
+
+def turning_sentences(
+    points: Points, model: Mapping[str, np.ndarray], turning: Mapping[str, np.ndarray]
+) -> Iterator[str]:
+    """A warning for every channel with readings that count less because a sweep turns back; ``model`` are those expected."""
+    for name, rows in turning.items():
+        if np.any(rows):
+            left = points.channel(name) - model[name]
+            off, usual = rms(left[rows]), rms(left[~rows & np.isfinite(left)])
+            facts = {"off": off, "usual": usual, "number": int(np.sum(rows)), "unit": CHANNELS[name].unit}
+            yield TURNING.said({"channel": name, **facts})
