@@ -155,9 +155,9 @@ def _text(text: str) -> str:
 
 def _draw_panel(axes: Axes, panel: Panel, width: float, scale: ColourScale | None) -> None:
     for name in "xy":
-        if getattr(panel, name).logarithmic:
-            axis = getattr(panel, name)
-            axes.set(**{f"{name}scale": "log", f"{name}lim": (axis.low, axis.high)})
+        along = getattr(panel, name)
+        if along.logarithmic:
+            axes.set(**{f"{name}scale": "log", f"{name}lim": (along.low, along.high)})
     for span in panel.spans:
         axes.axvspan(
             span.first, span.last, color=span.look.colour, alpha=span.look.opacity, linewidth=0.0, zorder=0.7
@@ -195,12 +195,12 @@ def _draw_axis(axes: Axes, name: str, axis: Axis, words: Sequence[str]) -> None:
     own.set_visible(False)
     places = np.array([*axis.words] if axis.words is not None else own.get_majorticklocs())
     shown = (places >= min(low, high)) & (places <= max(low, high))
-    labels = words if axis.words is not None else own.get_major_formatter().format_ticks(places)
+    labels = words if axis.words is not None else own.get_major_formatter().format_ticks(places.tolist())
     along = axes.get_xaxis_text1_transform if name == "x" else axes.get_yaxis_text1_transform
     transform, up, side = along(NUMBER_OFF)
     for place, label in zip(places[shown], np.array(labels, dtype=object)[shown], strict=True):
-        at = (place, 0.0) if name == "x" else (0.0, place)
-        axes.text(*at, label, transform=transform, va=up, ha=side, color=style.MUTED)
+        x, y = (place, 0.0) if name == "x" else (0.0, place)
+        axes.text(x, y, label, transform=transform, va=up, ha=side, color=style.MUTED)
     if axis.words is None:
         across = np.tile([0.0, 1.0, np.nan], int(shown.sum())), np.repeat(places[shown], 3)
         x, y = across[::-1] if name == "x" else across
@@ -267,7 +267,8 @@ def _markup(whole: Image.Image, sheet: Sheet) -> str:
     above, point = _above(sheet), style.SETTINGS["figure.dpi"] / INCH
 
     def image(left: float, top: float, wide: float, high: float) -> str:
-        cut = whole.crop([round(point * end) for end in (left, top, left + wide, top + high)])
+        first, last = round(point * top), round(point * (top + high))
+        cut = whole.crop((round(point * left), first, round(point * (left + wide)), last))
         data = base64.b64encode(_png(cut)).decode("ascii")
         return f'<img alt="" style="--w:{wide:.5g}" src="data:image/png;base64,{data}">'
 

@@ -163,14 +163,14 @@ def test_calibrations_are_held_wherever_they_show_and_a_declared_compliance_is_a
     assert held_rig(rig(), channels=("Fy", "Fx"))["gain_Fx"] == 0.005
     yielding = {"u_steering_compliance_deg_per_Nm": 0.005}
     without_zeros = direct(per_load=(SimpleNamespace(F_phit=None),))
-    for config, measured in (
+    for given, measured in (
         (rig(**yielding), direct()),
         (rig(**yielding), without_zeros),
         (rig(**flat, **yielding), direct(setup_scatter=None)),
     ):
-        assert by_name(config, measured)["compliance_deg_per_Nm"].spread == 0.005
-        assert not any("gain" in name for name in by_name(config, measured))
-        assert "compliance_deg_per_Nm" not in held_rig(config)
+        assert by_name(given, measured)["compliance_deg_per_Nm"].spread == 0.005
+        assert not any("gain" in name for name in by_name(given, measured))
+        assert "compliance_deg_per_Nm" not in held_rig(given)
 
 
 def test_on_a_flat_track_the_uncertainty_of_shifts_contains_the_zeros_of_the_rig(tmp_path):
