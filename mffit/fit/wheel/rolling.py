@@ -80,8 +80,8 @@ def rolling_resistance(
     """Coefficients of rolling resistance and the zeros of the rig, with standard uncertainties; empty if My was not measured.
 
     ``zero`` is the prior of the zero, which every set-up has anew. Coefficients ``held`` stay, and so do those of which loads,
-    pressures, speeds and cambers show nothing. ``u_gain`` is the relative uncertainty of the calibration of My over load. Points with
-    longitudinal slip are not used: their My depends on the arm of Fx.
+    pressures, speeds and cambers show nothing. ``u_gain`` is the relative uncertainty of the calibration of My over load. Points
+    with longitudinal slip are not used: their My depends on the arm of Fx.
     """
     rolling = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
     if not np.any(rolling):

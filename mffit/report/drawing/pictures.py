@@ -110,7 +110,13 @@ def figure_of(sheet: Sheet) -> Figure:
             lie = {"transform": axes.transAxes, "ha": "center", "size": style.SETTINGS["axes.labelsize"]}
             axes.text(0.5, -19.0 / high, _text(panel.x.label), va="top", **lie)
             axes.text(
-                (12.0 - left) / wide, 0.5, _text(panel.y.label), va="bottom", rotation="vertical", **lie
+                (12.0 - left) / wide,
+                0.5,
+                _text(panel.y.label),
+                va="bottom",
+                rotation="vertical",
+                rotation_mode="anchor",
+                **lie,
             )
     return figure
 
