@@ -105,9 +105,11 @@ def remains(fitted: Fitted, linear: LinearisedFit) -> Remains:
 
 
 def left_out_sweeps(linear: LinearisedFit) -> dict[str, LeftOutSweeps]:
-    """By channel, how well sweeps are predicted from all others by a fit without them."""
+    """By channel with several sweeps, how well they are predicted from all others by a fit without them."""
     out = {}
     for name, channel in linear.channels.items():
+        if len(channel.model.groups) < 2:
+            continue
         found = channel.without_runs(channel.model.groups, missed=False)
         out[name] = LeftOutSweeps(
             sweeps=len(found),

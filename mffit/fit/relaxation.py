@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.signal import lfilter
 
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
@@ -303,8 +302,9 @@ class _Noise(NamedTuple):
 
     def whitened(self, x: np.ndarray) -> np.ndarray:
         """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""
-        new = lfilter(np.r_[1.0, -self.memory], 1.0, x, axis=0)[len(self.memory) :]
-        return np.asarray(new / self.size)
+        k, n = len(self.memory), len(x)
+        before = sum(share * x[k - j : n - j] for j, share in enumerate(self.memory, 1))
+        return np.asarray((x[k:] - before) / self.size)
 
 
 def _problem(

@@ -149,15 +149,16 @@ class Mixed:
         begin, order = 0, []
         of_rows = self._group_of[rows]
         for k in np.unique(of_rows[of_rows >= 0]).tolist():
-            g = self.groups[k]
-            out = np.flatnonzero(np.isin(g, rows[of_rows == k]))
-            z, x, r = self.own[g], self.common[g], self.residual[g]
-            inverse = w * np.eye(len(g)) - w * w * z @ found.own[k] @ z.T
-            block[begin : begin + len(out), begin : begin + len(out)] = inverse[np.ix_(out, out)]
-            begin += len(out)
-            whitened.append(inverse[out] @ x)
-            moved.append(inverse[out] @ (r - x @ found.mean))
-            order.append(g[out])
+            out = rows[of_rows == k]
+            z, x, r = self.own[out], self.common[out], self.residual[out]
+            own = w * z @ found.own[k]
+            end = begin + len(out)
+            block[begin:end, begin:end] = w * (np.eye(len(out)) - own @ z.T)
+            begin = end
+            whitened.append(w * (x - w * z @ found.through[k].T))
+            pull = self._sums.own_pull[k] - self._sums.across[k].T @ found.mean
+            moved.append(w * (r - x @ found.mean - own @ pull))
+            order.append(out)
         through = np.concatenate(whitened) @ found.root
         covariance = np.linalg.inv(block - through @ through.T)
         covariance = 0.5 * (covariance + covariance.T)

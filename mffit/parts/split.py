@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from mffit.brief import Brief
 from mffit.constants import NAMED_IN_SENTENCE, SAME_SIDESLIP
@@ -84,6 +83,8 @@ def _interpolated(points: Points, index: np.ndarray, angle: np.ndarray, at: floa
     angles, own = np.unique(np.round(angle[index], 3), return_inverse=True)
     if len(angles) < constants.FEWEST_ANGLES_TO_INTERPOLATE or not angles[0] <= at <= angles[-1]:
         return None
+    from scipy.interpolate import PchipInterpolator  # loads in a third of a second, which other data save
+
     out = {}
     for name in ("Fy", "Mz"):
         means = np.bincount(own, getattr(points, name)[index]) / np.bincount(own)

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import RegularGridInterpolator
 
 from mffit.csv_tables import csv_text
 from mffit.linearised.inputs import COLUMNS
@@ -110,6 +109,8 @@ def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> tuple[d
 
     Each input has the same share of what may be added. A grid of too many nodes gets fewer, and adds more.
     """
+    from scipy.interpolate import RegularGridInterpolator  # loads in a third of a second, saved elsewhere
+
     random = np.random.default_rng(0)
     n = max(len(missed.known.channels[name].missed) for name in missed.names)
     at = pd.DataFrame({name: random.uniform(*ends, n) for name, ends in inputs.items()})
