@@ -19,8 +19,6 @@ from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
 """Key of [fit] with the influences of the tyre's temperature, which a second file states."""
-PRESSURE = "pressure"
-"""The same of what pressure does and no coefficient says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +46,7 @@ class Nuisance:
     @property
     def is_averaged(self) -> bool:
         """Whether the coefficients of the plain file are to contain its usual size, and the prediction what they miss of it."""
-        return self.key in (TEMPERATURE, PRESSURE)
+        return self.key == TEMPERATURE
 
     def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
@@ -190,7 +188,7 @@ NUISANCES = (
     Nuisance(
         id="pressure-arm",
         name="arm of the side force in Mx over pressure",
-        key=PRESSURE,
+        key="pressure",
         numbers=("k_p_arm_per_kPa",),
         lacking=_pressures_of_moment,
     ),
