@@ -56,7 +56,7 @@ def settings() -> Settings:
         alpha=alpha,
         gamma=np.radians(rng.uniform(-50.0, 50.0, n)),
         Fz=LOAD + rng.uniform(-500.0, 500.0, n),
-        p=np.full(n, 240e3),
+        p=240e3 + 20e3 * np.cos(np.arange(n)),
         V=V,
         T=rng.uniform(20.0, 60.0, n),
         t=t,
