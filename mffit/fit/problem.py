@@ -87,9 +87,9 @@ class FitProblem:
         """By channel, mask (n,) of the readings that depart from their sweep because it turns back there."""
         reversals, misfit = Reversals(self.points), self.misfit() if misfit is None else misfit
         return {
-            name: reversals.off(np.where(used, z, np.nan) * np.where(used, self.sigma[name], 1.0))
+            # A reading without weight has an infinite sigma.
+            name: reversals.off(np.where(self._used(name), z, np.nan) * self.sigma[name])
             for name, z in misfit.items()
-            for used in [self._used(name)]
         }
 
     def with_noise_of_misfit(self) -> FitProblem:
