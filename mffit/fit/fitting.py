@@ -18,7 +18,7 @@ from mffit.fit.borrowed.sister import sister_of
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import left_by, with_errors_of
+from mffit.fit.fitted import left_by, with_errors_around, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -99,10 +99,9 @@ def fit(
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
-    differ = full is not fitted
-    left_by_file = left_by(fitted, near=left_by_formula) if differ else left_by_formula
-    fitted = with_errors_of(fitted, left_by_file)
-    full = with_errors_of(full, left_by_formula) if differ else fitted
+    is_one, full = full is fitted, with_errors_of(full, left_by_formula)
+    left_by_file = left_by_formula if is_one else left_by(fitted, near=left_by_formula)
+    fitted = full if is_one else with_errors_around(fitted, full)
     found = replace(found, plain=fitted, full=full)
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)

@@ -198,7 +198,7 @@ class LinearisedFit:
         uncertainty exceeds the size of such constants; all channels together say how far. Only zeros of forces: that of an angle
         moves along the curves, as coefficients do that are held here.
         """
-        rig = _of_rig(self.numbers)
+        rig = [number for number in self.numbers if _of_rig(number)]
         free = np.array([_is_of_force(number) and not number.held for number in rig], dtype=bool)
         zeros = [number for number, own in zip(rig, free, strict=True) if own]
         information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
@@ -269,7 +269,8 @@ def _channel(
 ) -> LinearisedChannel:
     """The components are found with the coefficients as they are, since free ones would take up what the formula misses.
 
-    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared.
+    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared. Influences that
+    the fit found, such as that of temperature, are as they are: nothing limits what a free one would take up.
     """
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
@@ -287,7 +288,7 @@ def _channel(
         own = np.zeros_like(own)
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
-    of_rig = [i for i, number in enumerate(sight.numbers) if error_of(number.name) is not None]
+    of_rig = [i for i, number in enumerate(sight.numbers) if _of_rig(number)]
     rig = slopes[:, of_rig] / unit[:, None]
     declared = np.log([sight.numbers[i].spread ** 2 for i in of_rig])
     known = ~np.isin(rows, sight.without)
@@ -335,9 +336,10 @@ def _is_of_force(number: Uncertain) -> bool:
     return error in ZEROS and error.place is Place.FORCE
 
 
-def _of_rig(numbers: Iterable[Uncertain]) -> list[Uncertain]:
-    """Those of the numbers that are errors of the rig."""
-    return [number for number in numbers if error_of(number.name) is not None]
+def _of_rig(number: Uncertain) -> bool:
+    """Whether a number is an error of the rig that a prior limits."""
+    error = error_of(number.name)
+    return error is not None and error.has_prior
 
 
 def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.ndarray) -> Mixed:

@@ -238,7 +238,12 @@ def predictor(
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    kept = [i for i, n in enumerate(left.numbers) if (error := error_of(n.name)) is None or error.is_gain]
+    # Coefficients, and what a further run on the same rig has in common with the readings: calibrations and lasting zeros.
+    kept = [
+        i
+        for i, n in enumerate(left.numbers)
+        if (error := error_of(n.name)) is None or (n.name == error.name and error.has_prior)
+    ]
     spread = {
         i: 0.0 if number.name in known else number.spread
         for i, number in enumerate(left.numbers)

@@ -73,7 +73,11 @@ class Reversals:
         """Whether readings misfit more than the others, each side of a turn counted once as its readings are alike."""
         turns = sum(np.sum(off[leg.rows] & (leg.from_turn == 0)) for leg in self.legs)
         used = np.isfinite(residual)
-        own, others = (float(np.mean(residual[rows & used] ** 2)) for rows in (off, ~off)) if np.any(off) else (0.0, 1.0)
+        own, others = (
+            (float(np.mean(residual[rows & used] ** 2)) for rows in (off, ~off))
+            if np.any(off)
+            else (0.0, 1.0)
+        )
         return bool(turns and fdtrc(turns, np.sum(used & ~off), own / others) < FALSE_ALARM)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
+from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.points import Points, levels
 from mffit.rig.histories import distance_km, sense
@@ -47,6 +48,12 @@ class Nuisance:
     def is_averaged(self) -> bool:
         """Whether the coefficients of the plain file are to contain its usual size, and the prediction what they miss of it."""
         return self.key == TEMPERATURE
+
+    def of_no_rig(self, problem: FitProblem) -> bool:
+        """Whether a number of the rig has the sign that none has; a temperature of that sign is modelled, and in doubt."""
+        return not self.is_averaged and any(
+            BY_NAME[name].known_sign * problem.value(name) < 0.0 for name in self.numbers
+        )
 
     def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
