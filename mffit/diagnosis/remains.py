@@ -51,7 +51,7 @@ class BestEffect:
     tried: int
     gain: float = -math.inf
     """Of log evidence if the best takes the place of a smooth miss of the formula and of differences of runs."""
-    missed: float = 0.0  #: log evidence of that smooth miss
+    missed: float = 0.0  #: log evidence of the smooth miss that it leaves
 
     @property
     def chance(self) -> float:
@@ -67,7 +67,7 @@ class BestEffect:
     def significant(self) -> bool:
         """Whether neither chance nor differences of runs explain it, and more is explained than left to the formula."""
         enough = math.log(self.tried / PREDICTION_FALSE_ALARM)
-        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed - self.gain)
+        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,11 +213,8 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
     if found.chance >= PREDICTION_FALSE_ALARM:
         return found
     acts = {name: part for name, part in left.by_channel(best.change).items() if np.any(part)}
-    return replace(
-        found,
-        gain=sum(left.linear.channels[name].gain(part) for name, part in acts.items()),
-        missed=sum(max(left.linear.channels[name].proof, 0.0) for name in acts),
-    )
+    gains, missed = zip(*(left.linear.channels[name].gain(part) for name, part in acts.items()), strict=True)
+    return replace(found, gain=sum(gains), missed=sum(max(one, 0.0) for one in missed))
 
 
 def _as_good(other: OneStep, best: OneStep) -> bool:

@@ -167,11 +167,13 @@ class LinearisedChannel:
             for one in model.left_out(given, rows)
         ]
 
-    def gain(self, change: np.ndarray) -> float:
-        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
+    def gain(self, change: np.ndarray) -> tuple[float, float]:
+        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses, and the
+        :attr:`proof` of what it misses beside that."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
         found = _found(without, self.smooth, self.unit, self.declared, self.components)
-        return self.stride * (_evidence(without, found, self.smooth, self.declared) - self._evidence)
+        beside = replace(self, alone=without, components=found)
+        return self.stride * (beside._evidence - self._evidence), beside.proof
 
 
 class Uncertain(NamedTuple):
