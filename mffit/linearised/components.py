@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import OptimizeResult, minimize
 
 from mffit.linearised import constants
 from mffit.linearised.mixed import Mixed, Variances
@@ -36,6 +37,12 @@ class Components:
             shape_length=0.3,
             noise=1.0,
         )
+
+    def over_one_input(self, smooth: SmoothFunctions) -> Iterator[Components]:
+        """The same where the miss changes over one of the inputs alone."""
+        longest = [constants.LONGEST_LENGTH * one.width for one in smooth.inputs]
+        for i, length in enumerate(self.lengths):
+            yield replace(self, lengths=(*longest[:i], length, *longest[i + 1 :]))
 
     @property
     def logarithms(self) -> np.ndarray:
@@ -98,10 +105,13 @@ def most_probable(
 ) -> Components:
     """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
 
-    The search begins at those of a similar fit that are ``near``, if there is one. ``further`` are logarithms of the variances
-    of numbers that the common ones have behind the functions of ``smooth``.
+    The search begins at those of a similar fit that are ``near``, if there is one, and else where the miss changes over all
+    inputs. Runs that differ can take up a miss over a condition that they hold: where they do, it begins once more with a miss
+    over one of the inputs alone, which counts if it is certain. ``further`` are logarithms of the variances of numbers that the
+    common ones have behind the functions of ``smooth``.
     """
-    guess = Components.guess(smooth, misfit).logarithms
+    first = Components.guess(smooth, misfit)
+    guess = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
     has_prior = np.ones(len(guess))
     has_prior[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
@@ -116,17 +126,29 @@ def most_probable(
 
     readings = sum(len(group) for group in model.groups)
     bounds = _bounds(smooth, misfit)
-    found = minimize(
-        loss,
-        guess if near is None else np.clip(near.logarithms, *np.transpose(bounds)),
-        jac=True,
-        method="L-BFGS-B",
-        bounds=bounds,
-        options={
-            "maxiter": int(constants.COMPONENT_STEPS),
-            "ftol": constants.COMPONENT_TOLERANCE / max(readings, 1),
-        },
-    )
+
+    def searched(begin: np.ndarray) -> OptimizeResult:
+        return minimize(
+            loss,
+            begin,
+            jac=True,
+            method="L-BFGS-B",
+            bounds=bounds,
+            options={
+                "maxiter": int(constants.COMPONENT_STEPS),
+                "ftol": constants.COMPONENT_TOLERANCE / max(readings, 1),
+            },
+        )
+
+    if near is not None:
+        return Components.of_logarithms(searched(np.clip(near.logarithms, *np.transpose(bounds))).x)
+    found = searched(guess)
+    seen = Components.of_logarithms(found.x)
+    if seen.offset > seen.missed and smooth.inputs:
+        others = (np.clip(one.logarithms, *np.transpose(bounds)) for one in first.over_one_input(smooth))
+        other = searched(min(others, key=lambda x: loss(x)[0]))
+        if other.fun < found.fun - constants.CERTAIN_EVIDENCE:
+            found = other
     return Components.of_logarithms(found.x)
 
 
