@@ -45,6 +45,9 @@ class Parameter:
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     side_spread: float | None  #: the same for sideslip to one side only, where no data show it
+    tyres_spread: (
+        float | None
+    )  #: size that two thirds of published tyres have at most, of those that have it at all
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -138,6 +141,7 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         symmetry=frozenset(row["symmetry"].split()),
         disc_spread=float(tied["disc"]) if "disc" in tied else None,
         side_spread=float(tied["side"]) if "side" in tied else None,
+        tyres_spread=float(tied["tyres"].partition("/")[0]) if "tyres" in tied else None,
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],
         equation=row["equation"],

@@ -32,14 +32,14 @@ class InstrumentTable(Table):
         None  #: U of the certificate, over the reading unless ``at`` is given
     )
     at: PositiveFloat | None = None  #: reading at which U holds, in the unit of U
-    k: PositiveFloat = 2.0  #: coverage factor of U
+    k: PositiveFloat | None = None  #: coverage factor of U; 2 unless given
 
     @property
     def u_gain(self) -> float | None:
         """Relative standard uncertainty of its calibration; None if the certificate is not given."""
         if self.channel is None or self.expanded_uncertainty is None:
             return None
-        return self.expanded_uncertainty / (self.at or 1.0) / self.k
+        return self.expanded_uncertainty / (self.at or 1.0) / (self.k or 2.0)
 
     @model_validator(mode="after")
     def _certificate_is_whole(self) -> InstrumentTable:

@@ -8,6 +8,7 @@ from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.straight import straight_cornering_stiffness
+from mffit.fit.wording import zeros_listed
 from mffit.fit.written.files import file_names, fitted_use, name_at_temperature, plain_use
 
 __all__ = [
@@ -23,4 +24,5 @@ __all__ = [
     "plain_use",
     "straight_cornering_stiffness",
     "with_free_epsilon",
+    "zeros_listed",
 ]

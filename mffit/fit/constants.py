@@ -21,7 +21,9 @@ LEAST_SPREAD_BASE_FILE = Real(
     0.05, "-", "Smallest standard deviation around a base file's value, over the usual range."
 )
 LEAST_SPREAD_DEFAULT = Real(
-    0.1, "-", "Smallest standard deviation around the table's default, over the usual range."
+    0.1,
+    "-",
+    "Smallest standard deviation around the table's default, over the usual range, where published files say none.",
 )
 CONDITIONS_OF_A_MISFIT = Count(
     500, "-", "Drawn conditions at which a base at other nominal conditions is compared with itself."

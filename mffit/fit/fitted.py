@@ -120,6 +120,16 @@ def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
     return replace(fitted, posterior=posterior, rig=rig)
 
 
+def with_errors_around(fitted: Fitted, best: Fitted) -> Fitted:
+    """A fit that took up influences for which a better one has numbers: as uncertain as that, and as far as it is from it."""
+    names = fitted.posterior.names
+    rows = [best.posterior.names.index(name) for name in names]
+    moved = [fitted.problem.value(name) - best.problem.value(name) for name in names]
+    posterior = Posterior(names, best.posterior.covariance[np.ix_(rows, rows)] + np.outer(moved, moved))
+    rig = {name: (value, posterior.stderr[name]) for name, (value, _) in fitted.rig.items()}
+    return replace(fitted, posterior=posterior, rig=rig)
+
+
 def with_free_epsilon(fitted: Fitted) -> Simulation:
     """The simulation refitted from its solution with PECP1 free.
 

@@ -18,7 +18,7 @@ from mffit.fit.borrowed.sister import sister_of
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import left_by, with_errors_of
+from mffit.fit.fitted import left_by, with_errors_around, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -99,9 +99,9 @@ def fit(
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
-    left_by_file = left_by(fitted, near=left_by_formula) if found.at_temperature else left_by_formula
-    fitted = with_errors_of(fitted, left_by_file)
-    full = with_errors_of(full, left_by_formula) if found.at_temperature else fitted
+    is_one, full = full is fitted, with_errors_of(full, left_by_formula)
+    left_by_file = left_by_formula if is_one else left_by(fitted, near=left_by_formula)
+    fitted = full if is_one else with_errors_around(fitted, full)
     found = replace(found, plain=fitted, full=full)
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
@@ -125,7 +125,7 @@ def fit(
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
     found_rig = {name: value for name, (value, _) in fitted.rig.items()}
     known_forces, with_zeros = (
-        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted))
+        predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted.rig))
     )
     wide = bands(known_forces, fitted.held, simulation, points, with_zeros)
     modelled, others = nuisance_sentences(config.tyre.name, found, temperature, runs, channels)
@@ -139,7 +139,7 @@ def fit(
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
-        rig={**fitted.rig, **found.beside_the_file, **made.zeros},
+        rig={**fitted.rig, **made.zeros},
         model=readings,
         posterior=made.posterior,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),

@@ -38,8 +38,10 @@ def scatter(name: str, expected: float, *, from_base: bool, curved: bool, unseen
         return SMALL_ON_A_DISC[name]
     if unseen_side and (alone := BY_NAME[name].side_spread) is not None:
         return alone
-    share = constants.LEAST_SPREAD_BASE_FILE if from_base and expected else constants.LEAST_SPREAD_DEFAULT
-    return max(constants.SIMILAR_TYRES_SPREAD * abs(expected), share * BY_NAME[name].width)
+    row, stated = BY_NAME[name], from_base and expected
+    share = constants.LEAST_SPREAD_BASE_FILE if stated else constants.LEAST_SPREAD_DEFAULT
+    least = share * row.width if stated or row.tyres_spread is None else row.tyres_spread
+    return max(constants.SIMILAR_TYRES_SPREAD * abs(expected), least)
 
 
 def scatters(

@@ -87,7 +87,8 @@ class FitProblem:
         """By channel, mask (n,) of the readings that depart from their sweep because it turns back there."""
         reversals, misfit = Reversals(self.points), self.misfit() if misfit is None else misfit
         return {
-            name: reversals.off(np.where(self._used(name), z * self.sigma[name], np.nan))
+            # A reading without weight has an infinite sigma.
+            name: reversals.off(np.where(self._used(name), z, np.nan) * self.sigma[name])
             for name, z in misfit.items()
         }
 

@@ -18,7 +18,7 @@ from mffit.fit.coverage import why_held
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Gaps, Verdict
-from mffit.fit.influences.nuisances import PRESSURE, TEMPERATURE
+from mffit.fit.influences.nuisances import TEMPERATURE
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
@@ -26,7 +26,7 @@ from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import UNITS, WORDS, ZEROS, shown, unit_of, words_of
+from mffit.rig_errors import BESIDE, UNITS, WORDS, ZEROS, shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded, to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir.errors import listed
@@ -205,15 +205,12 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> t
 
 def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands) -> str:
     """What the fitted zeros of the rig on a flat track share with the tyre, how much of the bands this is, and what helps."""
-    found = ", ".join(
-        f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
-        for name, (value, u) in zeros.items()
-    )
     band, exact = (to_uncertainty(half, half) for half in (bands.half, bands.half_of_exact_zeros))
     return (
-        f"on a flat track with one set-up, zeros of the rig ({found}) look almost like the tyre's own asymmetries, such as "
-        f"ply-steer, conicity and residual torque: the 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N with "
-        "these known exactly. Turn the tyre on its rim (mount), repeat set-ups (setup), or state a better rig (u_ keys of [rig])"
+        f"on a flat track with one set-up, zeros of the rig ({zeros_listed(zeros)}) look almost like the tyre's own asymmetries, "
+        f"such as ply-steer, conicity and residual torque: the 95 % bands of Fy are +-{band} N (rms), and would be +-{exact} N "
+        "with these known exactly. Turn the tyre on its rim (mount), repeat set-ups (setup), or state a better rig (u_ keys of "
+        "[rig])"
     )
 
 
@@ -286,8 +283,8 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
     said, special = (_held_by_bounds(fit) for fit in (plain, full))
     if special == said:
         return [f"{said}; check the sweeps that determine them"] if said else []
-    at_temperature = f"in the fit with temperature: {special or 'none'}"
-    return [f"{said}; {at_temperature}" if said else at_temperature]
+    modelled = f"in the fit with what is modelled beside: {special or 'none'}"
+    return [f"{said}; {modelled}" if said else modelled]
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
@@ -360,9 +357,8 @@ def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str
         )
     stated = (f"{words_of(n)} {_stated(n, *found.full.rig[n])}" for n in verdict.nuisance.numbers)
     told = f"{', '.join(stated)}, and the files are without it"
-    if verdict.nuisance.key == PRESSURE:
-        mean = 1e-3 * float(np.mean(found.full.problem.points.p))
-        told += f": MF 6.2 has no term for it, and a simulation that has one takes it from {mean:.1f} kPa"
+    if {error.name for error in BESIDE}.issuperset(verdict.nuisance.numbers):
+        told += ": MF 6.2 has no term for it, and predict adds it"
     return ascii_only(told)
 
 
@@ -412,7 +408,7 @@ def remarks(
     config: Config, points: Points, fitted: Fitted, values: Mapping[str, Any], found: Bands
 ) -> list[str]:
     """What the bands of a fitted tyre with these values have to say."""
-    zeros = zeros_of_rig(fitted)
+    zeros = zeros_of_rig(fitted.rig)
     said = [
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
         *(beside_sentence(band) for band in (found.combined, found.other_side) if band is not None),
@@ -421,6 +417,14 @@ def remarks(
     return [f"{text[0].upper()}{text[1:]}." for text in said if text]
 
 
-def zeros_of_rig(fitted: Fitted) -> dict[str, tuple[float, float]]:
-    """The zeros of the rig as the fit has them, with standard uncertainties."""
-    return {error.name: fitted.rig[error.name] for error in ZEROS if error.name in fitted.rig}
+def zeros_listed(rig: Mapping[str, tuple[float, float]]) -> str:
+    """The same in words, joined by commas."""
+    return ", ".join(
+        f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
+        for name, (value, u) in zeros_of_rig(rig).items()
+    )
+
+
+def zeros_of_rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """The zeros among the numbers of a rig with one set-up, with standard uncertainties."""
+    return {error.name: rig[error.name] for error in ZEROS if error.name in rig}

@@ -18,7 +18,7 @@ from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
 from mffit.rig import Simulation
-from mffit.rig_errors import ZEROS, error_of
+from mffit.rig_errors import ZEROS, Place, error_of
 from mffit.scatter import rms, robust
 
 
@@ -195,10 +195,11 @@ class LinearisedFit:
         """The fitted zeros of the rig beside what the formula misses: changes of their values, and standard uncertainties.
 
         The coefficients are as they are. A constant that the formula may miss belongs to a zero only as far as its declared
-        uncertainty exceeds the size of such constants; all channels together say how far.
+        uncertainty exceeds the size of such constants; all channels together say how far. Only zeros of forces: that of an angle
+        moves along the curves, as coefficients do that are held here.
         """
-        rig = _of_rig(self.numbers)
-        free = np.array([error_of(number.name) in ZEROS and not number.held for number in rig], dtype=bool)
+        rig = [number for number in self.numbers if _of_rig(number)]
+        free = np.array([_is_of_force(number) and not number.held for number in rig], dtype=bool)
         zeros = [number for number, own in zip(rig, free, strict=True) if own]
         information, pull = np.diag([number.spread**-2.0 for number in zeros]), np.zeros(len(zeros))
         for channel in self.channels.values():
@@ -268,7 +269,8 @@ def _channel(
 ) -> LinearisedChannel:
     """The components are found with the coefficients as they are, since free ones would take up what the formula misses.
 
-    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared.
+    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared. Influences that
+    the fit found, such as that of temperature, are as they are: nothing limits what a free one would take up.
     """
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
@@ -282,13 +284,11 @@ def _channel(
     smooth = SmoothFunctions.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], along(at_tyre, inputs))
-    if (
-        len(groups) == 1
-    ):  # a single run does not show how runs differ, and would take up what the formula misses
+    if len(groups) == 1:  # how runs differ is not seen, and one run would take up what the formula misses
         own = np.zeros_like(own)
     missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
-    of_rig = [i for i, number in enumerate(sight.numbers) if error_of(number.name) is not None]
+    of_rig = [i for i, number in enumerate(sight.numbers) if _of_rig(number)]
     rig = slopes[:, of_rig] / unit[:, None]
     declared = np.log([sight.numbers[i].spread ** 2 for i in of_rig])
     known = ~np.isin(rows, sight.without)
@@ -330,9 +330,16 @@ def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given:
     return np.asarray(found.mean[:functions])
 
 
-def _of_rig(numbers: Iterable[Uncertain]) -> list[Uncertain]:
-    """Those of the numbers that are errors of the rig."""
-    return [number for number in numbers if error_of(number.name) is not None]
+def _is_of_force(number: Uncertain) -> bool:
+    """Whether a number is the zero of a force or moment."""
+    error = error_of(number.name)
+    return error in ZEROS and error.place is Place.FORCE
+
+
+def _of_rig(number: Uncertain) -> bool:
+    """Whether a number is an error of the rig that a prior limits."""
+    error = error_of(number.name)
+    return error is not None and error.has_prior
 
 
 def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.ndarray) -> Mixed:

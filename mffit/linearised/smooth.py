@@ -1,8 +1,10 @@
 """Smooth functions of several conditions, with a Gaussian prior of few numbers.
 
-Products of cosines over the tested range with a little room around it, as in a reduced-rank Gaussian process with a squared
-exponential covariance (Solin and Sarkka 2020, Statistics and Computing 30, 419), so that only variances change with size and
-lengths. A constant is one of them; how much of it belongs to the zeros of the rig is for their priors to say.
+Products of cosines over the tested range with a little room around it, as in a reduced-rank Gaussian process (Solin and Sarkka
+2020, Statistics and Computing 30, 419), so that only variances change with size and lengths. Each condition has a Matern
+covariance of order 5/2: what is missed bends fast where a tyre begins to slide and slowly elsewhere, for which the one length of
+a squared exponential does not suffice. A constant is one of the functions; how much of it belongs to the zeros of the rig is for
+their priors to say.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from mffit.linearised import constants
 from mffit.linearised.inputs import Input
 
 LEAST = float(-np.log(constants.LEAST_SHARE))
+WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
+"""Radians per length from which the share of a half wave is too small."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +34,7 @@ class SmoothFunctions:
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
         for one in inputs:  # functions too small in some conditions are so in all: they never become many
             order = np.arange(_most_half_waves(one) + 1)
-            size = (size[:, None] - 0.5 * (np.pi * order * one.spacing / _length(one)) ** 2).ravel()
+            size = (size[:, None] + _log_spectrum(np.pi * order * one.spacing / _length(one))[0]).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
             orders, size = orders[size > -LEAST], size[size > -LEAST]
         largest = np.argsort(-size, kind="stable")[: constants.FUNCTIONS]
@@ -53,11 +57,11 @@ class SmoothFunctions:
         slope = np.zeros((len(self.orders), len(self.inputs)))
         for i, one in enumerate(self.inputs):
             order = np.arange(_most_half_waves(one) + 1)
-            exponent = -0.5 * (np.pi * order * lengths[i] / _length(one)) ** 2
+            exponent, by_length = _log_spectrum(np.pi * order * lengths[i] / _length(one))
             total = float(np.log(np.sum(np.exp(exponent))))
             share = np.exp(exponent - total)
             size += (exponent - total)[self.orders[:, i]]
-            slope[:, i] = 2.0 * (exponent - share @ exponent)[self.orders[:, i]]
+            slope[:, i] = (by_length - share @ by_length)[self.orders[:, i]]
         return size, slope
 
     def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -75,4 +79,9 @@ def _length(one: Input) -> float:
 
 def _most_half_waves(one: Input) -> int:
     """Half waves of the functions that matter at the shortest length."""
-    return int(np.ceil(np.sqrt(2.0 * LEAST) / np.pi * _length(one) / one.spacing))
+    return int(np.ceil(WIDEST / np.pi * _length(one) / one.spacing))
+
+
+def _log_spectrum(wave: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Logarithm of the share (k,) of half waves in radians per length, and its derivative by that of the length: Matern 5/2."""
+    return -3.0 * np.log1p(wave**2 / 5.0), -6.0 * wave**2 / (5.0 + wave**2)

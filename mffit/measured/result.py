@@ -259,11 +259,8 @@ class Measured(Brief):
 
     @property
     def budgets(self) -> dict[str, tuple[Contribution, ...]]:
-        """Of every quantity at the nominal load, by its key in JSON."""
-        if self.nominal is None:
-            return {}
-        found = {"epsilon_gamma": self.nominal.budget, **self.nominal.budgets}
-        return {KEYS[name]: rows for name, rows in found.items() if rows}
+        """Of every other quantity at the nominal load, by its key in JSON."""
+        return {KEYS[name]: rows for name, rows in self.nominal.budgets.items()} if self.nominal else {}
 
     def by_load(self, key: str) -> dict[float, float]:
         """One quantity by load [N], such as "C_alpha"."""

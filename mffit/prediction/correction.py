@@ -96,7 +96,8 @@ class _Missed:
 
     def __call__(self, at: pd.DataFrame) -> dict[str, np.ndarray]:
         points = self.known.points(self.fitted, _whole(at))
-        return {name: self.known.missed(name, points) for name in self.names}
+        beyond = self.known.beyond(self.fitted, points, self.names)
+        return {name: self.known.missed(name, points) + beyond[name] for name in self.names}
 
 
 def _whole(at: pd.DataFrame) -> pd.DataFrame:

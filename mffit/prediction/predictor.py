@@ -19,7 +19,7 @@ from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
 from mffit.rig import Readings, Simulation
-from mffit.rig_errors import ZEROS, error_of
+from mffit.rig_errors import BESIDE, ZEROS, error_of
 from tir import Tyre
 
 
@@ -96,6 +96,7 @@ class Predictor:
     zeros: Mapping[
         str, float
     ]  #: of the rig as the fit found them, the largest of all set-ups; a reading contains them
+    beside: Mapping[str, float]  #: numbers of the tyre that the file has no coefficient for
 
     @property
     def curved(self) -> bool:
@@ -137,6 +138,7 @@ class Predictor:
         ``file`` and the fitted model are on a rig without errors.
         """
         names = [name for name in self.channels if channels is None or name in channels]
+        fitted = fitted.with_numbers(self.beside)
         plain = file.readings(points, names)
         forces, slopes = fitted.sensitivities(points, self.names, names)
         as_read = fitted.with_numbers(self.zeros).readings(points, names)
@@ -157,8 +159,14 @@ class Predictor:
         found = self.forces(file, fitted, points, channels)
         return Readings(**{name: COVERAGE_FACTOR_95 * one.u_file for name, one in found.items()})
 
+    def beyond(self, fitted: Tyre, points: Points, names: Collection[str]) -> Readings:
+        """What the file lacks (n,) because it has no coefficient for it, by channel."""
+        file = Simulation.of(fitted, turn_slip=self.curved)
+        whole, plain = (one.readings(points, names) for one in (file.with_numbers(self.beside), file))
+        return Readings(**{name: whole[name] - plain[name] for name in names})
+
     def missed(self, name: str, points: Points) -> np.ndarray:
-        """What the file misses (n,) of a channel, without uncertainty."""
+        """What the formula misses (n,) of a channel, without uncertainty."""
         channel = self.channels[name]
         path = self._of_path(channel, points)
         found = [channel.mean(settings, path) for settings in _settings(points, channel.smooth.inputs)]
@@ -230,7 +238,12 @@ def predictor(
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    kept = [i for i, n in enumerate(left.numbers) if (error := error_of(n.name)) is None or error.is_gain]
+    # Coefficients, and what a further run on the same rig has in common with the readings: calibrations and lasting zeros.
+    kept = [
+        i
+        for i, n in enumerate(left.numbers)
+        if (error := error_of(n.name)) is None or (n.name == error.name and error.has_prior)
+    ]
     spread = {
         i: 0.0 if number.name in known else number.spread
         for i, number in enumerate(left.numbers)
@@ -243,7 +256,8 @@ def predictor(
         for name, own in left.channels.items()
     }
     names = tuple(left.numbers[i].name for i in kept)
-    return Predictor(main_path(points), names, channels, zeros)
+    beside = {error.name: rig[error.name] for error in BESIDE if error.name in rig}
+    return Predictor(main_path(points), names, channels, zeros, beside)
 
 
 def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:

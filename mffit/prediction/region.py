@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from scipy.special import ndtr
 
-from mffit.constants import COVERAGE_FACTOR_95
+from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM
 from mffit.linearised.inputs import COLUMNS, LEVELS, inputs_of, swept_of
 from mffit.points import Points, levels
 from mffit.points.points import OF_SI
@@ -22,21 +23,23 @@ from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir import Tyre
 
-SIDES: Mapping[str, int] = {"": 0, "positive": 1, "negative": -1}
-"""Signs of the force."""
+SIDES = ("", "positive", "negative", "apart")
+"""Of the force: both signs, one of them, and the positive less the negative ones."""
+
+SLIP = {"Fx": "kappa", "Fy": "alpha"}
+"""By channel, the slip over which its force has a largest value, the grip."""
 
 
 @dataclass(frozen=True, slots=True)
 class MissedRegion:
     """Conditions under which the largest forces of every sweep are missed in one sense."""
 
-    side: str  #: sign of the force, "positive" or "negative"; "" for both
+    side: str  #: one of ``SIDES``
     over: Mapping[str, tuple[float, float]]
     """Conditions of which it has not all levels, with the lowest and the highest level in it [unit of the column]."""
-    least: float  #: force of the tyre over that of the file, less 1, in the sweep that shows least
-    most: float  #: in that which shows most
+    lower: float  #: 95 % interval of the mean of all sweeps of the force of the tyre over that of the model, less 1
+    upper: float
     sweeps: int  #: sweeps, or groups of readings at equal settings, in the region
-    agreeing: int  #: those whose readings lie on this side of the file
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,16 +49,16 @@ class MissedAtReadings:
     channel: str
     size: float  #: root mean square [unit of the channel]
     largest: float  #: size of the channel's largest force in the file
+    is_grip: bool  #: whether sweeps over its own slip reach its largest forces
     region: MissedRegion | None  #: where it misses most; None if nowhere in one sense for certain
 
 
 class _Seen(NamedTuple):
-    """What the largest forces of one sweep at its settings show."""
+    """What the largest forces of one sweep at its settings show, of one side."""
 
     level: np.ndarray  #: (d,) of the held conditions
-    share: float  #: missed over the force
-    u: float  #: of it
-    residual: float  #: of the readings, in the sense of the force
+    share: float  #: measured less model, over the model
+    u: float  #: standard uncertainty of that as a statement about the tyre: runs differ
 
 
 def missed_at_readings(
@@ -81,43 +84,60 @@ def missed_at_readings(
     groups = [whole[rows] for rows in levels.rows_of_equal(keys.T[whole])]
     at = pd.DataFrame({name: points.condition(name) for name in UNITS if name not in (PATH, "T_degC")})
     at[PATH] = points.phi_t
-    best = known.predict(fitted, fitted, at)
+    run = known.predict(fitted, fitted, at.assign(T_degC=points.condition("T_degC")))
     force = Simulation.of(fitted, turn_slip=known.curved).readings(points, known.channels)
     found = {}
     for name in (name for name in known.channels if name in proven):
-        missed = known.missed(name, known.points(fitted, at))
-        u, residual = best[f"u_{column(name, 'best')}"].to_numpy(), points.channel(name) - model[name]
-        read = np.isfinite(residual)
-        candidates: list[tuple[float, MissedRegion]] = []
-        for side, sign in SIDES.items():
-            seen = []
-            for rows in groups:
-                F = force[name][rows]
-                large = np.abs(F) >= constants.LARGE_FORCE * np.max(np.abs(F))
-                inside = rows[read[rows] & large & ((sign == 0) | (np.sign(F) == sign))]
-                if len(inside):
-                    sense, total = np.sign(force[name][inside]), np.sum(np.abs(force[name][inside]))
-                    share, of_u = (float(np.sum(x) / total) for x in (sense * missed[inside], u[inside]))
-                    own = np.array([values[inside[0]] for values in level.values()])
-                    seen.append(_Seen(own, share, of_u, float(np.sum(sense * residual[inside]))))
-            candidates += _regions(side, tuple(level), seen)
+        missed, residual = known.missed(name, known.points(fitted, at)), points.channel(name) - model[name]
+        read, u = np.isfinite(residual), run[f"u_{column(name, 'run')}"].to_numpy()
+        seen: dict[str, list[_Seen]] = {side: [] for side in SIDES}
+        for rows in (own[read[own]] for own in groups):
+            F = force[name][rows]
+            large = np.abs(F) >= constants.LARGE_FORCE * np.max(np.abs(F), initial=0.0)
+            signs = {"": large, "positive": large & (F > 0.0), "negative": large & (F < 0.0)}
+            here = np.array([values[rows[0]] for values in level.values()])
+            of_sign = {
+                side: _Seen(here, *(float(x / np.sum(np.abs(F[own]))) for x in sums))
+                for side, own in signs.items()
+                if np.any(F[own])
+                for sums in [(np.sign(F[own]) @ residual[rows[own]], np.sum(u[rows[own]]))]
+            }
+            if len(of_sign) == len(signs):
+                up, down = of_sign["positive"], of_sign["negative"]
+                of_sign["apart"] = _Seen(here, up.share - down.share, float(np.hypot(up.u, down.u)))
+            for side, one in of_sign.items():
+                seen[side].append(one)
         found[name] = MissedAtReadings(
             channel=name,
             size=rms(missed[read]),
             largest=float(np.max(np.abs(force[name][read]), initial=1e-12)),
-            region=max(candidates, key=lambda one: one[0])[1] if candidates else None,
+            is_grip=SLIP.get(name) in swept,
+            region=_clearest(tuple(level), seen),
         )
     return found
 
 
-def _regions(side: str, names: Sequence[str], seen: Sequence[_Seen]) -> Iterator[tuple[float, MissedRegion]]:
-    """Regions of at most two conditions, each from an end of what was tested, with the number by which they are chosen.
+def _clearest(names: Sequence[str], seen: Mapping[str, Sequence[_Seen]]) -> MissedRegion | None:
+    """The simplest region that chance does not explain, of these the one missed most; None if there is none."""
+    found = [one for side, own in seen.items() for one in _regions(side, names, own)]
+    clear = [one for one in found if len(found) * one.chance < FALSE_ALARM]
+    return max(clear, key=lambda one: (-one.restrictions, one.weight)).region if clear else None
 
-    That is the mean miss over the force times the root of the share of the sweeps, of which those that do not show it count less.
-    """
+
+class _Candidate(NamedTuple):
+    """A region, and how it is chosen."""
+
+    region: MissedRegion
+    chance: float  #: that the mean is so far from zero because runs differ
+    restrictions: int
+    weight: float  #: mean miss over the force, times the root of the number of sweeps
+
+
+def _regions(side: str, names: Sequence[str], seen: Sequence[_Seen]) -> Iterator[_Candidate]:
+    """Regions of at most two conditions, each from an end of what was tested."""
     if len(seen) < 2:
         return
-    level, share, u, residual = (np.array(own) for own in zip(*seen, strict=True))
+    level, share, u = (np.array(own) for own in zip(*seen, strict=True))
     ends = [
         (i, inside)
         for i in range(len(names))
@@ -130,16 +150,16 @@ def _regions(side: str, names: Sequence[str], seen: Sequence[_Seen]) -> Iterator
         n = int(np.sum(inside))
         if n < 2:
             continue
-        mean = float(np.mean(share[inside]))
-        certain = abs(mean) > COVERAGE_FACTOR_95 * np.mean(u[inside])
-        if not (certain and np.all(share[inside] * mean > 0.0)):
-            continue
+        mean, of_mean = float(np.mean(share[inside])), float(np.sqrt(np.sum(u[inside] ** 2))) / n
+        half, alike = COVERAGE_FACTOR_95 * of_mean, np.all(share[inside] * mean > 0.0) and abs(mean) < 1.0
         over = {}
         for i, _ in chosen:
             heading = COLUMNS[names[i]]
             own = level[inside, i] * OF_SI.get(CONDITIONS[heading].unit, 1.0)
             over[heading] = (float(own.min()), float(own.max()))
-        least, most = sorted(share[inside].tolist(), key=abs)[:: n - 1]
-        agreeing = int(np.sum(residual[inside] * mean > 0.0))
-        score = abs(mean) * np.sqrt(n / len(seen)) * agreeing / n
-        yield score, MissedRegion(side, over, least, most, n, agreeing)
+        yield _Candidate(
+            MissedRegion(side, over, mean - half, mean + half, n),
+            2.0 * float(ndtr(-abs(mean) / of_mean)) if alike else 1.0,
+            len(chosen) + (side != ""),
+            abs(mean) * np.sqrt(n),
+        )

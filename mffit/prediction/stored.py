@@ -36,6 +36,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "phi_t_per_m": found.path,
         "coefficients": found.names,
         "zeros": dict(found.zeros),
+        "beside": dict(found.beside),
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
@@ -113,7 +114,10 @@ def _predictor(content: dict[str, Any]) -> Predictor:
         path=float(content["phi_t_per_m"]),
         names=names,
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
-        zeros={ERROR_OF[name].name: float(value) for name, value in content["zeros"].items()},
+        **{
+            key: {ERROR_OF[name].name: float(value) for name, value in content[key].items()}
+            for key in ("zeros", "beside")
+        },
     )
 
 

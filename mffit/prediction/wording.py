@@ -7,8 +7,6 @@ from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import ascii_only, number
 from tir.errors import listed
 
-NAMES = {"Fx": "grip", "Fy": "grip"}
-"""What the largest force of a sweep is called; otherwise by its channel."""
 SIDES = {
     ("Fx", "positive"): "driving",
     ("Fx", "negative"): "braking",
@@ -18,36 +16,44 @@ SIDES = {
 """Where a channel has a sign, in ISO-W; otherwise the sign is said."""
 BECAUSE = {
     "Fz_N": ("Fx", "Fy", "the formula's grip is linear in the load"),
-    "alpha_deg": ("Fx", "the formula weakens driving and braking alike by sideslip"),
+    "apart": ("Fx", "the formula's grip is the same driving and braking"),
 }
-"""By condition, the channels of which a structure of the formula explains such a miss, and that structure."""
+"""By condition or side, the channels of whose grip a structure of the formula explains such a miss, and that structure."""
 
 
 def missed_sentence(found: MissedAtReadings) -> str:
     """What limits a channel: the formula, with the size of what it misses, and where most."""
     name, unit = found.channel, CHANNELS[found.channel].unit
-    where = "" if found.region is None else f"; {_most(name, found.region)}"
+    where = "" if found.region is None else f"; {_most(found, found.region)}"
     return (
         f"what limits {name} is the formula, not the readings: alike in all sweeps it misses {found.size:.3g} {unit} rms, "
         f"{100.0 * found.size / found.largest:.1f} % of the largest {name}{where}"
     )
 
 
-def _most(name: str, region: MissedRegion) -> str:
+def _most(found: MissedAtReadings, region: MissedRegion) -> str:
     """The region of the largest miss, in words."""
     over = [_interval(heading, *ends) for heading, ends in region.over.items()]
-    side = SIDES.get((name, region.side), f"of {region.side} sign" if region.side else "")
-    what = " ".join(filter(None, (NAMES.get(name, f"largest {name}"), side)))
-    ends = sorted({f"{100.0 * abs(share):.2g}" for share in (region.least, region.most)}, key=float)
-    sense = "low" if region.most > 0.0 else "high"
-    seen = (
-        "every sweep" if region.agreeing == region.sweeps else f"{region.agreeing} of {region.sweeps} sweeps"
-    )
-    why = [said for heading in region.over for *of, said in [BECAUSE.get(heading, ("",))] if name in of]
-    return (
-        f"its {what}{' at ' if over else ''}{listed(over)} is {' to '.join(ends)} % too {sense} in {seen} there"
-        f"{f', because {listed(why)}' if why else ''}"
-    )
+    name, what = found.channel, "grip" if found.is_grip else f"largest {found.channel}"
+    where = f" at {listed(over)}" if over else ""
+    ends = sorted({f"{100.0 * abs(share):.2g}" for share in (region.lower, region.upper)}, key=float)
+    size, more = f"{' to '.join(ends)} %", region.upper > 0.0
+    seen = f"in all {region.sweeps} sweeps there"
+    why = [
+        said for key in (*region.over, region.side) for *of, said in [BECAUSE.get(key, ("",))] if name in of
+    ]
+    because = f", because {listed(why)}" if why and found.is_grip else ""
+    if region.side == "apart":
+        one, other = (
+            _side(name, side) for side in (("positive", "negative") if more else ("negative", "positive"))
+        )
+        return f"its {what}{one} exceeds that{other}{where} by {size} more than in the file {seen}{because}"
+    return f"its {what}{_side(name, region.side)}{where} is {size} too {'low' if more else 'high'} {seen}{because}"
+
+
+def _side(name: str, side: str) -> str:
+    """A sign of the force in words; none for both."""
+    return f" {SIDES.get((name, side), f'of {side} sign')}" if side else ""
 
 
 def _interval(heading: str, low: float, high: float) -> str:

@@ -126,10 +126,10 @@ class Chain:
         """Speed above the most frequent one (n,) [m/s]; 0 where it was not measured."""
         return np.nan_to_num(self.points.V - self._history.usual_speed)
 
-    @cached_property
-    def pressure_above_mean(self) -> np.ndarray:
-        """Pressure above the mean of all points (n,) [kPa]."""
-        return 1e-3 * (self.points.p - self._history.mean_pressure)
+    @property
+    def pressure_above_nominal(self) -> Any:
+        """Pressure above NOMPRES of the tyre (n,) [kPa]."""
+        return 1e-3 * (self.points.p - self._coefficients["NOMPRES"])
 
     @cached_property
     def time(self) -> np.ndarray:

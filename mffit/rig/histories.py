@@ -42,11 +42,6 @@ class History:
         """The most frequent speed [m/s]."""
         return reference_speed(self.points)
 
-    @cached_property
-    def mean_pressure(self) -> float:
-        """[Pa]."""
-        return float(np.mean(self.points.p))
-
 
 def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
     """Rows (m,) of successive blocks of the points, in their order; with ``by_sweep`` no sweep is divided.

@@ -3,6 +3,7 @@
 from mffit.rig_errors.catalog import (
     AFTER,
     BEFORE,
+    BESIDE,
     BY_NAME,
     CALIBRATED,
     DECLARED,
@@ -28,6 +29,7 @@ from mffit.rig_errors.record import Appearance, AtLoad, AtZero, Declared, Place,
 __all__ = [
     "AFTER",
     "BEFORE",
+    "BESIDE",
     "BY_NAME",
     "CALIBRATED",
     "DECLARED",

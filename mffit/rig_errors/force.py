@@ -246,6 +246,7 @@ OVERTURNING_ZERO = _zero_of(
 )
 ROLLING_ZERO = _zero_of(
     name="My0_Nm",
+    word="load-cell zero of My",
     unit="Nm",
     meaning="reported My = My + My0",
     acts_on=("My",),

@@ -129,6 +129,11 @@ class RigError:
         return self.undisturbed == 1.0
 
     @property
+    def has_prior(self) -> bool:
+        """Whether a declaration, or the size of such zeros, limits it; nothing limits an influence that a fit finds."""
+        return self.declared is not None or self.of_setup
+
+    @property
     def lower(self) -> float:
         """The least number that a rig can have."""
         return self.limits[0]

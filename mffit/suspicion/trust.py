@@ -16,10 +16,9 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtr, chdtrc, fdtrc, ndtr
+from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
 
 from mffit.constants import (
-    COVERAGE_FACTOR_95,
     FALSE_ALARM,
     LEAST_PREDICTED_SHARE,
     NAMED_IN_SENTENCE,
@@ -397,10 +396,10 @@ def many_at_limits(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "else; repeat a condition to see whether it is there",
 )
 def sign_of_no_other(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Sign of a temperature term or of a hysteresis, beyond its 95 % uncertainty."""
+    """Sign of a temperature term or of a hysteresis, beyond what chance explains."""
     for name, (number, spread) in fit.rig.items():
         error = error_of(name)
-        if error is not None and error.known_sign * number < -COVERAGE_FACTOR_95 * spread:
+        if error is not None and error.known_sign * number < ndtri(FALSE_ALARM) * spread:
             *found, unit = shown(name, number, spread)
             value, u = rounded(*found)
             yield {"what": words_of(name), "value": value, "u": u, "unit": unit}

@@ -64,7 +64,6 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
             usual_speed(sweeps),
             plan.tables.drive.drag_Nm,
             plan.tables.drive.slip_against,
-            float(np.mean(np.concatenate([sweep.p for sweep in sweeps]))) if sweeps else math.nan,
         )
         for setup, own in faults.items()
     }

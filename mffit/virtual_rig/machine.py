@@ -6,7 +6,6 @@ record. Everything is in ISO-W, contact frame.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import SimpleNamespace
@@ -43,9 +42,6 @@ class Machine(NamedTuple):
     usual_speed: float  #: [m/s], where the speed has no influence
     drag: float = 0.0  #: moment against the rotation of a wheel that rolls freely [Nm]
     slip_against: str = "free-rolling"  #: what the slip that the rig reports is against
-    mean_pressure: float = (
-        math.nan
-    )  #: [Pa] of all points, at which the arm of the side force is that of the file
 
     def with_faults(self, added: Mapping[str, float]) -> Machine:
         """The machine with ``added`` rig errors, for a sweep that has errors of its own."""
@@ -104,12 +100,15 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_drive_grip_per_K": ("LMUX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
-    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: 1.0 + x * (s.p - m.mean_pressure) / 1000.0),
     "run_grip": ("LMUY", lambda x, s, m: 1.0 + x),
     "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
     "sweep_heating": ("LMUY", lambda x, s, m: 1.0 + x * np.arange(len(s)) / max(len(s) - 1, 1)),
 }
-"""Factors on scaling factors and coefficients of the tyre."""
+"""Factors on scaling factors of the tyre."""
+ADDED: dict[str, tuple[str, Formula]] = {
+    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p - m.tyre["NOMPRES"]) / 1000.0),
+}
+"""Added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
     "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
     "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),
@@ -128,7 +127,7 @@ CELL = (
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "relaxation_m")
 """Path radius and crown: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
-FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
+FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *ADDED, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
 
@@ -259,6 +258,9 @@ def _scaled(machine: Machine, settings: Settings) -> Any:
     for error, (name, formula) in SCALES.items():
         if machine.faults[error]:
             values[name] = values[name] * formula(machine.faults[error], settings, machine)
+    for error, (name, formula) in ADDED.items():
+        if machine.faults[error]:
+            values[name] = values[name] + formula(machine.faults[error], settings, machine)
     return SimpleNamespace(**values)
 
 

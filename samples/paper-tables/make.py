@@ -37,6 +37,9 @@ backlash_deg = 0.0            # the printed force has it removed
 u_loadcell_offset_N = 10
 u_camber_alignment_deg = 0.5
 u_slip_alignment_N = 25
+u_Fy_gain = 0.0               # the published budgets have no calibrations
+u_Fz_gain = 0.0
+u_gamma_gain = 0.0
 
 [rolling_radius]
 effective_radius = {r_e}

@@ -24,7 +24,7 @@ def fitted(factor, *, outliers=(), doubts=()):
     """A fit that used the stated uncertainties of Fy times ``factor`` (n,)."""
     sigma = {"Fy": POINTS.u_Fy * factor, "Mz": np.full(N, np.inf)}
     search = SimpleNamespace(problem=SimpleNamespace(sigma=sigma))
-    return SimpleNamespace(search=search, outliers=outliers, doubts=doubts)
+    return SimpleNamespace(search=search, outliers=outliers, doubts=doubts, at_turns={})
 
 
 def test_a_common_scale_of_the_uncertainties_discounts_nothing():

@@ -46,6 +46,16 @@ class World:
 
 YIELDING, COMPLIANT = {"compliance_deg_per_Nm": 0.006}, {"u_steering_compliance_deg_per_Nm": 0.005}
 COEFFICIENTS = ("PKY1", "PDY1", "PKY6", "QDZ1")
+NOT_DECLARED = {
+    "crosstalk of 2 % of the load that grows with camber": {"crosstalk_camber": 0.02},
+    "crown: contact point moves by 80 mm sin(camber)": {"crown_m": 0.08},
+    "disc tilts by 0.4 deg per kN": {"disc_tilt_deg_per_kN": 0.4},
+    "camber zero moves by 0.6 deg per kN": {"gamma_0_deg_per_kN": 0.6},
+    "friction falls by 4 % along every sweep": {"sweep_heating": -0.04},
+    "load off by 4 % sin(camber)": {"load_camber_odd": 0.04},
+    "load cell off by 10 N, turning with the direction": {"F0_direction_N": 10.0},
+}
+"""Rig errors that no key of [rig] declares, of a size that a rig may have."""
 PLY_STEER = 0.002  # rad, standard deviation
 
 
@@ -90,6 +100,7 @@ WORLDS = {
     "steering compliance drawn from 0.005 deg/Nm": World(declared=COMPLIANT),
     "steering compliance 0.006 deg/Nm, not declared": World(faults=YIELDING),
     "steering compliance -0.006 deg/Nm, not declared": World(faults={"compliance_deg_per_Nm": -0.006}),
+    **{name: World(faults=faults) for name, faults in NOT_DECLARED.items()},
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 

@@ -27,7 +27,7 @@ from drawn_rigs import (
     plan_content,
     scaled,
 )
-from rig_error_study import numbers
+from rig_error_study import NOT_DECLARED, numbers
 
 import mffit
 import tir
@@ -149,13 +149,7 @@ WORLDS = {
     "no camber, base with PECP1 0.5": World(base={"PECP1": 0.5}, edits=(upright,)),
     "radius entered as diameter": World(written=diameter_as_radius),
     "load of one sweep 10 % low": World(spoil=warps_one_load),
-    "crosstalk of 2 % of the load that grows with camber": World(faults={"crosstalk_camber": 0.02}),
-    "crown: contact point moves by 80 mm sin(camber)": World(faults={"crown_m": 0.08}),
-    "disc tilts by 0.4 deg per kN": World(faults={"disc_tilt_deg_per_kN": 0.4}),
-    "camber zero moves by 0.6 deg per kN": World(faults={"gamma_0_deg_per_kN": 0.6}),
-    "friction falls by 4 % along every sweep": World(faults={"sweep_heating": -0.04}),
-    "load off by 4 % sin(camber)": World(faults={"load_camber_odd": 0.04}),
-    "load cell off by 10 N, turning with the direction": World(faults={"F0_direction_N": 10.0}),
+    **{name: World(faults=faults) for name, faults in NOT_DECLARED.items()},
     "warming by 23 K at -0.4 %/K, temperature not recorded": World(
         faults={"k_T_per_K": -0.004}, edits=(warming,), spoil=without_temperature
     ),

@@ -81,8 +81,13 @@ def test_every_row_is_sound():
 def _sound_tie(row: dict[str, str]) -> None:
     for tie in row["tied"].split():
         where, _, spread = tie.partition(":")
-        assert where in ("disc", "side"), row["name"]
+        spread, _, files = spread.partition("/")
+        assert where in ("disc", "side", "tyres"), row["name"]
         assert float(spread) > 0.0, row["name"]
+        assert (where == "tyres") == bool(files), (
+            f"{row['name']}: the number of files stands behind the spread of tyres"
+        )
+        assert where != "tyres" or (int(files) >= 8 and float(row["default"]) == 0.0), row["name"]
         assert row["stage"], f"{row['name']} is tied, and no stage frees it"
         assert where != "side" or "both_sides" in row["needs"], f"{row['name']} is not held by one side"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -53,6 +53,7 @@ class NuisanceChoice:
 
 _WITHIN_CHANCE = "what it explains is within chance"
 _WORSE = "left-out sweeps are predicted worse with it"
+_OF_NO_RIG = "no rig has one of this sign, so that it would take up something else"
 _TOO_FEW = f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
 
 
@@ -164,12 +165,18 @@ def _judged(
             break
         # two together only if neither does alone
         best = min(gains, key=lambda step: (len(step), -gains[step]))
+        refitted = _refitted(model, best)
+        if any(nuisance.of_no_rig(refitted.problem) for nuisance in best):
+            for nuisance in best:
+                verdicts[nuisance.id] = replace(verdicts[nuisance.id], reason=_OF_NO_RIG)
+            left = [nuisance for nuisance in left if nuisance not in best]
+            continue
         rivals_of = {nuisance.rival: nuisance for nuisance in best}
         for other in left:
             if other.id in rivals_of:
                 verdicts[other.id] = Verdict(other, False, f"the {rivals_of[other.id].name} explains more")
         left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals_of]
-        model = _refitted(model, best)
+        model = refitted
     here = model.left_out(group)
     for nuisance in model.chosen:
         reason = _said(config, nuisance) if nuisance in demanded else "what it explains is beyond chance"

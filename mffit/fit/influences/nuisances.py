@@ -11,6 +11,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, UPRIGHT, VISIBLE_TEMPERATURE
 from mffit.fit import constants
+from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber
 from mffit.points import Points, levels
 from mffit.rig.histories import distance_km, sense
@@ -19,8 +20,6 @@ from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
 """Key of [fit] with the influences of the tyre's temperature, which a second file states."""
-PRESSURE = "pressure"
-"""The same of what pressure does and no coefficient says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +47,13 @@ class Nuisance:
     @property
     def is_averaged(self) -> bool:
         """Whether the coefficients of the plain file are to contain its usual size, and the prediction what they miss of it."""
-        return self.key in (TEMPERATURE, PRESSURE)
+        return self.key == TEMPERATURE
+
+    def of_no_rig(self, problem: FitProblem) -> bool:
+        """Whether a number of the rig has the sign that none has; a temperature of that sign is modelled, and in doubt."""
+        return not self.is_averaged and any(
+            BY_NAME[name].known_sign * problem.value(name) < 0.0 for name in self.numbers
+        )
 
     def setting(self, config: Config) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
@@ -190,7 +195,7 @@ NUISANCES = (
     Nuisance(
         id="pressure-arm",
         name="arm of the side force in Mx over pressure",
-        key=PRESSURE,
+        key="pressure",
         numbers=("k_p_arm_per_kPa",),
         lacking=_pressures_of_moment,
     ),

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.fit.fitted import Fitted
 from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
-from mffit.fit.influences.nuisances import PRESSURE, TEMPERATURE, Nuisance
+from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
@@ -32,12 +32,6 @@ class NuisanceFit:
     def at_temperature(self) -> bool:
         """Whether the full fit knows the temperature."""
         return any(nuisance.key == TEMPERATURE for nuisance in self.choice.modelled)
-
-    @property
-    def beside_the_file(self) -> dict[str, tuple[float, float]]:
-        """Numbers of the tyre that no coefficient says and the plain file averages over, with standard errors, but for warmth."""
-        names = {name for n in self.choice.modelled if n.key == PRESSURE for name in n.numbers}
-        return {name: found for name, found in self.full.rig.items() if name in names}
 
 
 def fit_with_nuisances(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from mffit.diagnosis import wording
-from mffit.fit import Coefficient
+from mffit.fit import Coefficient, zeros_listed
 from mffit.measured import wording as of_direct
 from mffit.quantities import CHANNELS
 from mffit.report import constants
@@ -27,6 +27,7 @@ def build_summary(result: BuildResult, written: str = "") -> str:
         "\n".join([f"written to {written}", *files] if written else files),
         spin_numbers(result.measured, MAIN) if result.measured.epsilon_gamma is not None else "",
         _misfits(result),
+        wrapped(f"zeros of the rig: {zeros}") if (zeros := zeros_listed(result.fit.rig)) else "",
         _next(result),
     ]
     return blocks(parts)

@@ -180,11 +180,12 @@ keys(
 
 
 def residuals(remains: Remains, missed: Mapping[str, MissedAtReadings]) -> dict[str, Json]:
-    """What the fit leaves, and where the file misses each channel most."""
+    """What the fit leaves, and where the file misses each channel most; ``rms`` is ``of_file``, where that is proven."""
     found = document(remains)
     for name, one in missed.items():
         of_channel = found["missed"][name]  # type: ignore[call-overload, index]
-        of_channel |= {"of_file": one.size, "most": plain(one.region), "sentence": missed_sentence(one)}  # type: ignore[operator]
+        of_channel |= {"rms": one.size, "of_file": one.size, "most": plain(one.region)}  # type: ignore[operator]
+        of_channel["sentence"] = missed_sentence(one)
     return found
 
 

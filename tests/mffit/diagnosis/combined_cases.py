@@ -35,6 +35,7 @@ class Hidden:
     tyre: Mapping[str, float] = field(default_factory=dict)  #: added to coefficients
     factor: Mapping[str, float] = field(default_factory=dict)  #: relative change of coefficients
     faults: Mapping[str, float] = field(default_factory=dict)  #: added to those of a perfect rig
+    sweeps: Sequence[Mapping[str, Any]] = ()  #: without which it does not show
 
 
 HIDDEN = {
@@ -59,6 +60,12 @@ HIDDEN = {
     "overturning-side-force": Hidden(tyre={"QSX3": 0.025}),
     "overturning-arm": Hidden(tyre={"QSX13": 0.02}),
     "crosstalk-fx-mx": Hidden(faults={"crosstalk_Fx_Mx_m": 0.006}),
+    "overturning-pressure": Hidden(
+        faults={"k_p_arm_per_kPa": 0.02},
+        sweeps=[
+            {"file": f"p_{p}.csv", "load_N": 4200, "alpha_deg": SIDESLIP, "p_kPa": p} for p in (200, 280)
+        ],
+    ),
 }
 
 
@@ -121,7 +128,7 @@ def simulated(
         "conditions": {"V_mps": 16.7},
         "tyre": {"name": "drawn", "unloaded_radius": 0.3185, "nominal_load": 4200, "nominal_pressure": 240},
         "rig": {"type": "flat-track"},
-        "sweep": [*sweeps(), *added],
+        "sweep": [*sweeps(), *hidden.sweeps, *added],
     }
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
     return given

@@ -268,8 +268,10 @@ def test_temperature_that_is_demanded_is_modelled(warmed):
     assert found.reason == "[fit] temperature = true"
 
 
-def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_path):
-    content = small_rigs.flat(faults={"hysteresis_deg": 0.25})
+@pytest.mark.parametrize("width", [0.25, -0.25])
+def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_path, width):
+    """A force that leads its angle, as on no rig, is not modelled: something else looks like it."""
+    content = small_rigs.flat(faults={"hysteresis_deg": width})
     there_and_back = [*small_rigs.SLIP, *(x - 0.01 for x in small_rigs.SLIP[::-1])]
     content["sweep"] = [
         {**sweep, "alpha_deg": there_and_back} if "sideslip" in sweep["file"] else sweep
@@ -280,6 +282,11 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
         for gamma in (-20, -10, 10, 20)
     ]
     result = small_rigs.built(content, tmp_path)
+    if width < 0.0:
+        found = verdict(result.fit.choice, "hysteresis")
+        assert (found.modelled, "hysteresis_deg" in result.fit.rig) == (False, False)
+        assert "no rig has one of this sign" in found.reason
+        return
     value, u = result.fit.rig["hysteresis_deg"]
     assert value == pytest.approx(0.25, abs=max(4.0 * u, 0.02))
     assert verdict(result.fit.choice, "hysteresis").modelled

@@ -48,7 +48,7 @@ def test_the_first_warning_is_distrust_and_names_the_sweep(rough):
     first, *others = rough.result["warnings"]
     assert "Fy" in first
     assert "not to be trusted" in first
-    assert "misses Fy of camber_1400" in first
+    assert "camber_1400" in first
     assert not any("Mz by" in warning for warning in others)
 
 
@@ -57,8 +57,9 @@ def test_the_result_says_so_everywhere(rough):
     assert rough.code == 3
     assert list(rough.result)[:2] == ["trusted", "reasons"]
     assert rough.result["trusted"] is False
-    (reason, *_) = rough.result["reasons"]
-    assert "misses Fy of camber_1400" in reason
+    reasons = rough.result["reasons"]
+    assert "camber_1400" in reasons[0]
+    assert any("misses Fy of camber_1400 by" in reason for reason in reasons)
     page = (rough.out / "report.html").read_text(encoding="utf-8")
     assert page.index("Not to be trusted") < page.index("Which file goes where")
     tyre = tir.read(rough.out / rough.result["tir"])

@@ -20,13 +20,14 @@ def covariance(smooth: SmoothFunctions, at: np.ndarray, lengths: list[float]) ->
 
 
 def reflected(one: Input, at: np.ndarray, length: float) -> np.ndarray:
-    """Squared exponential (n, n) whose far images are reflected at the ends of the range with its room, as heat in a rod is."""
+    """Matern 5/2 covariance (n, n) whose far images are reflected at the ends of the range with its room, as heat in a rod."""
     room = constants.ROOM * one.width
     rod, x = one.width + 2.0 * room, at - one.lower + room
     images = 2.0 * rod * np.arange(-20, 21)
 
     def bell(distance: np.ndarray) -> np.ndarray:
-        return np.exp(-0.5 * ((distance[..., None] + images) / length) ** 2).sum(axis=-1)
+        away = np.sqrt(5.0) * np.abs(distance[..., None] + images) / length
+        return ((1.0 + away + away**2 / 3.0) * np.exp(-away)).sum(axis=-1)
 
     kernel = bell(x[:, None] - x) + bell(x[:, None] + x)
     fine = np.linspace(0.0, rod, 4001)
@@ -35,7 +36,7 @@ def reflected(one: Input, at: np.ndarray, length: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("length", [0.12, 0.2, 0.5])
-def test_functions_of_one_condition_have_a_squared_exponential_covariance(length):
+def test_functions_of_one_condition_have_a_matern_covariance(length):
     at = np.linspace(ALPHA.lower, ALPHA.upper, 9)
     smooth = SmoothFunctions.over((ALPHA,))
     found = covariance(smooth, at[:, None], [length])

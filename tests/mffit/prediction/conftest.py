@@ -14,6 +14,12 @@ from small_rigs import disc, simulated
 import mffit
 from mffit.results import BuildResult
 
+EXACT = {
+    f"u_{name}": 0.0
+    for name in ("loadcell_offset_N", "slip_alignment_N", "camber_alignment_deg", "camber_skew_deg")
+}
+EXACT |= {f"u_{channel}_gain": 0.0 for channel in ("Fy", "Fz", "Mz", "alpha", "gamma")}
+"""Declares the zeros and calibrations of a rig that has none of these errors."""
 LOADS = (800.0, 1200.0, 1800.0, 2600.0, 3400.0)
 CAMBERS = (-4.0, 0.0, 4.0)
 FY_NOISE, MZ_NOISE, OFFSET = 12.0, 0.6, 15.0
@@ -69,7 +75,7 @@ def belt(folder: Path, seed: int, offset: float = OFFSET, warm: bool = False) ->
     pd.concat(runs).to_csv(folder / "runs.csv", index=False)
     config = {
         "tyre": {"name": "brush", "unloaded_radius": 0.3, "nominal_load": 2000.0, "nominal_pressure": 200.0},
-        "rig": {"type": "flat-track", "axes": "iso"},
+        "rig": {"type": "flat-track", "axes": "iso", **EXACT},
         "sweep": [{"file": "runs.csv"}],
     }
     path = folder / "tyre.toml"

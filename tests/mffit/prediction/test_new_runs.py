@@ -60,11 +60,12 @@ def test_what_the_formula_misses_is_added(foretold, true, column):
     assert rms(true[column] - foretold[best]) < 0.6 * rms(true[column] - foretold[column])
 
 
-@pytest.mark.parametrize("column", ["Fy_N", "Mz_Nm"])
-def test_the_truth_lies_within_the_interval_of_the_best_estimate(foretold, true, column):
+@pytest.mark.parametrize(("column", "most"), [("Fy_N", 0.995), ("Mz_Nm", 1.0)])
+def test_the_truth_lies_within_the_interval_of_the_best_estimate(foretold, true, column, most):
+    """The rig is declared as exact, but for the zero of Mz, which nothing declares."""
     best = column.replace("_", "_best_")
     error, half = true[column] - foretold[best], COVERAGE_FACTOR_95 * foretold[f"u_{best}"]
-    assert 0.88 <= np.mean(np.abs(error) < half) <= 0.995
+    assert 0.88 <= np.mean(np.abs(error) < half) <= most
     assert rms(half.to_numpy()) < 4.0 * rms(error)
 
 
@@ -112,8 +113,9 @@ def test_a_tyre_of_the_formula_misses_nothing(of_formula):
 
 def test_far_from_the_tested_range_the_best_estimate_is_the_file(foreign):
     """And as uncertain as everything that a formula may miss."""
-    near, far = {"alpha_deg": [8.0], "gamma_deg": [0.0]}, {"alpha_deg": [8.0], "gamma_deg": [70.0]}
-    inside, outside = foreign.predict(**near, Fz_N=[2000.0]), foreign.predict(**far, Fz_N=[2000.0])
+    inside, outside = (
+        foreign.predict(alpha_deg=[8.0], gamma_deg=[0.0], Fz_N=[load]) for load in (2000.0, 9000.0)
+    )
     missed, faded = ((found.Fy_best_N - found.Fy_N)[0] for found in (inside, outside))
     assert abs(faded) < 0.01 * abs(missed)
     assert outside.u_Fy_best_N[0] > foreign.result.prediction.channels["Fy"].components.missed

@@ -64,6 +64,15 @@ def test_build_summary_begins_with_the_verdict_and_fits_a_screen(result):
     assert len(summary.splitlines()) <= 25
 
 
+def test_the_zeros_of_all_channels_stand_in_the_list(result):
+    rig = {"F0_N": (2.04, 0.31), "Fx0_N": (4.0, 18.2), "Mx0_Nm": (-57.3, 17.9), "gain": (1.0, 0.005)}
+    summary = text.build_summary(replace(result, fit=replace(result.fit, rig=rig)))
+    said = " ".join(summary.split())
+    for zero in ("Fy 2.04 +- 0.31 N", "Fx 4 +- 18 N", "Mx -57 +- 18 Nm"):
+        assert f"load-cell zero of {zero}" in said
+    assert "calibration" not in said
+
+
 def test_what_is_explained_has_statuses_and_what_the_files_are(result):
     said = text.build_explained(result)
     assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound or limit: PHYP2" in said

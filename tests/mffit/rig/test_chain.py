@@ -56,7 +56,7 @@ def settings() -> Settings:
         alpha=alpha,
         gamma=np.radians(rng.uniform(-50.0, 50.0, n)),
         Fz=LOAD + rng.uniform(-500.0, 500.0, n),
-        p=np.full(n, 240e3),
+        p=230e3 + 30e3 * np.cos(np.arange(n)),
         V=V,
         T=rng.uniform(20.0, 60.0, n),
         t=t,
@@ -74,9 +74,7 @@ def by_the_chain(tyre, s: Settings, **faults):
 
 
 def by_the_virtual_rig(tyre, s: Settings, **faults):
-    return steady(
-        Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0, mean_pressure=float(np.mean(s.p))), s
-    )
+    return steady(Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0), s)
 
 
 FREED = {name for nuisance in NUISANCES for name in nuisance.numbers}
