@@ -39,6 +39,8 @@ class Scatter:
     memory: float = 0.0  #: correlation from one point to the next along a chain, of the part that has one
     independent: float = 0.0  #: share of the variance without memory, beside a part with one
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
+    beyond_weights: float = 1.0
+    """Standard error of what the readings determine, over that which the weights of outliers state."""
     span: MemorySpan = MemorySpan.SWEEP  #: the chains along which errors have their memory
     without_noise: bool = (
         False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
@@ -142,6 +144,12 @@ class Noise:
     def used(self) -> np.ndarray:
         """Indices (m,) of the readings that were measured."""
         return np.flatnonzero(np.isfinite(self.u))
+
+    @property
+    def beyond_weights(self) -> np.ndarray:
+        """:attr:`Scatter.beyond_weights` (m,) of every used reading."""
+        of_channel = np.array([found.beyond_weights for found in self.scatter.values()])
+        return of_channel[self.used // (len(self.u) // len(self.channels))]
 
     @cached_property
     def _errors(self) -> list[tuple[np.ndarray, ChainedErrors]]:

@@ -146,7 +146,7 @@ class DiagnosisProblem:
             max_steps=constants.MOST_HYPOTHESIS_STEPS,
             tolerance=constants.HYPOTHESIS_CONVERGED,
         )
-        values, errors = {**fixed, **found.values}, _standard_errors(found)
+        values, errors = {**fixed, **found.values}, self._standard_errors(found)
         own = {name: values[name] for name in (*fixed, *(n.name for n in usual))}
         refined = replace(
             chosen,
@@ -258,7 +258,7 @@ class DiagnosisProblem:
         hypothesis = Hypothesis(
             effects=tuple(effects),
             numbers=values,
-            stderr=_standard_errors(found),
+            stderr=self._standard_errors(found),
             chi2=float(found.data @ found.data),
             log_evidence=-0.5 * found.cost - occam + known,
             state=self.start.with_numbers(values),
@@ -297,6 +297,14 @@ class DiagnosisProblem:
         found = self.noise.unshared(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
 
+    def _standard_errors(self, found: Solution) -> dict[str, float]:
+        """By name, beyond those that the weights of outliers state as if they were known."""
+        slope, beyond = found.jacobian.copy(), self.noise.beyond_weights
+        slope[: len(beyond)] *= beyond[:, None]  # rows of priors may follow
+        pull = slope @ found.covariance
+        variance = np.sum(pull**2, axis=0) + found.prior @ found.covariance**2
+        return dict(zip(found.names, np.sqrt(variance).tolist(), strict=True))
+
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
         nothing = np.zeros(0)
@@ -319,7 +327,3 @@ class DiagnosisProblem:
 def refitted(problem: DiagnosisProblem, chosen: Hypothesis, effects: Sequence[Effect]) -> Hypothesis:
     """Some of the effects of a hypothesis, fitted again by themselves."""
     return problem.fit(effects, chosen.numbers_of(effects)) if effects else problem.null
-
-
-def _standard_errors(found: Solution) -> dict[str, float]:
-    return dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))

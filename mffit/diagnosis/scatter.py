@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 from mffit.constants import ASSUMED_NOISE_SHARE
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
-from mffit.diagnosis.tails import heavy_tails, weights
+from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
 from mffit.linearised.chained import Chained, Memory, chains_of
 from mffit.scatter import rms
 
@@ -280,6 +280,7 @@ def learned(
             memory=at.memory.correlation,
             independent=at.memory.independent,
             tails=tails,
+            beyond_weights=beyond_weights(channel.standardised(found), tails),
             span=found.by.span or MemorySpan.SWEEP,
         )
         for effect, (odds, needed, larger, _) in here.items():

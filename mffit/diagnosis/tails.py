@@ -34,6 +34,19 @@ def weights(z: np.ndarray, tails: float, width: float) -> np.ndarray:
     return np.ones(len(z)) if math.isinf(tails) else (tails + 1.0) / (tails + (z / width) ** 2)
 
 
+def beyond_weights(z: np.ndarray, tails: float) -> float:
+    """Standard error of what weighted readings determine, over that which their weights state as if these were known.
+
+    ``z`` (m,) are standardised residuals of width 1. The weights follow from the residuals, so that a reading which keeps much of
+    its weight pulls less than it states (Huber, Robust Statistics, 1981, section 7.6).
+    """
+    if math.isinf(tails):
+        return 1.0
+    weight = weights(z, tails, 1.0)
+    slope = weight * (tails - z**2) / (tails + z**2)
+    return max(1.0, rms(weight * z) * math.sqrt(float(np.mean(weight))) / float(np.mean(slope)))
+
+
 def outlying(noise: Noise) -> np.ndarray:
     """Indices of readings that lost nearly all their weight."""
     if noise.weight is None:

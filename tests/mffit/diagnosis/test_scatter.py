@@ -11,9 +11,10 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.noise import MemorySpan, Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
-from mffit.diagnosis.tails import outlying
+from mffit.diagnosis.tails import beyond_weights, heavy_tails, outlying, weights
 from mffit.linearised.chained import lower_factor
 from mffit.points import make_points
+from mffit.scatter import rms
 
 N, SWEEPS = 400, 20
 FORCE = 1500.0 * np.sin(np.linspace(0.0, 40.0, N))
@@ -203,6 +204,20 @@ def test_outliers_are_listed_and_lose_their_weight(rng):
     assert np.all(learned_noise.u[off] > 20.0)
     usual = np.setdiff1d(np.arange(N), listed)
     assert np.median(learned_noise.u[usual]) == pytest.approx(6.0, rel=0.25)
+
+
+def test_the_error_beyond_weights_is_how_a_weighted_mean_scatters(rng):
+    wild = rng.random((2000, 400)) < 0.02
+    read = rng.normal(size=wild.shape) + wild * rng.choice((-15.0, 15.0), wild.shape)
+    tails, width = heavy_tails(read.ravel())
+    mean = np.zeros(len(read))
+    for _ in range(50):
+        weight = weights(read - mean[:, None], tails, width)
+        mean = np.sum(weight * read, axis=1) / np.sum(weight, axis=1)
+    pull = rms(mean * np.sqrt(np.sum(weight, axis=1)) / width)  # the truth is 0
+    assert pull > 1.2
+    assert beyond_weights(read.ravel() / width, tails) == pytest.approx(pull, rel=0.05)
+    assert beyond_weights(rng.normal(size=400), np.inf) == 1.0
 
 
 def test_misfit_that_an_effect_could_explain_is_not_noise(rng):

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from small_rigs import LOADS, SAMPLE, built, disc, truth
 
+import mffit
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.pipeline.measuring import finite_spin_bias
@@ -62,6 +63,16 @@ def run_of(result, kind, load=1400):
         for r in candidates(result.config, result.points)
         if r.addition.id == kind and abs(r.load - load) < 10
     )
+
+
+def test_the_readme_says_what_a_plan_brings_the_sample():
+    plan = mffit.plan(SAMPLE / "tyre.toml")
+    said = (
+        f"the uncertainty of eps_gamma is {plan.now:.2g}. "
+        f"The {len(plan.steps)} runs that `mffit plan` names lower it to {plan.then:.2g}."
+    )
+    readme = (SAMPLE.parents[1] / "README.md").read_text(encoding="utf-8")
+    assert said in " ".join(readme.split()), f"README.md states other figures than: {said}"
 
 
 def test_without_runs_the_posterior_is_the_builds(result, knowledge):
