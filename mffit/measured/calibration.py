@@ -1,4 +1,4 @@
-"""Errors that multiply what is read: calibration of a channel, and a steering that yields to the moment."""
+"""Errors that multiply what is read: calibration of a channel, a steering that yields to the moment, what looks like camber."""
 
 from __future__ import annotations
 
@@ -42,7 +42,12 @@ def calibration(
     over_load : relative change of stiffnesses and force per relative change of load
     slopes, found : as read
     """
-    at = AtLoad(over_load, _by_moment(evidence, group, slopes, found))
+    of_camber, spin = 0.0, 0.0
+    if slopes.C_gamma is not None:
+        of_camber = 1.0 / slopes.C_gamma.nominal_value
+        spin = 0.0 if found is None else found.force.nominal_value * found.phi_t[0]
+    by_moment = _by_moment(evidence, group, slopes, found)
+    at = AtLoad(over_load, by_moment, group.load * of_camber, spin * of_camber)
     factors: dict[str, UFloat] = dict.fromkeys(Slopes._fields, 1.0)
     for error, declared in DECLARED:
         if declared.calibrates:

@@ -187,6 +187,13 @@ CROWN = RigError(
             axes=("gamma",),
         ),
     ),
+    declared=Declared(
+        key="u_crown_m",
+        unit="m",
+        default=0.0,
+        source="path radius that changes with camber",
+        calibrates=lambda at: Slopes(C_gamma=at.spin_of_camber),
+    ),
 )
 SLIP_ZERO = RigError(
     name="kappa_0",

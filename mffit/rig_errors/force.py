@@ -117,6 +117,13 @@ CROSSTALK_CAMBER = _of_reading(
             axes=("Fy", "gamma"),
         ),
     ),
+    declared=Declared(
+        key="u_crosstalk_camber",
+        unit="-",
+        default=0.0,
+        source="crosstalk that grows with camber",
+        calibrates=lambda at: Slopes(C_gamma=at.load_of_camber),
+    ),
 )
 DIRECTION_ZERO = _of_reading(
     name="F0_direction_N",

@@ -57,6 +57,10 @@ class AtLoad(NamedTuple):
 
     over_load: Slopes  #: relative change per relative change of load
     by_moment: Slopes  #: relative change per angle [rad] by which one Nm turns the wheel: slopes of Mz, as sideslip acts on Fy
+    load_of_camber: float  #: load over camber stiffness [rad]; 0 where this was not measured
+    spin_of_camber: (
+        float  #: turn-slip force times turn slip over camber stiffness [1/m]; 0 where one was not measured
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

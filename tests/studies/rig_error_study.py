@@ -101,6 +101,8 @@ WORLDS = {
     "steering compliance 0.006 deg/Nm, not declared": World(faults=YIELDING),
     "steering compliance -0.006 deg/Nm, not declared": World(faults={"compliance_deg_per_Nm": -0.006}),
     **{name: World(faults=faults) for name, faults in NOT_DECLARED.items()},
+    "crosstalk that grows with camber drawn from 2 %": World(declared={"u_crosstalk_camber": 0.02}),
+    "crown drawn from 80 mm": World(declared={"u_crown_m": 0.08}),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 

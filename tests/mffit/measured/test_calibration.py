@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plain_tyre import Plain, settings
+from plain_tyre import Plain, R, settings
 
 from mffit.measured import KEYS, measure
 from mffit.parts import split
 from mffit.points import Points
 
 LOADS = (1000.0, 1500.0, 2000.0)
-SIZE, GIVE = 0.01, 1e-3  # relative; deg/Nm
+SIZE, GIVE, CROWN = 0.01, 1e-3, 0.05  # relative; deg/Nm; m
 RESULTS = ("C_alpha", "C_gamma", "F_phit", "C_phit", "epsilon_gamma", "r_e", "R")
 
 
@@ -39,6 +39,12 @@ def yielding(points: Points) -> Points:
     return points.replace(Fy=Fy, Mz=Mz)
 
 
+def crowned(points: Points) -> Points:
+    """The force of turn slip is proportional to the curvature of the path, on whose radius the contact moves."""
+    plain, away = Plain(), CROWN * np.sin(points.gamma) * Plain().side
+    return points.replace(Fy=points.Fy + plain.turn_slip_force(points.Fz) * (R / (R - away) - 1.0))
+
+
 SPOILT = {
     "calibration of Fy": ("u_Fy_gain", SIZE, lambda points: points.replace(Fy=(1.0 + SIZE) * points.Fy)),
     "calibration of alpha": (
@@ -49,6 +55,12 @@ SPOILT = {
     ),
     "calibration of Fz": ("u_Fz_gain", SIZE, with_load),
     "steering compliance": ("u_steering_compliance_deg_per_Nm", GIVE, yielding),
+    "crosstalk that grows with camber": (
+        "u_crosstalk_camber",
+        SIZE,
+        lambda points: points.replace(Fy=points.Fy + SIZE * np.sin(points.gamma) * points.Fz),
+    ),
+    "path radius that changes with camber": ("u_crown_m", CROWN, crowned),
 }  # fmt: skip
 
 
