@@ -67,18 +67,18 @@ class Reversals:
                 if 2 * NEAR * chance < FALSE_ALARM:
                     out[leg.rows[leg.from_turn <= place]] = True
                     break
+        out &= np.isfinite(residual)
         return out if self._harm(residual, out) else np.zeros_like(out)
 
     def _harm(self, residual: np.ndarray, off: np.ndarray) -> bool:
-        """Whether readings misfit more than the others, each side of a turn counted once as its readings are alike."""
-        turns = sum(np.sum(off[leg.rows] & (leg.from_turn == 0)) for leg in self.legs)
+        """Whether readings misfit more than the others; those of one side of a turn are alike and count once."""
+        turns = sum(int(np.sum(off[leg.rows] & (leg.from_turn == 0))) for leg in self.legs)
         used = np.isfinite(residual)
-        own, others = (
-            (float(np.mean(residual[rows & used] ** 2)) for rows in (off, ~off))
-            if np.any(off)
-            else (0.0, 1.0)
-        )
-        return bool(turns and fdtrc(turns, np.sum(used & ~off), own / others) < FALSE_ALARM)
+        rest = used & ~off
+        if not turns:
+            return False
+        ratio = rms(residual[used & off]) / rms(residual[rest])
+        return bool(fdtrc(turns, np.sum(rest), ratio**2) < FALSE_ALARM)
 
 
 def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarray:

@@ -14,11 +14,13 @@ from mffit.prediction.conditions import UNITS
 from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.report import style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Note, Panel, Sheet, Trace
+from mffit.report.drawing.records import NOTHING, ZERO, Axis, Guide, Look, Note, Panel, Sheet, Trace
 from mffit.results import BuildResult
 
 SHARES = (0.1, 0.5, 0.9)
 """Quantiles of a condition for which lines are drawn."""
+NOISE = Look(colour=style.FAINT, line=":", width=0.8)
+"""Of the lines that show the noise of a reading."""
 ROOM = 0.35
 """Room for their names, over the range of the axis."""
 LINE_OF_TEXT = 0.11
@@ -29,7 +31,7 @@ def missed(view: BuildView) -> Sheet:
     """A row for every channel that the formula is proven to miss: over what misses most, a panel per other condition."""
     linear = view.build.remains.linear
     rows = [
-        [_panel(view.build, channel, over, by) for by in others]
+        [_panel(view.build, channel, over, by, is_first=by == others[0]) for by in others]
         for channel in (linear.channels.values() if linear else ())
         if channel.is_proven
         for over, *others in [_conditions(channel)]
@@ -38,13 +40,14 @@ def missed(view: BuildView) -> Sheet:
 
 
 def _conditions(channel: LinearisedChannel) -> list[str]:
-    """Columns of the swept condition over which the miss changes most, and of the others, the clearest first."""
+    """Columns of the swept condition over which the miss changes most, and of those by which it changes for certain, or most."""
     by_name = {one.name: one for one in channel.smooth.inputs}
     found = [by_name[name] for name in channel.missed_over if COLUMNS.get(name) in UNITS]
+    found = found[: max(2, sum(one.name in channel.proven_over for one in found))]
     return [COLUMNS[one.name] for one in sorted(found, key=lambda one: one.is_held or one.name not in LEVELS)]
 
 
-def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str) -> Panel:
+def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str, *, is_first: bool) -> Panel:
     """Lines over one condition at several values of another, everything else in the middle."""
     points, name = build.points.select(channel.rows), channel.name
     values = {known: points.condition(known) for known in COLUMNS.values() if known in UNITS}
@@ -66,11 +69,12 @@ def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str) -
             )
         )
     return Panel(
-        title=f"{name}, by {CONDITIONS[by].word}",
+        title=f"{name}, by {CONDITIONS[by].word}"
+        + f" (noise {float(f'{channel.noise:.2g}'):g} {unit})" * is_first,
         x=Axis(label=CONDITIONS[over].axis, low=float(along[0]), high=_beyond(along, ROOM)),
-        y=Axis(label=f"missed [{unit}]"),
+        y=Axis(label=f"missed [{unit}]" if is_first else ""),
         series=series,
-        guides=[ZERO],
+        guides=[ZERO, *(Guide(axis="y", at=side * channel.noise, look=NOISE) for side in (-1.0, 1.0))],
         notes=list(_names(series)),
     )
 
