@@ -1,6 +1,6 @@
-"""Is a build as good as plain least squares? ``python tests/studies/plain_study.py tyre.toml --divisions 3``.
+"""Is a build as good as plain least squares? ``python tests/studies/plain_study.py tyre.toml --folds 6 --looked-at 3``.
 
-A fifth of the conditions is left out, the first sweep always among them. Plain least squares has the formula, the free
+The conditions are divided at random, and one part after the other is left out. Plain least squares has the formula, the free
 coefficients and the bounds of the build, and one weight per channel, the rms of what it leaves; no priors, physical limits or
 weights of outliers. It starts where the build starts: at the table's defaults, estimates and what is read off the points.
 Printed: rms errors of left-out readings with the zeros of the rig, all and without the first sweep.
@@ -73,30 +73,29 @@ def conditions(points: Points) -> list[np.ndarray]:
 def main() -> None:
     ask = argparse.ArgumentParser()
     ask.add_argument("project", type=Path)
-    ask.add_argument("--divisions", type=int, default=3)
+    ask.add_argument("--folds", type=int, default=6)
+    ask.add_argument("--looked-at", type=int, default=3, help="parts that are left out, one after the other")
     given = ask.parse_args()
     config = configuration.load(given.project)
     points = read_points(config).points
     first, every = points.sweep[0], conditions(points)
-    cold = [own for own in every if first in own]
-    others = [own for own in every if first not in own]
+    parts = np.array_split(np.random.default_rng(5).permutation(len(every)), given.folds)
     found: dict[tuple[str, str], list[tuple[np.ndarray, np.ndarray]]] = {}
-    for k in range(given.divisions):
-        drawn = np.random.default_rng(k).permutation(len(others))[: len(every) // 5]
-        rows = np.isin(points.sweep, np.concatenate([*cold, *(others[i] for i in drawn)]))
+    for k, left_out in enumerate(parts[: given.looked_at]):
+        rows = np.isin(points.sweep, np.concatenate([every[i] for i in left_out]))
         part = without(config, points, rows)
         built = mffit.build(part, with_report=False)
         fit, held = built.fit, points.select(np.flatnonzero(rows))
         known = known_before_fit(part, built.points, built.measured, None, {})
         start = {**known.values, **starting_values(known.values, built.points, built.measured, ())}
-        values = {**known.values, **{n: fit.tyre[n] for n in known.values if n not in fit.coefficients}}
-        problem = fit_problem(part, built.points, built.measured, values, fit.search.problem.channels)
+        values, channels = fit.search.simulation.values, fit.search.problem.channels
+        problem = fit_problem(part, built.points, built.measured, values, channels)
         for kind, one in {"plain file": fit.search, "at temperature": fit.full}.items():
             for way, simulation in of(one, problem, start).items():
                 for name, read in simulation.readings(held, problem.channels).items():
                     pair = (held.channel(name) - read, held.sweep == first)
                     found.setdefault((f"{kind}, {way}", name), []).append(pair)
-        print(f"division {k + 1}: {built.seconds:.0f} s", flush=True)
+        print(f"part {k + 1}: {built.seconds:.0f} s", flush=True)
     for (what, name), pairs in found.items():
         error, of_first = (np.concatenate(own) for own in zip(*pairs, strict=True))
         print(f"{what:30s} {name}: {rms(error):7.2f} / {rms(error[~of_first]):7.2f}")
