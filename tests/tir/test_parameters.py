@@ -87,7 +87,7 @@ def _sound_tie(row: dict[str, str]) -> None:
         assert (where == "tyres") == bool(files), (
             f"{row['name']}: the number of files stands behind the spread of tyres"
         )
-        assert where != "tyres" or (int(files) >= 8 and float(row["default"]) == 0.0), row["name"]
+        assert where != "tyres" or (int(files) >= 4 and float(row["default"]) == 0.0), row["name"]
         assert row["stage"], f"{row['name']} is tied, and no stage frees it"
         assert where != "side" or "both_sides" in row["needs"], f"{row['name']} is not held by one side"
 

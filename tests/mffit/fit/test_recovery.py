@@ -64,6 +64,10 @@ def test_the_prior_is_thirty_per_cent_and_at_least_a_share_of_the_bounds():
     assert scatter("PPY2", 0.0, from_base=True, curved=True) == pytest.approx(0.1 * width)
     assert scatter("PPY2", 0.01, from_base=True, curved=True) == pytest.approx(0.05 * width)
     assert scatter("PPY2", 0.01, from_base=False, curved=True) == pytest.approx(0.1 * width)
+    # Public files have PVX2 of -0.036 to 0.023, most below 0.003, and RBX3 of 2 to 3247, far outside of the usual range.
+    for from_base in (True, False):
+        assert 0.001 < scatter("PVX2", 0.0, from_base=from_base, curved=False) < 0.01
+        assert 186.0 < scatter("RBX3", 0.0, from_base=from_base, curved=False) < 3247.0
 
 
 def test_ply_steer_is_small_on_a_disc_and_free_on_a_straight_path():
