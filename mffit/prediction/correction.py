@@ -55,7 +55,7 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
     missed = _Missed(known, fitted, names)
     nodes, added = _grid(missed, inputs)
     at = pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes))
-    found = known.predict(fitted, fitted, at)
+    found = known.predict(fitted, fitted, _whole(at, fitted))
     of_nodes, table = missed(at), at.copy()
     for name in names:
         u = found[f"u_{column(name, 'best')}"].to_numpy()
@@ -95,14 +95,15 @@ class _Missed:
     names: Sequence[str]
 
     def __call__(self, at: pd.DataFrame) -> dict[str, np.ndarray]:
-        points = self.known.points(self.fitted, _whole(at))
+        points = self.known.points(self.fitted, _whole(at, self.fitted))
         beyond = self.known.beyond(self.fitted, points, self.names)
         return {name: self.known.missed(name, points) + beyond[name] for name in self.names}
 
 
-def _whole(at: pd.DataFrame) -> pd.DataFrame:
+def _whole(at: pd.DataFrame, fitted: Tyre) -> pd.DataFrame:
     """The conditions with those that a test did not vary."""
-    return at.assign(**{name: 0.0 for name in ("alpha_deg", "gamma_deg") if name not in at})
+    held = {"alpha_deg": 0.0, "gamma_deg": 0.0, "Fz_N": float(fitted["FNOMIN"])}
+    return at.assign(**{name: value for name, value in held.items() if name not in at})
 
 
 def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> tuple[dict[str, np.ndarray], float]:

@@ -68,11 +68,11 @@ def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str, *
                 look=Look(colour=colour, line="-", opacity=style.SHADE),
             )
         )
+    size = f"missed [{unit}], noise {float(f'{channel.noise:.2g}'):g}"
     return Panel(
-        title=f"{name}, by {CONDITIONS[by].word}"
-        + f" (noise {float(f'{channel.noise:.2g}'):g} {unit})" * is_first,
+        title=f"{name}, by {CONDITIONS[by].word}",
         x=Axis(label=CONDITIONS[over].axis, low=float(along[0]), high=_beyond(along, ROOM)),
-        y=Axis(label=f"missed [{unit}]" if is_first else ""),
+        y=Axis(label=size if is_first else ""),
         series=series,
         guides=[ZERO, *(Guide(axis="y", at=side * channel.noise, look=NOISE) for side in (-1.0, 1.0))],
         notes=list(_names(series)),

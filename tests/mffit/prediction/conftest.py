@@ -52,14 +52,20 @@ def brush(alpha: Any, gamma: Any, Fz: Any) -> tuple[np.ndarray, np.ndarray]:
     return Fy, Mz
 
 
-def belt(folder: Path, seed: int, offset: float = OFFSET, warm: bool = False) -> Path:
+def belt(
+    folder: Path,
+    seed: int,
+    offset: float = OFFSET,
+    warm: bool = False,
+    cambers: tuple[float, ...] = CAMBERS,
+) -> Path:
     """Sideslip sweeps of the brush tyre on a flat belt at every load and camber, each with a zero of Fy of its own.
 
     ``warm``: the runs are warmer and warmer, and lose 1 % of the side force per kelvin around 50 degC. Returns ``tyre.toml``.
     """
     random = np.random.default_rng(seed)
     runs = []
-    for k, (load, camber) in enumerate((load, camber) for load in LOADS for camber in CAMBERS):
+    for k, (load, camber) in enumerate((load, camber) for load in LOADS for camber in cambers):
         table = pd.DataFrame(
             {"alpha_deg": np.linspace(-10.0, 10.0, 25), "gamma_deg": camber, "run": f"r{k:02d}"}
         )

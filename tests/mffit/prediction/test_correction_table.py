@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import LOADS, Built, brush
+from conftest import LOADS, Built, belt, brush, build
 
 import mffit
 import tir
@@ -77,3 +77,13 @@ def test_what_is_not_proven_is_not_written(of_formula: Built):
     """A tyre of the formula: there is no table, or one of other channels than Fy."""
     assert of_formula.result.correction is None
     assert not list(of_formula.folder.glob("*-correction.csv"))
+
+
+def test_an_input_that_was_held_has_no_column(tmp_path):
+    """Upright sweeps only, each load twice: nothing is known of camber, and all that is written is."""
+    built = build(belt(tmp_path / "upright", seed=8, cambers=(0.0, 0.0)))
+    table = pd.read_csv(built.folder / TABLE, comment="#")
+    assert "gamma_deg" not in table
+    assert np.all(np.isfinite(table))
+    best = built.predict(**table[["alpha_deg", "Fz_N"]], gamma_deg=0.0)
+    assert table.u_Fy_missed_N.to_numpy() == pytest.approx(best.u_Fy_best_N.to_numpy(), rel=0.02)
