@@ -52,6 +52,7 @@ class BestEffect:
     gain: float = -math.inf
     """Of log evidence if the best takes the place of a smooth miss of the formula and of differences of runs."""
     missed: float = 0.0  #: log evidence of that smooth miss
+    left: float = 0.0  #: log evidence of what the formula misses beside the effect
 
     @property
     def chance(self) -> float:
@@ -67,7 +68,7 @@ class BestEffect:
     def significant(self) -> bool:
         """Whether neither chance nor differences of runs explain it, and more is explained than left to the formula."""
         enough = math.log(self.tried / PREDICTION_FALSE_ALARM)
-        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed - self.gain)
+        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, 2.0 * self.left - self.missed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,10 +212,15 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
     if found.chance >= PREDICTION_FALSE_ALARM:
         return found
     acts = {name: part for name, part in left.by_channel(best.change).items() if np.any(part)}
+    here = {
+        name: (left.linear.channels[name], left.linear.channels[name].beside(own))
+        for name, own in acts.items()
+    }
     return replace(
         found,
-        gain=sum(left.linear.channels[name].gain(part) for name, part in acts.items()),
-        missed=sum(max(left.linear.channels[name].proof, 0.0) for name in acts),
+        gain=sum(channel.gain(beside) for channel, beside in here.values()),
+        missed=sum(max(channel.proof, 0.0) for channel, _ in here.values()),
+        left=sum(max(beside.proof, 0.0) for _, beside in here.values()),
     )
 
 

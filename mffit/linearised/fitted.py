@@ -167,11 +167,15 @@ class LinearisedChannel:
             for one in model.left_out(given, rows)
         ]
 
-    def gain(self, change: np.ndarray) -> float:
-        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses."""
+    def beside(self, change: np.ndarray) -> LinearisedChannel:
+        """The channel if a known change (n,) of the readings takes the place of what the formula misses, as far as it can."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
         found = _found(without, self.smooth, self.unit, self.declared, self.components)
-        return self.stride * (_evidence(without, found, self.smooth, self.declared) - self._evidence)
+        return replace(self, alone=without, components=found)
+
+    def gain(self, beside: LinearisedChannel) -> float:
+        """Gain of log evidence by such a change."""
+        return self.stride * (beside._evidence - self._evidence)
 
 
 class Uncertain(NamedTuple):
