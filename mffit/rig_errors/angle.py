@@ -30,6 +30,7 @@ RELAXATION = RigError(
     spread=0.2,
     scan=(0.05, 0.15, 0.3),
     limits=(0.0, 2.0),
+    known_sign=1,
     seen_as=(
         Appearance(
             id="relaxation",
