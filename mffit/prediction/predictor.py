@@ -55,9 +55,9 @@ class MissedChannel:
         correlation of what the formula misses with that on the measured path, ``of_tyre`` (k,) which of them are coefficients.
         """
         likeness, functions = self._functions(settings, path)
-        mean, reading = (
-            np.sum((np.hstack([functions, by]) @ self.root) ** 2, axis=1) for by in (slopes * of_tyre, slopes)
-        )
+        of_functions, of_numbers = np.split(self.root, [len(self.missed)])
+        missed = functions @ of_functions
+        mean, reading = (np.sum((missed + by @ of_numbers) ** 2, axis=1) for by in (slopes * of_tyre, slopes))
         unlike = (1.0 - likeness**2) * self.components.missed**2
         return functions @ self.missed, mean + unlike, reading + unlike
 

@@ -50,8 +50,8 @@ class Nuisance:
         return self.key == TEMPERATURE
 
     def of_no_rig(self, problem: FitProblem) -> bool:
-        """Whether a number has the sign that none has, or ended at zero on the way there; a temperature of that sign is modelled, and
-        in doubt."""
+        """Whether a number has the sign that none has, or ended at zero on the way there; a temperature of that sign is modelled
+        and in doubt."""
         signs = {name: BY_NAME[name].known_sign for name in self.numbers}
         return not self.is_averaged and any(
             sign and sign * problem.value(name) <= 0.0 for name, sign in signs.items()
