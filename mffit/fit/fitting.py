@@ -48,6 +48,7 @@ from mffit.points import Points
 from mffit.prediction import predictor
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
+from mffit.rig_errors import BESIDE
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
@@ -103,7 +104,11 @@ def fit(
     left_by_file = left_by_formula if is_one else left_by(fitted, near=left_by_formula)
     fitted = full if is_one else with_errors_around(fitted, full)
     found = replace(found, plain=fitted, full=full)
-    readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
+    # No file holds what is beside it.
+    delivered = fitted.simulation.with_numbers(
+        {e.name: e.undisturbed for e in BESIDE if e.name in fitted.rig}
+    )
+    readings, best = (one.readings(points, problem.channels) for one in (delivered, full.simulation))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
     at_turns = full.problem.turning()
 
@@ -138,7 +143,7 @@ def fit(
         coefficients=of_file(files, use, made.coefficients),
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
-        simulation=fitted.simulation,
+        simulation=delivered,
         rig={**fitted.rig, **made.zeros},
         model=readings,
         posterior=made.posterior,
