@@ -8,9 +8,8 @@ import sys
 
 def main() -> None:
     """Entry point; an interruption during the imports ends with the sentence and the exit code of a later one."""
-    gc.set_threshold(
-        100 * gc.get_threshold()[0]
-    )  # the usual searches for garbage take an eighth of the time of a build
+    # The usual searches for garbage take an eighth of the time of a build.
+    gc.set_threshold(100 * gc.get_threshold()[0])
     try:
         from mffit.cli import main as commands
     except KeyboardInterrupt:

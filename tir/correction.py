@@ -89,7 +89,7 @@ class Correction:
             shape = np.broadcast_shapes(*(np.shape(x) for x in inputs))
             by_name = {name: np.broadcast_to(x, shape).astype(float) for name, x in by_name.items()}
             at = np.array([by_name[name].ravel() for name in self.nodes])
-            missed = self.interpolated(at)
+            missed = interpolated([*self.nodes.values()], self.missed, at)
             if not limits:
                 missed = missed * self._left(at)
             missed = missed.reshape(-1, *shape)
@@ -100,22 +100,6 @@ class Correction:
         for k, one in zip(self.channels, missed if missed.ndim > 1 else missed.tolist(), strict=True):
             found[k] = found[k] + one
         return Forces(*found)
-
-    def interpolated(self, at: np.ndarray) -> np.ndarray:
-        """The miss (channels, n) at inputs (d, n), linear in each between the nodes; outside that of the nearest end."""
-        cells, shares = [], []
-        for x, known in zip(at, self.nodes.values(), strict=True):
-            cell = np.clip(np.searchsorted(known, x, side="right") - 1, 0, len(known) - 2)
-            shares.append(np.clip((x - known[cell]) / (known[cell + 1] - known[cell]), 0.0, 1.0))
-            cells.append(cell)
-        found = np.zeros((at.shape[1], len(self.channels)))
-        for corner in itertools.product((0, 1), repeat=len(cells)):
-            weight = np.ones(at.shape[1])
-            for high, share in zip(corner, shares, strict=True):
-                weight = weight * (share if high else 1.0 - share)
-            place = tuple(cell + high for cell, high in zip(cells, corner, strict=True))
-            found += weight[:, None] * self.missed[place]
-        return found.T
 
     def _left(self, at: np.ndarray) -> np.ndarray:
         """Share (channels, n) of the miss that is left outside of the grid."""
@@ -142,6 +126,26 @@ class Correction:
     @cached_property
     def _lists(self) -> list[list[float]]:
         return [known.tolist() for known in self.nodes.values()]
+
+
+def interpolated(nodes: Sequence[np.ndarray], missed: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Values (channels, n) at inputs (d, n), linear in each between the rising ``nodes``; outside those of the nearest end.
+
+    ``missed`` are the values at the nodes: an axis for each input, then one for the channels.
+    """
+    cells, shares = [], []
+    for x, known in zip(at, nodes, strict=True):
+        cell = np.clip(np.searchsorted(known, x, side="right") - 1, 0, len(known) - 2)
+        shares.append(np.clip((x - known[cell]) / (known[cell + 1] - known[cell]), 0.0, 1.0))
+        cells.append(cell)
+    found = np.zeros((at.shape[1], missed.shape[-1]))
+    for corner in itertools.product((0, 1), repeat=len(cells)):
+        weight = np.ones(at.shape[1])
+        for high, share in zip(corner, shares, strict=True):
+            weight = weight * (share if high else 1.0 - share)
+        place = tuple(cell + high for cell, high in zip(cells, corner, strict=True))
+        found += weight[:, None] * missed[place]
+    return found.T
 
 
 def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:

@@ -392,7 +392,7 @@ class Config(Brief, Table):
 
     @model_validator(mode="after")
     def _calibrated_as_certified(self) -> Config:
-        """A key ``u_..._gain`` that the file leaves out is that of the certificate of the channel's instrument."""
+        """Keys ``u_..._gain`` that the file leaves out get the uncertainty of the channel's certificate."""
         of_channel: dict[str, float] = {}
         for index, one in enumerate(self.lab.instruments):
             if one.channel is not None and one.u_gain is not None:

@@ -116,8 +116,7 @@ def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
         fitted.held_rig.keys() - fitted.rig.keys()
     )
     posterior.covariance[:k, :k] += np.outer(moved, moved)
-    rig = {name: (value, posterior.stderr[name]) for name, (value, _) in fitted.rig.items()}
-    return replace(fitted, posterior=posterior, rig=rig)
+    return _with_posterior(fitted, posterior)
 
 
 def with_errors_around(fitted: Fitted, best: Fitted) -> Fitted:
@@ -125,8 +124,13 @@ def with_errors_around(fitted: Fitted, best: Fitted) -> Fitted:
     names = fitted.posterior.names
     rows = [best.posterior.names.index(name) for name in names]
     moved = [fitted.problem.value(name) - best.problem.value(name) for name in names]
-    posterior = Posterior(names, best.posterior.covariance[np.ix_(rows, rows)] + np.outer(moved, moved))
-    rig = {name: (value, posterior.stderr[name]) for name, (value, _) in fitted.rig.items()}
+    covariance = best.posterior.covariance[np.ix_(rows, rows)] + np.outer(moved, moved)
+    return _with_posterior(fitted, Posterior(names, covariance))
+
+
+def _with_posterior(fitted: Fitted, posterior: Posterior) -> Fitted:
+    stderr = posterior.stderr
+    rig = {name: (value, stderr[name]) for name, (value, _) in fitted.rig.items()}
     return replace(fitted, posterior=posterior, rig=rig)
 
 

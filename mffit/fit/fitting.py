@@ -100,9 +100,11 @@ def fit(
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
-    is_one, full = full is fitted, with_errors_of(full, left_by_formula)
-    left_by_file = left_by_formula if is_one else left_by(fitted, near=left_by_formula)
-    fitted = full if is_one else with_errors_around(fitted, full)
+    full = with_errors_of(full, left_by_formula)
+    if found.at_temperature:
+        left_by_file, fitted = left_by(fitted, near=left_by_formula), with_errors_around(fitted, full)
+    else:
+        left_by_file, fitted = left_by_formula, full
     found = replace(found, plain=fitted, full=full)
     # No file holds what is beside it.
     delivered = fitted.simulation.with_numbers(

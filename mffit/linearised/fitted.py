@@ -70,7 +70,7 @@ class LinearisedChannel:
         return rms(self.model.residual)
 
     def told_of(self, slopes: np.ndarray) -> FurtherColumns:
-        """What all readings tell of numbers beside the miss, runs and noise.
+        """Information and pull of all readings on some numbers, where the miss, runs and noise are unknown, too.
 
         ``slopes`` (n, k) are derivatives of the readings of :attr:`rows` by the numbers.
         """

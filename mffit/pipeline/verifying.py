@@ -138,7 +138,7 @@ def _property_files(
 
 
 def _information_again(path: Path, result: BuildResult) -> list[NumberAgain]:
-    """The stored information of the points against that of the new run."""
+    """The numbers of the stored ``information.json`` compared with those of the new run."""
     assert result.fit.search is not None
     before, now = fleet.read_information(path), fleet.information(result.fit.search)
     told = {} if before is None else dict(zip(before.names, np.diag(before.matrix).tolist(), strict=True))

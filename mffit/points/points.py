@@ -16,6 +16,13 @@ from mffit.sweeps.sweep import MeasuredRows
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
 OF_SI = {"deg": 180.0 / np.pi, "kPa": 1e-3}
+
+
+def of_si(column: str) -> float:
+    """Factor from SI to the unit of a condition of :data:`mffit.quantities.CONDITIONS`, by its column."""
+    return OF_SI.get(CONDITIONS[column].unit, 1.0)
+
+
 """Factors from SI to units of conditions."""
 COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
 """Fields of indices, and the field with the names that they count."""
@@ -65,7 +72,7 @@ class Points(MeasuredRows):
     def condition(self, column: str) -> np.ndarray:
         """A condition (n,) of :data:`mffit.quantities.CONDITIONS` in its unit, by its column; NaN where it was not measured."""
         values: np.ndarray = getattr(self, column.partition("_")[0])
-        return values * OF_SI.get(CONDITIONS[column].unit, 1.0)
+        return values * of_si(column)
 
     @property
     def measured(self) -> tuple[str, ...]:

@@ -6,19 +6,20 @@ import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from mffit.csv_tables import csv_text
 from mffit.linearised.inputs import COLUMNS
-from mffit.points.points import OF_SI
+from mffit.points.points import of_si
 from mffit.prediction import constants
 from mffit.prediction.predictor import Predictor
-from mffit.quantities import CONDITIONS, column
+from mffit.quantities import column
 from mffit.scatter import rms
 from tir import Tyre
-from tir.correction import AXES, COEFFICIENTS, FADING, FILE, MISSED, PATH, digest
+from tir.correction import AXES, COEFFICIENTS, FADING, FILE, MISSED, PATH, digest, interpolated
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,9 +31,8 @@ class CorrectionTable:
     fading: Mapping[str, Mapping[str, float]]
     """By channel and input, the length over which the miss fades outside of the grid [unit of the input]."""
     path: float  #: curvature of the path [1/m]
-    added: (
-        float  #: what linear interpolation adds, over the miss [-]: rms of the worst channel within the grid
-    )
+    added: float
+    """What linear interpolation adds, over the miss [-]: rms of the worst channel within the grid."""
     coefficients: str  #: digest of those of the file
 
 
@@ -47,16 +47,14 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
         for one in known.channels[name].smooth.inputs:
             heading = COLUMNS.get(one.name, "")
             if heading in AXES:
-                factor = OF_SI.get(CONDITIONS[heading].unit, 1.0)
+                factor = of_si(heading)
                 low, high = inputs.get(heading, (np.inf, -np.inf))
                 inputs[heading] = (min(low, factor * one.lower), max(high, factor * one.upper))
     if not inputs:
         return None
     missed = _Missed(known, fitted, names)
-    nodes, added = _grid(missed, inputs)
-    at = pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes))
-    found = known.predict(fitted, fitted, _whole(at, fitted))
-    of_nodes, table = missed(at), at.copy()
+    nodes, at, of_nodes, added = _grid(missed, inputs)
+    found, table = known.predict(fitted, fitted, _whole(at, fitted)), at.copy()
     for name in names:
         u = found[f"u_{column(name, 'best')}"].to_numpy()
         digits = 2 - int(np.floor(np.log10(np.median(u))))  # three of a usual uncertainty
@@ -100,19 +98,26 @@ class _Missed:
         return {name: self.known.missed(name, points) + beyond[name] for name in self.names}
 
 
+class _Grid(NamedTuple):
+    """The nodes of a table."""
+
+    nodes: dict[str, np.ndarray]  #: by input
+    at: pd.DataFrame  #: all of them
+    missed: dict[str, np.ndarray]  #: there, by channel
+    added: float  #: as in :class:`CorrectionTable`
+
+
 def _whole(at: pd.DataFrame, fitted: Tyre) -> pd.DataFrame:
     """The conditions with those that a test did not vary."""
     held = {"alpha_deg": 0.0, "gamma_deg": 0.0, "Fz_N": float(fitted["FNOMIN"])}
     return at.assign(**{name: value for name, value in held.items() if name not in at})
 
 
-def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> tuple[dict[str, np.ndarray], float]:
-    """Nodes of every input, the fewest between which a line follows the miss along each, and what all lines together add.
+def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> _Grid:
+    """The fewest nodes of every input between which a line follows the miss along each.
 
     Each input has the same share of what may be added. A grid of too many nodes gets fewer, and adds more.
     """
-    from scipy.interpolate import RegularGridInterpolator  # loads in a third of a second, saved elsewhere
-
     random = np.random.default_rng(0)
     n = max(len(missed.known.channels[name].missed) for name in missed.names)
     at = pd.DataFrame({name: random.uniform(*ends, n) for name, ends in inputs.items()})
@@ -123,15 +128,12 @@ def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> tuple[d
         if np.prod([len(own) for own in nodes.values()]) <= constants.MOST_NODES:
             break
         share *= np.sqrt(2.0)
-    found = missed(pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes)))
-    shape = [len(own) for own in nodes.values()]
-    lines = {
-        name: RegularGridInterpolator(
-            list(nodes.values()), values.reshape(shape), bounds_error=False, fill_value=None
-        )(at)
-        for name, values in found.items()
-    }
-    return nodes, max(rms(lines[name] - exact[name]) / max(size[name], 1e-12) for name in exact)
+    whole = pd.DataFrame(itertools.product(*nodes.values()), columns=list(nodes))
+    found = missed(whole)
+    values = np.column_stack([*found.values()]).reshape(*(len(own) for own in nodes.values()), len(found))
+    lines = dict(zip(found, interpolated([*nodes.values()], values, at.to_numpy().T), strict=True))
+    added = max(rms(lines[name] - exact[name]) / max(size[name], 1e-12) for name in exact)
+    return _Grid(nodes, whole, found, added)
 
 
 def _nodes(
@@ -156,9 +158,8 @@ def _nodes(
         )
         if off <= share:
             return nodes
-        intervals = max(
-            intervals + 1, int(intervals * np.sqrt(off / share))
-        )  # falls with the square of the distance
+        # What a line adds falls with the square of the distance.
+        intervals = max(intervals + 1, int(intervals * np.sqrt(off / share)))
 
 
 def _fading(known: Predictor, name: str, nodes: Mapping[str, np.ndarray]) -> dict[str, float]:
@@ -168,5 +169,5 @@ def _fading(known: Predictor, name: str, nodes: Mapping[str, np.ndarray]) -> dic
     for one, length in zip(channel.smooth.inputs, channel.components.lengths, strict=True):
         if COLUMNS.get(one.name) in found:
             heading = COLUMNS[one.name]
-            found[heading] = length * OF_SI.get(CONDITIONS[heading].unit, 1.0)
+            found[heading] = length * of_si(heading)
     return found

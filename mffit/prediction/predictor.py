@@ -46,7 +46,7 @@ class MissedChannel:
     def at(
         self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray, of_tyre: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the file misses (n,), and its variance (n,) as that of the tyre and as that of its reading.
+        """What the file misses (n,), and two variances (n,): of the tyre's force, and of a reading of it.
 
         The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
         off counts in its variance.
@@ -73,7 +73,7 @@ class MissedChannel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PredictedForce:
-    """The force of a tyre at conditions (n,), and what is uncertain of it, in the unit of the channel."""
+    """The force of a tyre at conditions (n,) and its variances, in the unit of the channel."""
 
     file: np.ndarray  #: of the property file
     best: np.ndarray  #: with what the formula misses

@@ -14,11 +14,11 @@ from scipy.special import ndtr
 from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM
 from mffit.linearised.inputs import COLUMNS, LEVELS, inputs_of, swept_of
 from mffit.points import Points, levels
-from mffit.points.points import OF_SI
+from mffit.points.points import of_si
 from mffit.prediction import constants
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.prediction.predictor import Predictor
-from mffit.quantities import CONDITIONS, column
+from mffit.quantities import column
 from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir import Tyre
@@ -155,7 +155,7 @@ def _regions(side: str, names: Sequence[str], seen: Sequence[_Seen]) -> Iterator
         over = {}
         for i, _ in chosen:
             heading = COLUMNS[names[i]]
-            own = level[inside, i] * OF_SI.get(CONDITIONS[heading].unit, 1.0)
+            own = level[inside, i] * of_si(heading)
             over[heading] = (float(own.min()), float(own.max()))
         yield _Candidate(
             MissedRegion(side, over, mean - half, mean + half, n),

@@ -1,4 +1,4 @@
-"""What a point owes to the points before it: distance rolled, sense of the sweep, usual path, usual speed and mean pressure."""
+"""What a point owes to the points before it: distance rolled, sense of the sweep, usual path and usual speed."""
 
 from __future__ import annotations
 

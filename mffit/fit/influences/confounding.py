@@ -31,9 +31,8 @@ class Confounding:
 
     setting: str  #: in words, as in :data:`mffit.points.levels.KINDS`
     correlation: float  #: correlation ratio of temperature and setting, 0 to 1
-    coefficient: (
-        str  #: of those that the setting determines the one that suffers most; empty if none is fitted
-    )
+    coefficient: str
+    """Of those that the setting determines, the one that suffers most; empty if none is fitted."""
     growth: float  #: its standard uncertainty over that if the temperature terms were known
 
     @property

@@ -44,16 +44,11 @@ class Nuisance:
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
         return tuple(_number(name, run, scatter[name]) for name in self.numbers for run in runs)
 
-    @property
-    def is_averaged(self) -> bool:
-        """Whether the coefficients of the plain file are to contain its usual size, and the prediction what they miss of it."""
-        return self.key == TEMPERATURE
-
     def of_no_rig(self, problem: FitProblem) -> bool:
-        """Whether a number has the sign that none has, or ended at zero on the way there; a temperature of that sign is modelled
+        """Whether a number has the sign that none has, or ended at zero on the way there. A temperature of that sign is modelled,
         and in doubt."""
         signs = {name: BY_NAME[name].known_sign for name in self.numbers}
-        return not self.is_averaged and any(
+        return self.key != TEMPERATURE and any(
             sign and sign * problem.value(name) <= 0.0 for name, sign in signs.items()
         )
 

@@ -21,9 +21,9 @@ from mffit.rig import Simulation
 
 @dataclass(frozen=True, slots=True)
 class NuisanceFit:
-    """Two fits of the same points; they are one if nothing is modelled that the plain file averages over."""
+    """Two fits of the same points; they are one if no temperature is modelled."""
 
-    plain: Fitted  #: without temperature as an input: its coefficients take up the warming, and the mean over pressure
+    plain: Fitted  #: without temperature as an input: its coefficients take up the warming
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
     left: LinearisedFit | None = None  #: by the first fit, where that was looked at
@@ -31,7 +31,7 @@ class NuisanceFit:
     @property
     def at_temperature(self) -> bool:
         """Whether the full fit knows the temperature."""
-        return any(nuisance.key == TEMPERATURE for nuisance in self.choice.modelled)
+        return self.full is not self.plain
 
 
 def fit_with_nuisances(
@@ -48,10 +48,10 @@ def fit_with_nuisances(
     if choice.modelled:
         progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
-    if not any(nuisance.is_averaged for nuisance in choice.modelled):
+    if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
         return NuisanceFit(full, full, choice, left)
     # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
-    others = [n for n in choice.modelled if not n.is_averaged and not n.per_run]
+    others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
     return NuisanceFit(plain, full, choice, left)
 

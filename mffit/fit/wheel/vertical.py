@@ -159,9 +159,8 @@ def radius(values: Mapping[str, Any], at: RadiusReadings, channel: str) -> Any:
         conditions = at.Fx, at.Fy, at.gamma, rim_speed, at.p / float(values["NOMPRES"]) - 1.0
         known = SimpleNamespace(**{name: plain(value) for name, value in values.items()})
         found = vertical.loaded_radius(known, at.Fz, *conditions)
-        load, slope = vertical.load(
-            p, found, *conditions
-        )  # the load is given, so that the radius follows the numbers
+        # The load is given, so that the radius follows the numbers.
+        load, slope = vertical.load(p, found, *conditions)
         return found - (load - at.Fz) / plain(slope)
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
@@ -343,7 +342,7 @@ def _number(name: str, known: float, start: float, bounds: tuple[float, float]) 
 
 
 def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Covariance (k, k) by the moves of the numbers when each part of a sweep is left out, and that of the priors.
+    """Covariance (k, k): how the numbers scatter as parts of sweeps are left out, and that of the priors.
 
     Whatever makes the errors of a part alike counts. 1.96 standard errors hold 95 % although few parts may show the scatter.
     """
