@@ -97,13 +97,14 @@ class Mixed:
         """The shared numbers given the residuals."""
         sums, w = self._sums, float(np.exp(-given.noise))
         size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
-        inner = np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size
-        own = np.linalg.inv(inner) * own_size[:, None] * own_size
-        through = own @ sums.across
+        inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size)
+        half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
+        own, halfway = half @ np.swapaxes(half, 1, 2), np.swapaxes(half, 1, 2) @ sums.across
+        through = half @ halfway
         m = len(size)
-        flat = through.reshape(-1, m)
-        information = w * sums.common - w * w * flat.T @ sums.across.reshape(-1, m)
-        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ flat
+        flat = halfway.reshape(-1, m)
+        information = w * sums.common - w * w * flat.T @ flat
+        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
         whole = size[:, None] * information * size
         factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
         root = dtrtri(np.tril(factor[0]), lower=1)[0].T if m else np.zeros((0, 0))
@@ -117,7 +118,7 @@ class Mixed:
             own=own,
             through=through,
             log_determinant=2.0 * float(np.sum(np.log(np.diag(factor[0]))))
-            + float(np.sum(np.linalg.slogdet(inner)[1])),
+            + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
         )
 
     def further(self, given: Variances, columns: np.ndarray) -> FurtherColumns:
