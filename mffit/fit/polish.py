@@ -87,10 +87,11 @@ def with_known_zeros(
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
     """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
-    for _ in range(2):
-        here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
-        fitted = _fitted(here.with_noise_of_misfit().reweighted(), fitted.numbers, fitted)
-    return fitted
+    here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
+    weighted = here.with_noise_of_misfit().reweighted()
+    numbers = weighted.starting_here(fitted.numbers)
+    near = solve(weighted.free([n.name for n in numbers]), numbers, tolerance=constants.STAGE_TOLERANCE)
+    return _fitted(here.with_values(near.values).with_noise_of_misfit().reweighted(), numbers, fitted)
 
 
 def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted) -> Fitted:

@@ -24,7 +24,7 @@ from mffit.points.noise import estimated_noise, stating
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation, reference_speed, successive
 from mffit.scatter import rms
-from mffit.suspicion.reversals import Reversals
+from mffit.suspicion.reversals import reversals_of
 from tir.derivatives import gradient, plain, traced
 
 
@@ -85,7 +85,7 @@ class FitProblem:
 
     def turning(self, misfit: Mapping[str, np.ndarray] | None = None) -> dict[str, np.ndarray]:
         """By channel, mask (n,) of the readings that depart from their sweep because it turns back there."""
-        reversals, misfit = Reversals(self.points), self.misfit() if misfit is None else misfit
+        reversals, misfit = reversals_of(self.points), self.misfit() if misfit is None else misfit
         return {
             # A reading without weight has an infinite sigma.
             name: reversals.off(np.where(self._used(name), z, np.nan) * self.sigma[name])

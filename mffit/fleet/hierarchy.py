@@ -151,7 +151,7 @@ class _Tyres:
     def _own(self, found: MixedPosterior, k: int, *, with_mean: bool) -> tuple[np.ndarray, np.ndarray]:
         """The numbers of tyre ``k`` beyond their centres and their covariance, ``with_mean`` of the population in them or not."""
         rows, mine = self.model.groups[k], self.mine[k]
-        by_common = -found.through[k].T[mine]
+        by_common = -found.through[k][mine]
         alone = found.own[k][mine] @ (self.model.own[rows].T @ self.model.residual[rows])
         if with_mean:
             by_common[range(len(mine)), [len(self.shared) + j for j in mine]] += 1.0

@@ -238,19 +238,19 @@ def linearised(
     near : the same of a similar fit to these points, from which the search for the components begins
     """
     readings = simulation.readings(points, sigma)
-    felt = simulation.felt(points)
+    sight = _Sight(
+        points,
+        simulation.felt(points),
+        simulation,
+        numbers,
+        np.zeros(0, int) if without is None else without,
+        {} if near is None else {n: own.components for n, own in near.channels.items()},
+        {},
+    )
     found = {}
     for name in sigma if only is None else only:
         used = np.isfinite(sigma[name]) & np.isfinite(points.channel(name))
         if np.any(used):
-            sight = _Sight(
-                points,
-                felt,
-                simulation,
-                numbers,
-                np.zeros(0, int) if without is None else without,
-                {} if near is None else {n: own.components for n, own in near.channels.items()},
-            )
             found[name] = _channel(name, sight, readings[name], sigma[name], used)
     return LinearisedFit(tuple(numbers), found)
 
@@ -264,6 +264,28 @@ class _Sight(NamedTuple):
     numbers: Sequence[Uncertain]
     without: np.ndarray
     near: Mapping[str, Components]  #: by channel
+    looked_at: dict[bytes, _LookedAt]  #: by the rows, which most channels have in common
+
+    def at(self, rows: np.ndarray) -> _LookedAt:
+        """The readings of some rows (n,)."""
+        known = self.looked_at.get(rows.tobytes())
+        if known is None:
+            part, at_tyre = (p.select(rows, with_table=False) for p in (self.points, self.felt))
+            inputs = inputs_of(at_tyre)
+            smooth = SmoothFunctions.over(inputs)
+            columns = smooth.columns(settings_of(at_tyre, inputs))
+            known = _LookedAt(part, smooth, columns, along(at_tyre, inputs))
+            self.looked_at[rows.tobytes()] = known
+        return known
+
+
+class _LookedAt(NamedTuple):
+    """Readings (n,), and what may be missed there."""
+
+    points: Points
+    smooth: SmoothFunctions
+    columns: np.ndarray  #: (n, m) of these
+    along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
 
 
 def _channel(
@@ -277,18 +299,16 @@ def _channel(
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
     rows = every[::stride]
-    part, at_tyre = (p.select(rows, with_table=False) for p in (sight.points, sight.felt))
+    part, smooth, functions, place = sight.at(rows)
     residual = part.channel(name) - model[rows]
     stated = part.u(name)
     usual = float(np.median(sigma[rows]))
     unit = np.where(stating(stated), stated, usual)
-    inputs = inputs_of(at_tyre)
-    smooth = SmoothFunctions.over(inputs)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
-    own = own_columns(model[rows], along(at_tyre, inputs))
+    own = own_columns(model[rows], place)
     if len(groups) == 1:  # how runs differ is not seen, and one run would take up what the formula misses
         own = np.zeros_like(own)
-    missed = smooth.columns(settings_of(at_tyre, inputs)) / unit[:, None]
+    missed = functions / unit[:, None]
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
     of_rig = [i for i, number in enumerate(sight.numbers) if _of_rig(number)]
     rig = slopes[:, of_rig] / unit[:, None]

@@ -97,7 +97,8 @@ def _runs(points: Points) -> list[np.ndarray]:
 
 def _width(values: np.ndarray) -> float:
     """How far a run moves a condition."""
-    low, high = np.percentile(values, constants.ENDS_OF_A_RUN)
+    in_order = np.sort(values)  # np.percentile takes ten times as long for so few
+    low, high = np.interp(constants.ENDS_OF_A_RUN, np.linspace(0.0, 100.0, len(values)), in_order)
     return float(high - low)
 
 

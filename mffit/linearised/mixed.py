@@ -12,7 +12,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, solve_triangular
+from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.blas import dtrmm
+from scipy.linalg.lapack import dtrtri
 
 ROUNDING = 1e-13
 """Largest error of a difference of sums of products, over the sums, by which it may lose its sign."""
@@ -47,14 +49,16 @@ class Mixed:
     @cached_property
     def _sums(self) -> _Sums:
         parts = [(self.common[g], self.own[g], self.residual[g]) for g in self.groups]
+        rows = np.concatenate([np.zeros(0, dtype=int), *self.groups])
+        common, residual = self.common[rows], self.residual[rows]
         return _Sums(
-            common=sum((x.T @ x for x, _, _ in parts), np.zeros(2 * (self.common.shape[1],))),
-            pull=sum((x.T @ r for x, _, r in parts), np.zeros(self.common.shape[1])),
-            across=np.array([x.T @ z for x, z, _ in parts]),
+            common=common.T @ common,
+            pull=common.T @ residual,
+            across=np.array([z.T @ x for x, z, _ in parts]),
             own=np.array([z.T @ z for _, z, _ in parts]),
             own_pull=np.array([z.T @ r for _, z, r in parts]),
-            square=float(sum(r @ r for *_, r in parts)),
-            readings=sum(len(r) for *_, r in parts),
+            square=float(residual @ residual),
+            readings=len(rows),
         )
 
     @cached_property
@@ -70,17 +74,12 @@ class Mixed:
         found, sums = self.posterior(given), self._sums
         w, gain = np.exp(-given.noise), found.gain
         own_size = np.exp(given.own)
-        own = w * (
-            np.einsum("gqr,gr->gq", found.own, sums.own_pull)
-            - np.einsum("gmq,m->gq", found.through, found.mean)
-        )
-        spread = np.sum((found.root.T @ np.hstack([*found.through])) ** 2, axis=0).reshape(own.shape)
+        alone = np.einsum("gqr,gr->gq", found.own, sums.own_pull)
+        own = w * (alone - found.through @ found.mean)
+        through = found.through.reshape(own.size, len(found.mean))
+        spread = np.sum(dtrmm(1.0, found.root, through, side=1) ** 2, axis=1).reshape(own.shape)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
-        square = (
-            w * sums.square
-            - found.mean @ found.pull
-            - w * w * np.einsum("gq,gqr,gr->", sums.own_pull, found.own, sums.own_pull)
-        )
+        square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
         share = gain + scaled**2
         own_share = (own_variance + own**2) / own_size
@@ -98,15 +97,17 @@ class Mixed:
         """The shared numbers given the residuals."""
         sums, w = self._sums, float(np.exp(-given.noise))
         size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
-        inner = np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size
-        own = np.linalg.inv(inner) * own_size[:, None] * own_size
-        through = sums.across @ own
+        inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size)
+        half = np.swapaxes(np.linalg.inv(inner) * own_size, 1, 2)
+        own, halfway = half @ np.swapaxes(half, 1, 2), np.swapaxes(half, 1, 2) @ sums.across
+        through = half @ halfway
         m = len(size)
-        information = w * sums.common - w * w * np.hstack([*through]) @ np.hstack([*sums.across]).T
-        pull = w * sums.pull - w * w * np.einsum("gmq,gq->m", through, sums.own_pull)
+        flat = halfway.reshape(-1, m)
+        information = w * sums.common - w * w * flat.T @ flat
+        pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
         whole = size[:, None] * information * size
         factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
-        root = solve_triangular(factor[0], np.eye(m), lower=True, check_finite=False).T
+        root = dtrtri(np.tril(factor[0]), lower=1)[0].T if m else np.zeros((0, 0))
         scaled = cho_solve(factor, size * pull, check_finite=False)
         return MixedPosterior(
             mean=size * scaled,
@@ -117,7 +118,7 @@ class Mixed:
             own=own,
             through=through,
             log_determinant=2.0 * float(np.sum(np.log(np.diag(factor[0]))))
-            + float(np.sum(np.linalg.slogdet(inner)[1])),
+            + 2.0 * float(np.sum(np.log(np.diagonal(inner, axis1=1, axis2=2)))),
         )
 
     def further(self, given: Variances, columns: np.ndarray) -> FurtherColumns:
@@ -155,8 +156,8 @@ class Mixed:
             end = begin + len(out)
             block[begin:end, begin:end] = w * (np.eye(len(out)) - own @ z.T)
             begin = end
-            whitened.append(w * (x - w * z @ found.through[k].T))
-            pull = self._sums.own_pull[k] - self._sums.across[k].T @ found.mean
+            whitened.append(w * (x - w * z @ found.through[k]))
+            pull = self._sums.own_pull[k] - self._sums.across[k] @ found.mean
             moved.append(w * (r - x @ found.mean - own @ pull))
             order.append(out)
         through = np.concatenate(whitened) @ found.root
@@ -186,7 +187,7 @@ class _Sums(NamedTuple):
 
     common: np.ndarray  #: (m, m)
     pull: np.ndarray  #: (m,)
-    across: np.ndarray  #: (groups, m, q)
+    across: np.ndarray  #: (groups, q, m)
     own: np.ndarray  #: (groups, q, q)
     own_pull: np.ndarray  #: (groups, q)
     square: float
@@ -197,12 +198,12 @@ class MixedPosterior(NamedTuple):
     """The shared numbers given the residuals, and what left-out groups need."""
 
     mean: np.ndarray  #: (m,)
-    root: np.ndarray  #: (m, m) whose product with its transpose is the covariance
+    root: np.ndarray  #: (m, m) upper triangle whose product with its transpose is the covariance
     pull: np.ndarray  #: (m,)
     scaled: np.ndarray  #: (m,) the mean over the prior's standard deviation
     gain: np.ndarray  #: (m,) variance over that of the prior
     own: np.ndarray  #: (groups, q, q) covariance of the groups' numbers if the shared ones were known
-    through: np.ndarray  #: (groups, m, q)
+    through: np.ndarray  #: (groups, q, m)
     log_determinant: float
 
 

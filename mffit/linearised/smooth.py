@@ -48,7 +48,7 @@ class SmoothFunctions:
             place = (inside - one.lower + constants.ROOM * one.width) / _length(one)
             order = np.arange(int(self.orders[:, i].max(initial=0)) + 1)
             waves = np.cos(np.pi * place[:, None] * order) * np.where(order > 0, np.sqrt(2.0), 1.0)
-            out *= waves[:, self.orders[:, i]]
+            out *= np.take(waves, self.orders[:, i], axis=1)
         return out
 
     def log_variance(self, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

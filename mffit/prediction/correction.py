@@ -54,7 +54,7 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
         return None
     missed = _Missed(known, fitted, names)
     nodes, at, of_nodes, added = _grid(missed, inputs)
-    found, table = known.predict(fitted, fitted, _whole(at, fitted)), at.copy()
+    found, table = known.predict(fitted, fitted, _whole(at, fitted), names), at.copy()
     for name in names:
         u = found[f"u_{column(name, 'best')}"].to_numpy()
         digits = 2 - int(np.floor(np.log10(np.median(u))))  # three of a usual uncertainty

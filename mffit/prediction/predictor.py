@@ -103,7 +103,9 @@ class Predictor:
         """Whether the readings were taken on a curved path."""
         return self.path != 0.0
 
-    def predict(self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame) -> pd.DataFrame:
+    def predict(
+        self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
+    ) -> pd.DataFrame:
         """The conditions with the forces of the file and the best estimates, all with standard uncertainties.
 
         Parameters
@@ -112,6 +114,7 @@ class Predictor:
         fitted : the file of its fitted model, which is the plain one unless that is meant for turn slip off on a disc
         conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; others of a sweep and ``phi_t_per_m`` are optional. In
             ISO-W.
+        channels : those to predict; all that were fitted if None
 
         Returns
         -------
@@ -122,7 +125,7 @@ class Predictor:
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
         found = conditions.copy()
         simulation = Simulation.of(fitted, turn_slip=self.curved)
-        for name, one in self.forces(plain, simulation, points).items():
+        for name, one in self.forces(plain, simulation, points, channels).items():
             found[column(name)] = one.file
             found[u_column(name)] = one.u_file
             found[column(name, "best")] = one.best

@@ -84,7 +84,7 @@ def missed_at_readings(
     groups = [whole[rows] for rows in levels.rows_of_equal(keys.T[whole])]
     at = pd.DataFrame({name: points.condition(name) for name in UNITS if name not in (PATH, "T_degC")})
     at[PATH] = points.phi_t
-    run = known.predict(fitted, fitted, at.assign(T_degC=points.condition("T_degC")))
+    run = known.predict(fitted, fitted, at.assign(T_degC=points.condition("T_degC")), proven)
     force = Simulation.of(fitted, turn_slip=known.curved).readings(points, known.channels)
     found = {}
     for name in (name for name in known.channels if name in proven):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +80,12 @@ class Reversals:
             return False
         ratio = rms(residual[used & off]) / rms(residual[rest])
         return bool(fdtrc(turns, np.sum(rest), ratio**2) < FALSE_ALARM)
+
+
+@lru_cache(maxsize=4)
+def reversals_of(points: Points) -> Reversals:
+    """Of points that a fit asks for time and again."""
+    return Reversals(points)
 
 
 def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarray:

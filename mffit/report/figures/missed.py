@@ -58,7 +58,7 @@ def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str, *
     for value, colour in style.ramp(levels).items():
         at = pd.DataFrame({**usual, over: along, by: value}, index=range(len(along)))
         assert build.prediction is not None
-        found = build.prediction.predict(build.fit.tyre, build.fit.tyre, at)
+        found = build.prediction.predict(build.fit.tyre, build.fit.tyre, at, [name])
         series.append(
             Trace(
                 name=CONDITIONS[by].of(value),

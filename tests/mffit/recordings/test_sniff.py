@@ -104,7 +104,7 @@ def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
     assert (project / "cornering.png").stat().st_size > 10_000
     stretches = pd.read_csv(project / "stretches.csv")
     assert (stretches["points"] > 0).sum() >= 18
-    result = pipeline.build(project / "tyre.toml", project / "out")
+    result = pipeline.build(project / "tyre.toml", project / "out", with_report=False)
     alpha = np.radians(np.linspace(-8.0, 8.0, 33))
     for load in LOADS:
         truth = side_force(alpha, 0.0, load, side=0.0)
