@@ -48,6 +48,7 @@ class Parameter:
     tyres_spread: (
         float | None
     )  #: size that two thirds of published tyres have at most, of those that have it at all
+    tyres: int  #: of how many
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
     equation: str  #: the equation that contains it
@@ -142,6 +143,7 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
         disc_spread=float(tied["disc"]) if "disc" in tied else None,
         side_spread=float(tied["side"]) if "side" in tied else None,
         tyres_spread=float(tied["tyres"].partition("/")[0]) if "tyres" in tied else None,
+        tyres=int(tied.get("tyres", "/0").partition("/")[2]),
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],
         equation=row["equation"],

@@ -41,6 +41,13 @@ class Fitted:
         return self.problem.simulation
 
     @property
+    def rig_stated(self) -> dict[str, tuple[float, float]]:
+        """The rig errors, and the conditions from which they count."""
+        errors = (error_of(name) for name in self.rig)
+        references = {error.counts_from for error in errors if error is not None and error.counts_from}
+        return {**self.rig, **{name: (self.problem.value(name), 0.0) for name in sorted(references)}}
+
+    @property
     def stderr(self) -> dict[str, float]:
         """Standard uncertainty of every number."""
         return self.posterior.stderr

@@ -130,7 +130,7 @@ def fit(
     channels = agreement.with_points(readings, points)
     tyre = files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre
     simulation = Simulation(tyre.values, turn_slip=config.rig.on_disc)
-    found_rig = {name: value for name, (value, _) in fitted.rig.items()}
+    found_rig = {name: value for name, (value, _) in fitted.rig_stated.items()}
     known_forces, with_zeros = (
         predictor(points, left_by_file, found_rig, exact) for exact in ((), zeros_of_rig(fitted.rig))
     )
@@ -146,7 +146,7 @@ def fit(
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=delivered,
-        rig={**fitted.rig, **made.zeros},
+        rig={**fitted.rig_stated, **made.zeros},
         model=readings,
         posterior=made.posterior,
         coverage=(*plan.cover, *(direction.coverage for direction in made.relaxation)),

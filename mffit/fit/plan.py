@@ -23,6 +23,7 @@ from mffit.least_squares import EXACT, FreeNumber
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +56,21 @@ class FitPlan:
                 lower=self.hand.bounds(name)[0],
                 upper=self.hand.bounds(name)[1],
                 expected=self.expected[name],
-                spread=self.scatter.get(name, math.inf),
+                spread=self._spread(name, float(problem.simulation.values[name])),
             )
             for name in names
         ]
+
+    def _spread(self, name: str, value: float) -> float:
+        """Standard deviation of the normal prior that pulls at a value as the prior of a coefficient does.
+
+        A spread that n published tyres show is uncertain itself: of a further tyre they tell Student's t with n - 1 degrees of
+        freedom, whose pull fades where the points show a value far from theirs.
+        """
+        spread, row = self.scatter.get(name, math.inf), BY_NAME[name]
+        if spread != row.tyres_spread:
+            return spread
+        return spread * math.sqrt((row.tyres - 1 + ((value - self.expected[name]) / spread) ** 2) / row.tyres)
 
     def numbers(self, problem: FitProblem) -> list[FreeNumber]:
         """All free coefficients and rig errors, from their current values."""

@@ -358,7 +358,7 @@ def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str
     stated = (f"{words_of(n)} {_stated(n, *found.full.rig[n])}" for n in verdict.nuisance.numbers)
     told = f"{', '.join(stated)}, and the files are without it"
     if {error.name for error in BESIDE}.issuperset(verdict.nuisance.numbers):
-        told += ": MF 6.2 has no term for it, and predict adds it"
+        told += f": they hold at {found.full.rig_stated['p_ref_kPa'][0]:g} kPa, MF 6.2 has no term for it, and predict adds it"
     return ascii_only(told)
 
 

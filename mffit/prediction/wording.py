@@ -39,9 +39,8 @@ def _most(found: MissedAtReadings, region: MissedRegion) -> str:
     ends = sorted({f"{100.0 * abs(share):.2g}" for share in (region.lower, region.upper)}, key=float)
     size, more = f"{' to '.join(ends)} %", region.upper > 0.0
     seen = f"in all {region.sweeps} sweeps there"
-    why = [
-        said for key in (*region.over, region.side) for *of, said in [BECAUSE.get(key, ("",))] if name in of
-    ]
+    keys = (region.side,) if region.side == "apart" else region.over
+    why = [said for key in keys for *of, said in [BECAUSE.get(key, ("",))] if name in of]
     because = f", because {listed(why)}" if why and found.is_grip else ""
     if region.side == "apart":
         one, other = (

@@ -127,9 +127,11 @@ class Chain:
         return np.nan_to_num(self.points.V - self._history.usual_speed)
 
     @property
-    def pressure_above_nominal(self) -> Any:
-        """Pressure above NOMPRES of the tyre (n,) [kPa]."""
-        return 1e-3 * (self.points.p - self._coefficients["NOMPRES"])
+    def pressure_above_reference(self) -> Any:
+        """Pressure above that at which the coefficients hold (n,) [kPa]."""
+        reference = self.numbers["p_ref_kPa"]
+        nominal = 1e-3 * self._coefficients["NOMPRES"]
+        return 1e-3 * self.points.p - (nominal if np.isnan(reference) else reference)
 
     @cached_property
     def time(self) -> np.ndarray:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from mffit.rig_errors.angle import ANGLE_ERRORS
 from mffit.rig_errors.conditions import CONDITION_ERRORS
-from mffit.rig_errors.environment import COEFFICIENT_ERRORS, ENVIRONMENT_ERRORS, PRESSURE_ARM
+from mffit.rig_errors.environment import (
+    COEFFICIENT_ERRORS,
+    ENVIRONMENT_ERRORS,
+    PRESSURE_ARM,
+    REFERENCE_PRESSURE,
+)
 from mffit.rig_errors.force import FORCE_ERRORS
 from mffit.rig_errors.record import BEFORE_THE_TYRE, RigError
 
@@ -24,7 +29,7 @@ DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declar
 """Those whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Those that every set-up of the rig has anew."""
-BESIDE = (PRESSURE_ARM,)
+BESIDE = (REFERENCE_PRESSURE, PRESSURE_ARM)
 """Those of the tyre by conditions that every reading and prediction states, for which the formula has no coefficient."""
 CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""

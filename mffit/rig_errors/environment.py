@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any
 
@@ -21,7 +22,13 @@ def _warmed(k: Any, value: Any, at: Any) -> Any:
 
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
 _of_temperature = partial(
-    RigError, unit="1/K", kind="environment", formula=_warmed, limits=(-0.05, 0.05), known_sign=-1
+    RigError,
+    unit="1/K",
+    kind="environment",
+    formula=_warmed,
+    limits=(-0.05, 0.05),
+    known_sign=-1,
+    counts_from="T_ref_degC",
 )
 _of_run = partial(
     RigError,
@@ -62,6 +69,7 @@ TEMPERATURE_GRIP_CURVATURE = RigError(
     ),
     spread=1e-4,
     limits=(-5e-3, 5e-3),
+    counts_from="T_ref_degC",
 )
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
@@ -124,12 +132,13 @@ PRESSURE_ARM = RigError(
     word="QSX3 over pressure",
     unit="1/kPa",
     kind="tyre",
-    meaning="arm of the side force in Mx, QSX3, plus k (p - NOMPRES)",
+    meaning="arm of the side force in Mx, QSX3, plus k (p - p_ref_kPa)",
     place=Place.COEFFICIENTS,
     acts_on=("QSX3",),
-    formula=lambda k, QSX3, at: QSX3 + k * at.pressure_above_nominal,
+    formula=lambda k, QSX3, at: QSX3 + k * at.pressure_above_reference,
     spread=5e-4,
     limits=(-0.01, 0.01),
+    counts_from="p_ref_kPa",
     seen_as=(
         Appearance(
             id="overturning-pressure",
@@ -180,6 +189,17 @@ REFERENCE_TEMPERATURE = RigError(
     undisturbed=constants.REFERENCE_TEMPERATURE,
     spread=10.0,
     limits=(-40.0, 200.0),
+)
+REFERENCE_PRESSURE = RigError(
+    name="p_ref_kPa",
+    word="pressure at which the model holds",
+    unit="kPa",
+    meaning="pressure at which the model holds; NOMPRES unless a build states it",
+    kind="tyre",
+    place=None,
+    undisturbed=math.nan,
+    spread=20.0,
+    limits=(1.0, 1e4),
 )
 SPEED = _of_forces(
     name="k_V_per_mps",
@@ -252,6 +272,7 @@ WARM_UP = _of_forces(
 
 COEFFICIENT_ERRORS = (
     REFERENCE_TEMPERATURE,
+    REFERENCE_PRESSURE,
     TEMPERATURE_GRIP,
     TEMPERATURE_GRIP_CURVATURE,
     TEMPERATURE_STIFFNESS,

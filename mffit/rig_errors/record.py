@@ -118,6 +118,7 @@ class RigError:
     scan: tuple[float, ...] = (0.0,)  #: changes to start from; an even effect needs some other than 0
     limits: tuple[float, float] = (-math.inf, math.inf)
     relative: bool = False  #: spread and scan are relative to the value
+    counts_from: str = ""  #: the number that holds the condition at which it has no effect
     known_sign: int = 0  #: that the number has in all published tyres and rigs, +1 or -1; 0: either
     of_setup: bool = False  #: differs from one set-up of the rig to the next, as a zero does
     seen_as: tuple[Appearance, ...] = ()

@@ -68,6 +68,12 @@ def _grip(s: Settings, m: Machine) -> np.ndarray:
     return 1.0 + m.faults["k_T_grip_per_K"] * _kelvin(s, m)
 
 
+def _usual_pressure(m: Machine) -> float:
+    """At which the coefficients of the tyre hold [kPa]."""
+    stated = m.faults["p_ref_kPa"]
+    return m.tyre["NOMPRES"] / 1000.0 if np.isnan(stated) else stated
+
+
 STEERS: dict[str, Formula] = {
     "gain_alpha": lambda x, s, m: x * s.alpha - s.alpha,
     "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
@@ -106,7 +112,7 @@ SCALES: dict[str, tuple[str, Formula]] = {
 }
 """Factors on scaling factors of the tyre."""
 ADDED: dict[str, tuple[str, Formula]] = {
-    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p - m.tyre["NOMPRES"]) / 1000.0),
+    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m))),
 }
 """Added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
@@ -125,8 +131,8 @@ CELL = (
     "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
-ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "relaxation_m")
-"""Path radius and crown: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
+ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "p_ref_kPa", "relaxation_m")
+"""Path radius and crown: :func:`at_the_tyre`; references: the factors and terms; lag: :mod:`mffit.virtual_rig.recording`."""
 FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *ADDED, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 

@@ -77,8 +77,10 @@ class Truth:
     drive: Mapping[str, Any] = field(default_factory=dict)  #: the table [drive], if the rig reports slip
 
     def to_json(self) -> dict[str, Any]:
-        """The content of truth.json; the flat-track path radius is null."""
-        faults: dict[str, float | None] = dict(self.faults)
+        """The content of truth.json; the flat-track path radius is null, and a reference that is as declared is left out."""
+        faults: dict[str, float | None] = {
+            n: value for n, value in self.faults.items() if not math.isnan(value)
+        }
         if math.isinf(self.faults["path_radius_m"]):
             faults["path_radius_m"] = None
         of_drive = {"drive": dict(self.drive), "driven_per_load": [asdict(row) for row in self.driven]}

@@ -86,13 +86,12 @@ def at_temperature(
     simulation = without_runs(full.simulation)
     alone = simulation.with_numbers(dict.fromkeys(terms, 0.0))
     verdict = next(v for v in found.choice.verdicts if v.modelled and set(v.nuisance.numbers) & set(terms))
-    T_ref = full.simulation.faults["T_ref_degC"]
     return AtTemperature(
         file=file,
-        T_ref=T_ref,
+        T_ref=full.simulation.faults["T_ref_degC"],
         T_range=(float(np.nanmin(points.T)), float(np.nanmax(points.T))),
         terms=terms,
-        rig={**full.rig, "T_ref_degC": (T_ref, 0.0)},
+        rig=full.rig_stated,
         coefficients=coefficients,
         channels=agreement.with_points(simulation.readings(points, full.problem.channels), points),
         alone=agreement.with_points(alone.readings(points, full.problem.channels), points),

@@ -124,10 +124,12 @@ def reference_temperature(config: Config, points: Points) -> float:
 
 
 def at_reference(config: Config, problem: FitProblem) -> FitProblem:
-    """The problem with the reference temperature of its points, where they have temperatures."""
-    if not np.any(np.isfinite(problem.points.T)):
-        return problem
-    return problem.with_values({"T_ref_degC": reference_temperature(config, problem.points)})
+    """The problem at the mean pressure of its points, and at their reference temperature where they have temperatures."""
+    points = problem.points
+    reference = {"p_ref_kPa": round(float(np.mean(points.p)) / 1e3, 1)}
+    if np.any(np.isfinite(points.T)):
+        reference["T_ref_degC"] = reference_temperature(config, points)
+    return problem.with_values(reference)
 
 
 def _judged(
