@@ -190,6 +190,9 @@ def solve(
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
 
+    Where a model misses its readings by more than noise, the second derivatives of the residuals count too. They are learnt from
+    the gradients along the way, and every step is tried with and without them (Dennis, Gay and Welsch 1981).
+
     Parameters
     ----------
     problem : residuals and exact derivatives
@@ -203,16 +206,19 @@ def solve(
     here, at_x = problem.linear(x), True
     cost = objective.cost(x, here.data, here.limits)
     damping, taken, close = 1e-3, 0, False
+    form, bend = _Quadratic.around(objective, x, here), np.zeros((len(x), len(x)))
     while taken < max_steps and len(x) and not close:
-        if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
-            here, at_x = problem.linear(x), True
-        form = _Quadratic.around(objective, x, here)
         close = form.left < tolerance * cost
-        step = _step(objective, x, cost, form, UNDAMPED if close else damping, NEGLIGIBLE * tolerance * cost)
+        forms = [form, form.bent(bend)] if bend.any() and not close else [form]
+        step = _step(objective, x, cost, forms, UNDAMPED if close else damping, NEGLIGIBLE * tolerance * cost)
         if step is None:
             break
-        x, cost, damping, at_x = step.x, step.cost, step.damping, False
         taken += 1
+        move, x, cost, damping, at_x = step.x - x, step.x, step.cost, step.damping, False
+        if not close and taken < max_steps:
+            here, at_x, before = problem.linear(x), True, form
+            form = _Quadratic.around(objective, x, here)
+            bend = _bend(bend, move, before, form)
     return Solution(objective, x, cost, taken, here if at_x else None)
 
 
@@ -271,25 +277,35 @@ class _Step(NamedTuple):
 
 
 def _step(
-    objective: Objective, x: np.ndarray, cost: float, form: _Quadratic, damping: float, least: float
+    objective: Objective,
+    x: np.ndarray,
+    cost: float,
+    forms: Sequence[_Quadratic],
+    damping: float,
+    least: float,
 ) -> _Step | None:
-    """The next place with a smaller sum of squares; None if there is none.
+    """The next place with a smaller sum of squares, the lower of those that two forms promise; None if there is none.
 
-    A damped step that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play and its stops,
-    such steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, near the minimum:
-    its fall may be too small to be seen beside rounding, so it only must not rise by more.
+    A damped step of the first form that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play
+    and its stops, such steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, near
+    the minimum: its fall may be too small to be seen beside rounding, so it only must not rise by more.
     """
     last = damping == UNDAMPED
     while damping < 1e12:
-        move = form.move(damping)
-        if move is not None:
+        found = []
+        for form in forms:
+            move = form.move(damping)
+            if move is None:
+                continue
             promised = form.gain(move)
-            if promised <= least and not last:
+            if form is forms[0] and promised <= least and not last:
                 return None
             trial = np.clip(x + move, objective.lower, objective.upper)
             new = objective.cost(trial, *objective.problem.residual(trial))
-            if new < cost or (last and new <= cost + least):
-                return _Step(trial, new, _next_damping(damping, cost - new, promised))
+            found.append(_Step(trial, new, _next_damping(damping, cost - new, promised)))
+        best = min(found, key=lambda step: step.cost, default=None)
+        if best is not None and (best.cost < cost or (last and best.cost <= cost + least)):
+            return best
         if last:
             return None
         damping = max(6.0 * damping, 1e-8)
@@ -316,6 +332,10 @@ class _Quadratic(NamedTuple):
             low=objective.lower - x,
             high=objective.upper - x,
         )
+
+    def bent(self, bend: np.ndarray) -> _Quadratic:
+        """The same with more curvature (k, k), which need not be positive."""
+        return self._replace(curvature=self.curvature + bend)
 
     def gain(self, move: np.ndarray) -> float:
         """Fall of the sum of squares by a move (k,)."""
@@ -394,6 +414,19 @@ def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray
     at = slope + np.cumsum(np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0)))
     k = int(np.searchsorted(at, 0.0)) - 1
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
+
+
+def _bend(bend: np.ndarray, move: np.ndarray, before: _Quadratic, after: _Quadratic) -> np.ndarray:
+    """What the second derivatives of the residuals add to the curvature (k, k), by the gradients at both ends of a move (k,).
+
+    The symmetric change of rank one; none where it would be rounding (Nocedal and Wright 2006, section 6.2).
+    """
+    lacking = after.gradient - before.gradient - (after.curvature + bend) @ move
+    size = np.diag(after.curvature)
+    size = np.sqrt(np.maximum(size, 1e-12 * np.max(size)))
+    along = float(lacking @ move)
+    rounding = math.sqrt(np.finfo(float).eps) * np.linalg.norm(lacking / size) * np.linalg.norm(size * move)
+    return bend if abs(along) <= rounding else bend + np.outer(lacking, lacking) / along
 
 
 def _next_damping(damping: float, fall: float, promised: float) -> float:

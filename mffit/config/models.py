@@ -89,6 +89,7 @@ U_RANGES = {
     "deg": stated.Angle,
     "m": stated.Length,
     "deg/Nm": stated.Compliance,
+    "deg/kN": stated.Tilt,
 }
 """Accepted range of a standard uncertainty by its unit."""
 

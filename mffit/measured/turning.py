@@ -122,7 +122,8 @@ def _force(
     any load of the set-up was run both ways. The angles are already corrected for the play.
     """
     assert evidence.rig is not None
-    at = AtZero(stiffness.C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play)
+    load = math.copysign(zero.group.load, zero.phi_t)
+    at = AtZero(stiffness.C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play, load)
     both = zero.backward is not None
     force = zero.mean(both=both)
     if alpha_M is not None and not both:

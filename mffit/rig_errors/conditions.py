@@ -87,6 +87,13 @@ DISC_TILT = _of_camber(
             remedy="support the disc under the contact; or measure its tilt of {value} deg per kN with a dial gauge",
         ),
     ),
+    declared=Declared(
+        key="u_disc_tilt_deg_per_kN",
+        unit="deg/kN",
+        default=0.0,
+        source="tilt of the disc",
+        force_at_zero=lambda tilt, at: RADIANS * 1e-3 * at.C_gamma * at.load * tilt,
+    ),
 )
 LOAD_CAMBER = RigError(
     name="load_camber",

@@ -42,6 +42,7 @@ class AtZero(NamedTuple):
     C_alpha: Any  #: cornering stiffness [N/rad], ISO, negative
     C_gamma: Any  #: camber stiffness [N/rad], ISO, negative
     side_of_play: float  #: sign of the sideslip that backlash adds to a reading of zero
+    load: float = 0.0  #: [N], with the sign of the turn slip
 
 
 class Slopes(NamedTuple):

@@ -184,3 +184,25 @@ def test_an_answer_is_exact_however_little_it_gains(noise):
     problem = LeastSquaresProblem(lambda x: (x[0] - data, np.zeros(0)), linear)
     found = solve(problem, [FreeNumber("a", 0.0)])
     assert found.values["a"] == pytest.approx(0.5, rel=1e-6)
+
+
+def test_residuals_that_stay_large_do_not_slow_a_search_down():
+    """Brown and Dennis's function, no. 16 of Moré, Garbow and Hillstrom 1981: its second derivatives rule at the minimum."""
+    t = np.arange(1, 21) / 5.0
+
+    def both(x):
+        return x[0] + t * x[1] - np.exp(t), x[2] + x[3] * np.sin(t) - np.cos(t)
+
+    def residual(x):
+        return sum(part**2 for part in both(x))
+
+    def linear(x):
+        a, b = both(x)
+        slope = 2.0 * np.column_stack([a, a * t, b, b * np.sin(t)])
+        return Linear(residual(x), slope, np.zeros(0), np.zeros((0, 4)))
+
+    problem = LeastSquaresProblem(lambda x: (residual(x), np.zeros(0)), linear)
+    start = zip("abcd", (25.0, 5.0, -5.0, -1.0), strict=True)
+    found = solve(problem, [FreeNumber(*one) for one in start], tolerance=1e-9)
+    assert found.cost == pytest.approx(85822.2, abs=0.1)
+    assert found.steps < 40

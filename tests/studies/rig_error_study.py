@@ -103,6 +103,7 @@ WORLDS = {
     **{name: World(faults=faults) for name, faults in NOT_DECLARED.items()},
     "crosstalk that grows with camber drawn from 2 %": World(declared={"u_crosstalk_camber": 0.02}),
     "crown drawn from 80 mm": World(declared={"u_crown_m": 0.08}),
+    "disc tilt drawn from 0.4 deg per kN": World(declared={"u_disc_tilt_deg_per_kN": 0.4}),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 

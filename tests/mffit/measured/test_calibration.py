@@ -14,7 +14,7 @@ from mffit.parts import split
 from mffit.points import Points
 
 LOADS = (1000.0, 1500.0, 2000.0)
-SIZE, GIVE, CROWN = 0.01, 1e-3, 0.05  # relative; deg/Nm; m
+SIZE, GIVE, CROWN, TILT = 0.01, 1e-3, 0.05, 0.2  # relative; deg/Nm; m; deg/kN
 RESULTS = ("C_alpha", "C_gamma", "F_phit", "C_phit", "epsilon_gamma", "r_e", "R")
 
 
@@ -45,6 +45,13 @@ def crowned(points: Points) -> Points:
     return points.replace(Fy=points.Fy + plain.turn_slip_force(points.Fz) * (R / (R - away) - 1.0))
 
 
+def tilted(points: Points) -> Points:
+    """The wheel leans against the disc by what the load bends it, outwards."""
+    lean = points.gamma + np.sign(points.phi_t) * np.radians(TILT * points.Fz / 1000.0)
+    Fy, Mz = Bent().readings(points.alpha, lean, points.Fz, points.direction)
+    return points.replace(Fy=Fy, Mz=Mz)
+
+
 SPOILT = {
     "calibration of Fy": ("u_Fy_gain", SIZE, lambda points: points.replace(Fy=(1.0 + SIZE) * points.Fy)),
     "calibration of alpha": (
@@ -61,6 +68,7 @@ SPOILT = {
         lambda points: points.replace(Fy=points.Fy + SIZE * np.sin(points.gamma) * points.Fz),
     ),
     "path radius that changes with camber": ("u_crown_m", CROWN, crowned),
+    "tilt of the disc": ("u_disc_tilt_deg_per_kN", TILT, tilted),
 }  # fmt: skip
 
 
