@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 from uncertainties import UFloat
 
 from mffit.config import Config
@@ -93,31 +92,32 @@ def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -
 
     Slope, its standard error from ``u``, and the scatter of the points over ``u``.
     """
+    import lmfit  # loads matplotlib, so only when a slope is wanted
+
     first = np.argsort(x)[:3]
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
-    # First value, limits and scale of: the slope over its first estimate, the ceiling over the largest value, C, and E.
-    shape = [(1.05, 0.2, 5.0, 0.1), (1.2, 0.7, 20.0, 0.3), (1.2, 0.3, 1.9, 0.2)]
+
+    shape = lmfit.Parameters()
+    shape.add("slope", 1.05, min=0.2, max=5.0)  # over its first estimate
+    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # over the largest value
+    shape.add("C", 1.2, min=0.3, max=1.9)
     if curvature:
-        shape.append((0.0, -6.0, 1.0, 0.5))
-    first_values, low, high, scales = (list(one) for one in zip(*shape, strict=True))
+        shape.add("E", 0.0, min=-6.0, max=1.0)
 
-    def residual(shape: np.ndarray) -> np.ndarray:
-        slope, ceiling, C, *E = shape.tolist()
-        s, D = slope * start, ceiling * top
+    def residual(shape: lmfit.Parameters) -> np.ndarray:
+        s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
         b = s * x / (C * D)
-        bent = E[0] * (b - np.arctan(b)) if E else 0.0
-        return np.append(
-            (D * np.sin(C * np.arctan(b - bent)) - y) / u, [(C - 1.2) / 0.5, *(e / curvature for e in E)]
-        )
+        bent = shape["E"].value * (b - np.arctan(b)) if curvature else 0.0
+        priors = [(C - 1.2) / 0.5, *([shape["E"].value / curvature] if curvature else [])]
+        return np.append((D * np.sin(C * np.arctan(b - bent)) - y) / u, priors)
 
-    found = least_squares(residual, first_values, bounds=(low, high), x_scale=scales)
-    scatter = float(np.sqrt(2.0 * found.cost / max(len(x) - 3, 1)))
-    try:
-        error = float(np.sqrt(np.linalg.inv(found.jac.T @ found.jac)[0, 0]))
-    except np.linalg.LinAlgError:
-        error = abs(found.x[0])
-    return float(found.x[0] * start), float(error * abs(start)), scatter
+    scales = [0.1, 0.3, 0.2, *([0.5] if curvature else [])]
+    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=scales)
+    found = out.params["slope"]
+    scatter = float(np.sqrt(out.chisqr / max(len(x) - 3, 1)))
+    error = found.stderr if found.stderr is not None else abs(found.value)
+    return float(found.value * start), float(error * abs(start)), scatter
 
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
