@@ -21,10 +21,10 @@ from mffit.sweeps.formats import ENDINGS
 from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
-from mffit.window.guard import App, Guard
+from mffit.window.guard import App, Entrance, Guard
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
-from mffit.window.session import Session
+from mffit.window.session import ChangedElsewhere, Session
 
 Endpoint = Callable[[Request], Awaitable[Response]]
 SERVED = (".html", ".png", ".svg", ".json", ".csv", ".tir", ".toml")
@@ -90,7 +90,9 @@ class Opened:
             self._session.stop()
 
 
-def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], bool] = lambda: False) -> App:
+def window_app(
+    opened: Opened, *, entrance: Entrance, port: int, closing: Callable[[], bool] = lambda: False
+) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
     shown: dict[str, Callable[[], Any]] = {
         "recordings": lambda: plain(opened.folder.table()),
@@ -146,15 +148,15 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
         return JSONResponse({"error": str(error)}, REFUSED)
 
     routes = [
-        Route("/{token}/", page),
-        *(Route(f"/{{token}}/{name}", showing(found)) for name, found in shown.items()),
-        *(Route(f"/{{token}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
-        Route("/{token}/store/{name}", store, methods=["POST"]),
-        Route("/{token}/events", events),
-        Route("/{token}/out/{path:path}", result),
+        Route("/{home}/", page),
+        *(Route(f"/{{home}}/{name}", showing(found)) for name, found in shown.items()),
+        *(Route(f"/{{home}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
+        Route("/{home}/store/{name}", store, methods=["POST"]),
+        Route("/{home}/events", events),
+        Route("/{home}/out/{path:path}", result),
     ]
     application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
-    return Guard(application, token=token, port=port)
+    return Guard(application, entrance=entrance, port=port)
 
 
 def within(folder: Path, name: str) -> Path | None:
@@ -225,6 +227,7 @@ async def _answer(action: Callable[[], Any], opened: Opened) -> Response:
         found = await run_in_threadpool(action) or {}
     except InputError as error:
         found = {"error": str(error), "sentence": error.sentence, "key": error.key}
+        found["versions"] = error.versions if isinstance(error, ChangedElsewhere) else None
         status = REFUSED
     if opened.has_project:
         found["state"] = await run_in_threadpool(opened.session.state)

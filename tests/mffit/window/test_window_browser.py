@@ -256,26 +256,53 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     assert ask(page, "window.hacked") is None
 
 
+def enter(browser: Any, address: str) -> str:
+    """Open a window by an address that lets one browser in; returns the address of its page."""
+    browser.get(address)
+    until(lambda: "/enter/" not in browser.current_url and browser.find_elements("id", "status"))
+    return browser.current_url.partition("#")[0]
+
+
 @contextmanager
-def served(shown: Any, token: str, port: int = 0) -> Iterator[str]:
-    """Address of a window whose server runs in this process."""
+def served(shown: Any, port: int = 0) -> Iterator[str]:
+    """Address, for one browser, of a window whose server runs in this process."""
     uvicorn = pytest.importorskip("uvicorn")
     from mffit.window.app import window_app
+    from mffit.window.guard import Entrance
     from mffit.window.serving import _listening
 
     with _listening(port) as listening:
         port = listening.getsockname()[1]
-        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
+        entrance = Entrance()
+        app = window_app(shown, entrance=entrance, port=port, closing=lambda: server.should_exit)
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="error", lifespan="off", timeout_graceful_shutdown=1)
         )
         thread = Thread(target=server.run, kwargs={"sockets": [listening]})
         thread.start()
         try:
-            yield f"http://127.0.0.1:{port}/{token}/"
+            yield f"http://127.0.0.1:{port}{entrance.new_address()}"
         finally:
             server.should_exit = True
             thread.join()
+
+
+def test_a_file_leads_into_the_window_and_the_address_bar_has_no_key(browser, tyre_toml):
+    """As `mffit open` starts a browser: cookies of SameSite=Strict stay behind where a file redirects."""
+    from mffit.window.app import Opened
+    from mffit.window.serving import _leading_to
+
+    with served(Opened(Session(tyre_toml))) as address, _leading_to(address, 1) as page:
+        home = enter(browser, page.as_uri())
+        assert urlsplit(home).netloc == urlsplit(address).netloc
+        assert ask(browser, "document.cookie") == ""
+        (cookie,) = [one for one in browser.get_cookies() if one["name"] == "mffit"]
+        assert (cookie["httpOnly"], cookie["sameSite"]) == (True, "Strict")
+        assert cookie["value"] not in home
+        browser.refresh()
+        assert browser.find_elements("id", "status")
+        shown = browser.execute_cdp_cmd("Page.getNavigationHistory", {})["entries"]
+        assert [entry["url"] for entry in shown if "/enter/" in entry["url"]] == []
 
 
 def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, result):
@@ -285,16 +312,17 @@ def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, resu
     session = Session(tyre_toml)
     session.data, session.fits, session._fitted = mffit.viewer.project_data(result) | {"before": None}, 1, ""
     first = browser.current_window_handle
-    with served(Opened(session), "first-token") as address:
-        browser.get(address)
+    with served(Opened(session)) as address:
+        old = enter(browser, address)
         ask(browser, "mffit.move('PCY1', 1.5)")
     until(lambda: "has ended" in browser.find_element("id", "status").text)
-    with served(Opened(session), "second-token", urlsplit(address).port) as again:
+    with served(Opened(session), urlsplit(address).port) as again:
         browser.switch_to.new_window("tab")
-        browser.get(again)
+        new = enter(browser, again)
+        assert new != old
         browser.close()
         browser.switch_to.window(first)
-        until(lambda: browser.current_url.startswith(again))
+        until(lambda: browser.current_url.startswith(new))
         assert ask(browser, "mffit.trial()") == {"PCY1": 1.5}
         until(lambda: "has ended" not in browser.find_element("id", "status").text)
 
@@ -308,8 +336,9 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
     shutil.copy(original.parent / "sideslip_900.csv", tmp_path / "run")
     shutil.copy(original.parent / "camber_900.csv", tmp_path / "run" / "deep")
     (tmp_path / "run" / "photo.jpg").write_bytes(b"jpg")
-    with served(Opened(folder=RecordingsFolder(tmp_path / "empty")), "a-token") as address:
-        browser.get(address)
+    console_errors(browser)  # of other tests
+    with served(Opened(folder=RecordingsFolder(tmp_path / "empty"))) as address:
+        enter(browser, address)
         until(lambda: "No recordings here yet" in browser.find_element("id", "status").text)
         files = {"items": [], "files": [str(tmp_path / "run")], "dragOperationsMask": 1}
         for kind in ("dragEnter", "dragOver", "drop"):
@@ -346,8 +375,8 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
     """A walk: what is shown at its end is what mffit build gives for the file that was saved on the way."""
     before = tyre_toml.read_text(encoding="utf-8")
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
-    with window(tyre_toml) as (address, process):
-        browser.get(address)
+    with window(tyre_toml) as (once, process):
+        address = enter(browser, once)
         until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
         ask(browser, "mffit.move('PEY1', -0.9)")
         press(browser, ".coefficient[data-name=PEY1] .keys button")

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import random
+import threading
+import time
 import tomllib
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -11,7 +16,7 @@ from hypothesis import strategies as st
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
 from mffit.window.edits import EDITS, coefficient, leave_out, take_back
-from mffit.window.session import ProjectFile
+from mffit.window.session import ChangedElsewhere, ProjectFile
 
 TEXT = """# the front tyre
 [tyre]
@@ -189,6 +194,62 @@ def test_changes_of_others_are_neither_overwritten_nor_undone(tyre_toml):
     with pytest.raises(InputError, match="no change of this window"):
         file.undo()
     assert tyre_toml.read_text(encoding="utf-8") == mine
+
+
+def test_thirty_of_thirty_saves_of_another_program_are_kept(tyre_toml):
+    """At any time while a click is saved; a click that was too late is refused with both versions."""
+    file, draw, before = ProjectFile(tyre_toml), random.Random(31), tyre_toml.read_bytes()
+    begun, seen = time.perf_counter(), file.digest
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.31), seen)
+    duration, refused = time.perf_counter() - begun, []
+    for k in range(30):
+        tyre_toml.write_bytes(before)
+        seen, theirs, other = file.digest, before + b"# theirs %d\n" % k, tyre_toml.with_name("other")
+
+        def save(
+            content: bytes = theirs, wait: float = draw.uniform(0.0, duration), to: Path = other
+        ) -> None:
+            time.sleep(wait)
+            to.write_bytes(content)
+            os.replace(to, tyre_toml)
+
+        thread = threading.Thread(target=save)
+        thread.start()
+        try:
+            file.edit(lambda text: coefficient(text, name="PCY1", entry=1.32), seen)
+        except ChangedElsewhere as error:
+            refused.append(error.versions)
+        thread.join()
+        assert tyre_toml.read_bytes() == theirs
+    for both in refused:
+        assert "+# theirs" in both["theirs"]
+        assert "+PCY1 = 1.32" in both["mine"]
+
+
+def test_both_versions_are_shown(tyre_toml):
+    file, seen = ProjectFile(tyre_toml), ProjectFile(tyre_toml).digest
+    assert file.digest == seen  # shown in a window
+    tyre_toml.write_bytes(tyre_toml.read_bytes() + b"# theirs\n")
+    with pytest.raises(ChangedElsewhere) as error:
+        file.edit(lambda text: coefficient(text, name="PCY1", entry=1.32), seen)
+    assert [line for line in error.value.versions["theirs"].splitlines() if line[0] == "+"] == ["+# theirs"]
+    mine = [line for line in error.value.versions["mine"].splitlines() if line[0] == "+"]
+    assert "+PCY1 = 1.32" in mine
+    assert "+# theirs" not in mine
+
+
+def test_a_link_is_read_and_saved_beside_its_own_files(tyre_toml):
+    """The file that it leads to lies in another folder, where no recording is."""
+    away = tyre_toml.parent.parent / "away.toml"
+    tyre_toml.rename(away)
+    tyre_toml.symlink_to(away)
+    file = ProjectFile(tyre_toml)
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
+    assert tyre_toml.is_symlink()
+    assert b"PCY1 = 1.35" in away.read_bytes()
+    assert file.config().folder == tyre_toml.parent
+    file.undo()
+    assert b"PCY1 = 1.35" not in away.read_bytes()
 
 
 def test_a_mark_of_the_encoding_stays(tyre_toml):

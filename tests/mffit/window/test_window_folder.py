@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from flat_belt import drive_recording, recording, write_mat
+from inside import client_of
 
 from mffit import config, points
 from mffit.errors import InputError
@@ -17,13 +18,9 @@ from mffit.pipeline import init_from
 from mffit.recordings import DiscPath, Stated
 
 pytest.importorskip("starlette")
-testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
+from mffit.window.app import Opened
+from mffit.window.recordings_folder import RecordingsFolder
 
-from mffit.window.app import Opened, window_app  # noqa: E402
-from mffit.window.recordings_folder import RecordingsFolder  # noqa: E402
-
-TOKEN, PORT = "a-token-of-the-test", 8124
-HERE = f"http://127.0.0.1:{PORT}"
 DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
 BELT = {"type": "flat-track", "axes": "iso", "path_radius": None, "path_centre": "left"}
@@ -225,16 +222,17 @@ def test_one_file_that_is_no_recording_leaves_the_others_recognised(folder, orig
 
 @pytest.fixture
 def client(folder):
-    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
-    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as found:
+    with client_of(Opened(folder=RecordingsFolder(folder))) as found:
         yield found
 
 
 def test_a_dropped_recording_is_stored_and_recognised(client, folder, original):
     content = (original.parent / "sideslip_900.csv").read_bytes()
-    assert client.post(f"/{TOKEN}/store/added%20one.csv", content=content).json() == {"name": "added one.csv"}
+    assert client.post(f"{client.home}store/added%20one.csv", content=content).json() == {
+        "name": "added one.csv"
+    }
     assert (folder / "added one.csv").read_bytes() == content
-    names = [f["name"] for g in client.get(f"/{TOKEN}/recordings").json()["groups"] for f in g["files"]]
+    names = [f["name"] for g in client.get(f"{client.home}recordings").json()["groups"] for f in g["files"]]
     assert sorted(names) == ["added one.csv", "camber_1400.csv", "sideslip_1400.csv"]
 
 
@@ -253,16 +251,16 @@ def test_a_dropped_recording_is_stored_and_recognised(client, folder, original):
 )
 def test_nothing_is_overwritten_and_nothing_else_is_stored(client, folder, name):
     before = {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()}
-    answer = client.post(f"/{TOKEN}/store/{name}", content=b"x")
+    answer = client.post(f"{client.home}store/{name}", content=b"x")
     assert answer.status_code in (404, 422)
     assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
 
 
 def test_a_recording_that_is_too_large_or_from_elsewhere_is_refused(client, folder, monkeypatch):
     monkeypatch.setattr("mffit.window.constants.LARGEST_RECORDING", 10)
-    assert "larger than" in client.post(f"/{TOKEN}/store/a.csv", content=b"x" * 11).json()["error"]
+    assert "larger than" in client.post(f"{client.home}store/a.csv", content=b"x" * 11).json()["error"]
     for headers in ({"origin": "http://tyres.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"}):
-        assert client.post(f"/{TOKEN}/store/a.csv", content=b"x", headers=headers).status_code == 403
+        assert client.post(f"{client.home}store/a.csv", content=b"x", headers=headers).status_code == 403
     assert not (folder / "a.csv").exists()
 
 
@@ -272,12 +270,11 @@ def test_a_folder_without_recordings_waits_for_them(tmp_path):
 
 
 def test_the_server_shows_the_table_and_refuses_with_sentences(folder):
-    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
-    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as client:
-        page = client.get(f"/{TOKEN}/").text
+    with client_of(Opened(folder=RecordingsFolder(folder))) as client:
+        page = client.get(f"{client.home}").text
         assert "Make the project" in page
         assert [word for word in ("http://", "https://", " src=") if word in page] == []
-        assert client.get(f"/{TOKEN}/recordings").json()["folder"] == "recordings"
-        assert "incomplete" in client.post(f"/{TOKEN}/check", json={}).json()["error"]
-        assert "no project is open" in client.get(f"/{TOKEN}/state").json()["error"]
-        assert client.get(f"/{TOKEN}/out/report.html").status_code == 422
+        assert client.get(f"{client.home}recordings").json()["folder"] == "recordings"
+        assert "incomplete" in client.post(f"{client.home}check", json={}).json()["error"]
+        assert "no project is open" in client.get(f"{client.home}state").json()["error"]
+        assert client.get(f"{client.home}out/report.html").status_code == 422
