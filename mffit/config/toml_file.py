@@ -110,10 +110,15 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, 
     InputError
         The file cannot be read, is not UTF-8 text or not valid TOML, or is evidently a file of another kind.
     """
+    return tables_of(_bytes(path, kind), path, kind)
+
+
+def tables_of(content: bytes, path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, int]]:
+    """As :func:`read_toml`, of bytes that the file ``path`` has or may get."""
     is_toml = path.name.lower().endswith(".toml")
     try:
-        text = _bytes(path, kind).decode("utf-8-sig")
-        content = tomllib.loads(text)
+        text = content.decode("utf-8-sig")
+        tables = tomllib.loads(text)
     except UnicodeDecodeError:
         if not is_toml:
             raise _other_file(path, kind) from None
@@ -131,9 +136,9 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, 
         line = 1 + text.count("\n", 0, found.start())
         key = next((name for name, at in lines_of_keys(text).items() if at == line), None)
         raise InputError(TOO_MANY_DIGITS, file=path, line=line, key=key) from None
-    if not is_toml and content.keys().isdisjoint(kind.tables):
+    if not is_toml and tables.keys().isdisjoint(kind.tables):
         raise _other_file(path, kind)
-    return content, lines_of_keys(text)
+    return tables, lines_of_keys(text)
 
 
 def _bytes(path: Path, kind: TomlKind) -> bytes:

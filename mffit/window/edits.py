@@ -135,11 +135,12 @@ def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]
         except (KeyError, TypeError, ValueError, OverflowError):
             raise InputError("a reading needs file, first and last line") from None
         if not 1 <= first <= last:
-            raise InputError(
-                f"a reading is at the lines {first} to {last}, which are not in order; select it again"
-            )
+            raise InputError("the first and last line of a reading are not in order; select it again")
         found.setdefault(file, []).append((first, last))
-    return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
+    try:
+        return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
+    except ValueError as error:  # of lines beyond any file
+        raise InputError(f"a reading cannot be at these lines: {error}") from None
 
 
 def _ranges(entry: Mapping[str, Any]) -> tuple[LineRange, ...]:

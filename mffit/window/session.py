@@ -5,16 +5,20 @@ from __future__ import annotations
 import difflib
 import hashlib
 import threading
-import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mffit.config import Config
-from mffit.config.loading import checked
-from mffit.config.toml_file import lines_of_keys
+from mffit.config.loading import TYRE_TOML, checked
+from mffit.config.lines import ExcludeTable
+from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
 from mffit.output import ChangedMeanwhile, save_over
+from mffit.sweeps import formats
+from mffit.sweeps.loading import check_excluded
 from mffit.window import constants
 from mffit.window.edits import EDITS
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
@@ -52,6 +56,7 @@ class ProjectFile:
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()  # a link lies in its own folder, with the files that it names
         self.steps: list[Step] = []
+        self._lines: dict[tuple[Path, int], np.ndarray] = {}  #: (n,) of the rows of a file, by path and time
         self._shown: dict[str, bytes] = {}  #: contents that windows may have seen, by digest
 
     @property
@@ -96,7 +101,7 @@ class ProjectFile:
             after = self._changed(before, change)
             if after == before:
                 return
-            self._checked(after)
+            self._refuse_lines(self._checked(after), self._excluded(before))
             save_over(self.path, before, after)
         except ChangedMeanwhile as error:
             shown = self._shown.get(seen, before)
@@ -105,7 +110,8 @@ class ProjectFile:
 
     def _changed(self, before: bytes, change: Callable[[str], str]) -> bytes:
         """The content after a change."""
-        text, _ = self._parsed(before)
+        tables_of(before, self.path, TYRE_TOML)
+        text = before.decode("utf-8-sig")
         try:
             return (BOM if before.startswith(BOM) else b"") + change(text).encode()
         except UnicodeEncodeError:
@@ -142,17 +148,28 @@ class ProjectFile:
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror}); put it back", file=self.path) from None
 
-    def _parsed(self, content: bytes) -> tuple[str, dict[str, object]]:
-        """Text and tables."""
-        try:
-            text = content.decode("utf-8-sig")
-            return text, tomllib.loads(text)
-        except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise InputError(f"is not valid TOML ({error}); correct it", file=self.path) from None
-
     def _checked(self, content: bytes) -> Config:
-        text, tables = self._parsed(content)
-        return checked(tables, path=self.path, folder=self.path.parent, lines=lines_of_keys(text))
+        tables, lines = tables_of(content, self.path, TYRE_TOML)
+        return checked(tables, path=self.path, folder=self.path.parent, lines=lines)
+
+    def _excluded(self, content: bytes) -> Sequence[ExcludeTable]:
+        """The entries of ``[fit] exclude``; none if the file is wrong elsewhere."""
+        try:
+            return self._checked(content).fit.exclude
+        except InputError:
+            return ()
+
+    def _refuse_lines(self, config: Config, known: Sequence[ExcludeTable]) -> None:
+        """Refuse new entries of ``[fit] exclude`` that a build would refuse, if their file can be read."""
+        for file in {one.file for one in config.fit.exclude if one not in known}:
+            path = config.folder / file
+            try:
+                key = (path, path.stat().st_mtime_ns)
+                if key not in self._lines:
+                    self._lines[key] = np.asarray(formats.read(path).lines)
+            except (OSError, InputError):  # a build will say why
+                continue
+            check_excluded(config, file, self._lines[key])
 
 
 def digest_of(content: bytes) -> str:
