@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
+
+import tomli_w
 
 from mffit.config.quantities import TOO_MANY_DIGITS
 from mffit.errors import InputError, readable
@@ -35,6 +37,18 @@ def lines_of_keys(text: str) -> dict[str, int]:
                 found.setdefault(table, number)
         fence, depth = _after(line, fence, depth)
     return found
+
+
+def toml_text(content: Mapping[str, object]) -> str:
+    """Tables as a person writes them: a list of tables is one ``[[table]]`` per entry."""
+    parts = []
+    for name, table in content.items():
+        if isinstance(table, list | tuple):
+            entries = (tomli_w.dumps({name: entry}).removeprefix(f"[{name}]\n") for entry in table)
+            parts += [f"[[{name}]]\n{entry}" for entry in entries]
+        else:
+            parts.append(tomli_w.dumps({name: table}))
+    return "\n".join(parts)
 
 
 def line_of(key: str, lines: dict[str, int]) -> int | None:

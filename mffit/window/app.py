@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -173,20 +172,25 @@ def _page(opened: Opened) -> str:
     if opened.html:
         return opened.html
     if not opened.has_project:
-        css = files("mffit.viewer").joinpath("templates", "show.css").read_text(encoding="utf-8")
-        own = files("mffit.viewer").joinpath("templates", "project.css").read_text(encoding="utf-8")
-        template = environment("mffit.window").get_template("recordings.html.j2")
-        return template.render(name=opened.folder.folder.name, css=css + own, endings=ENDINGS)
+        template = environment("mffit.viewer").get_template("recordings.html.j2")
+        return template.render(name=opened.folder.folder.name, here=_here(opened.folder.folder))
     session = opened.session
-    data, state = session.data, session.state()
+    data, state, here = session.data, session.state(), _here(session.file.path.parent)
     if data is not None:
-        return project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"], window=state)
+        return project_html(
+            data["name"], data, turn_slip=data["turn_slip"], star=data["star"], window=state, here=here
+        )
     try:
         config = session.file.config()
         name, turn_slip = config.tyre.name, config.rig.on_disc
     except InputError:
         name, turn_slip = session.file.path.name, False
-    return project_html(name, None, turn_slip=turn_slip, star=False, window=state)
+    return project_html(name, None, turn_slip=turn_slip, star=False, window=state, here=here)
+
+
+def _here(folder: Path) -> dict[str, Any]:
+    """What a page needs to take recordings for a folder."""
+    return {"folder": folder.name, "endings": ENDINGS}
 
 
 async def _events(session: Session, request: Request, closing: Callable[[], bool]) -> AsyncIterator[str]:

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.lines import ExcludeTable
+from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
 from mffit.output import ChangedMeanwhile, save_over

@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -345,11 +345,11 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
             browser.execute_cdp_cmd(
                 "Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files}
             )
-        until(lambda: ask(browser, "document.getElementById('ask').open"))
-        assert "these 2 recordings" in browser.find_element("id", "ask-about").text
-        assert "1 other file" in browser.find_element("id", "ask-about").text
+        until(lambda: ask(browser, "document.getElementById('store').open"))
+        assert "these 2 recordings" in browser.find_element("id", "store-about").text
+        assert "1 other file" in browser.find_element("id", "store-about").text
         assert list((tmp_path / "empty").iterdir()) == []
-        press(browser, "#ask button.main")
+        press(browser, "#store button.main")
         until(lambda: browser.find_elements("css selector", "#groups tr"))
         stored = sorted(path.name for path in (tmp_path / "empty").iterdir())
         assert stored == ["camber_900.csv", "sideslip_900.csv"]
@@ -369,6 +369,81 @@ def window(tyre_toml: Path) -> Iterator[tuple[str, subprocess.Popen]]:
     finally:
         process.kill()
         process.communicate()
+
+
+def fitted(tyre_toml: Path, result: Any) -> Any:
+    """An open project whose first fit has finished."""
+    from mffit.window.app import Opened
+
+    session = Session(tyre_toml)
+    session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
+    session._fitted = session.file.digest
+    return Opened(session)
+
+
+def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
+    """All of them show what each saved; a headless browser says that all are seen, as windows side by side are."""
+    first = browser.current_window_handle
+    with served(fitted(tyre_toml, result)) as address:
+        home, tabs = enter(browser, address), [first]
+        for _ in range(7):
+            browser.switch_to.new_window("tab")
+            browser.get(home)
+            tabs.append(browser.current_window_handle)
+        for k, tab in enumerate(tabs):
+            browser.switch_to.window(tab)
+            ask(browser, f"mffit.move('PEY1', {-0.5 - 0.01 * k})")
+            press(browser, ".coefficient[data-name=PEY1] .keys button")
+            until(lambda k=k: f"PEY1 = {-0.5 - 0.01 * k:g}" in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        for tab in tabs:
+            browser.switch_to.window(tab)
+            until(lambda: ask(browser, "mffit.data().hand.PEY1") == -0.57, 5.0)
+        for tab in tabs[1:]:
+            browser.switch_to.window(tab)
+            browser.close()
+        browser.switch_to.window(first)
+        browser.get("about:blank")
+
+
+def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml, result):
+    opened = fitted(tyre_toml, result)
+    session = opened.session
+    with served(opened) as address:
+        enter(browser, address)
+        edit = session.edit
+
+        def late(name: str, seen: str, arguments: dict[str, Any]) -> None:
+            session.edit = edit
+            tyre_toml.write_bytes(tyre_toml.read_bytes() + b"# theirs\n")
+            edit(name, seen, arguments)
+
+        session.edit = late
+        ask(browser, "mffit.move('PEY1', -0.5)")
+        press(browser, ".coefficient[data-name=PEY1] .keys button")
+        until(lambda: ask(browser, "document.getElementById('both').open"), 10.0)
+        assert "+# theirs" in browser.find_element("id", "both-theirs").text
+        assert "+PEY1 = -0.5" in browser.find_element("id", "both-mine").text
+        assert "PEY1" not in tyre_toml.read_text(encoding="utf-8")
+        press(browser, "#both button.main")
+        until(lambda: "PEY1 = -0.5" in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        assert "# theirs" in tyre_toml.read_text(encoding="utf-8")
+        browser.get("about:blank")
+
+
+def test_a_call_without_an_answer_says_so(browser, tyre_toml, result):
+    opened = fitted(tyre_toml, result)
+    session, go = opened.session, Event()
+    with served(opened) as address:
+        enter(browser, address)
+        edit = session.edit
+        session.edit = lambda *given: (go.wait(30.0), edit(*given))[1]
+        ask(browser, "mffit.move('PEY1', -0.5)")
+        press(browser, ".coefficient[data-name=PEY1] .keys button")
+        until(lambda: "No answer for 3 s" in browser.find_element("id", "status").text, 10.0)
+        go.set()
+        until(lambda: "differs from the fit" in browser.find_element("id", "status").text, 10.0)
+        assert "PEY1 = -0.5" in tyre_toml.read_text(encoding="utf-8")
+        browser.get("about:blank")
 
 
 def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml):
