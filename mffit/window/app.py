@@ -65,16 +65,21 @@ class Opened:
 
     @property
     def folder(self) -> RecordingsFolder:
-        """The folder of which no project is made yet; raises as :attr:`session`."""
-        if self._folder is None or self.has_project:
-            raise InputError("no folder of recordings is open in this window")
+        """The folder with recordings that are in no project yet; raises as :attr:`session`."""
+        if self._folder is None:
+            path = self.session.file.path
+            self._folder = RecordingsFolder(path.parent, path)
         return self._folder
 
     def make(self, choice: dict[str, Any]) -> None:
         """Make a project of the folder, and open it; as :meth:`RecordingsFolder.make`."""
         session = Session(self.folder.make(choice))
         session.run("fit")
-        self._session = session
+        self._session, self._folder = session, None
+
+    def add(self, choice: dict[str, Any]) -> None:
+        """Add recordings to the open project, as :meth:`RecordingsFolder.added` reads them."""
+        self.session.edit("add_recordings", str(choice.get("seen")), self.folder.added(choice))
 
     def edit(self, change: Mapping[str, Any]) -> None:
         """Carry out a change of ``tyre.toml``; as :meth:`Session.edit`."""
@@ -101,6 +106,7 @@ def window_app(
     actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {
         "check": lambda content, at: opened.folder.check(content),
         "make": lambda content, at: opened.make(content),
+        "add": lambda content, at: opened.add(content),
         "edit": lambda content, at: opened.edit(content),
         "undo": lambda content, at: opened.session.undo(),
         "stop": lambda content, at: opened.session.stop(),
@@ -122,6 +128,9 @@ def window_app(
 
     async def page(request: Request) -> Response:
         return HTMLResponse(await run_in_threadpool(_page, opened))
+
+    async def adding(request: Request) -> Response:
+        return HTMLResponse(await run_in_threadpool(_recordings_page, opened))
 
     async def store(request: Request) -> Response:
         folder, name = opened.folder, request.path_params["name"]
@@ -148,6 +157,7 @@ def window_app(
 
     routes = [
         Route("/{home}/", page),
+        Route("/{home}/add", adding),
         *(Route(f"/{{home}}/{name}", showing(found)) for name, found in shown.items()),
         *(Route(f"/{{home}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
         Route("/{home}/store/{name}", store, methods=["POST"]),
@@ -172,8 +182,7 @@ def _page(opened: Opened) -> str:
     if opened.html:
         return opened.html
     if not opened.has_project:
-        template = environment("mffit.viewer").get_template("recordings.html.j2")
-        return template.render(name=opened.folder.folder.name, here=_here(opened.folder.folder))
+        return _recordings_page(opened)
     session = opened.session
     data, state, here = session.data, session.state(), _here(session.file.path.parent)
     if data is not None:
@@ -186,6 +195,13 @@ def _page(opened: Opened) -> str:
     except InputError:
         name, turn_slip = session.file.path.name, False
     return project_html(name, None, turn_slip=turn_slip, star=False, window=state, here=here)
+
+
+def _recordings_page(opened: Opened) -> str:
+    """The recordings of a folder, or those to add to a project."""
+    folder, to = opened.folder.folder, opened.session.file.path.name if opened.has_project else ""
+    template = environment("mffit.viewer").get_template("recordings.html.j2")
+    return template.render(name=folder.name, to=to, here=_here(folder))
 
 
 def _here(folder: Path) -> dict[str, Any]:

@@ -7,12 +7,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import tomlkit
-from tomlkit.items import AoT, Table
+from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
 from mffit.config.lines import LineRange, line_ranges, ranges_text
 from mffit.errors import InputError
 
+SINGLE_SWEEP = re.compile(r"^([ \t]*)\[[ \t]*sweep[ \t]*\]", re.MULTILINE)
 LONE_NEWLINE = re.compile(r"(?<!\r)\n")
 
 
@@ -95,20 +96,51 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
     return _edited(text, change)
 
 
+def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] = ()) -> str:
+    """The text with further recordings.
+
+    Parameters
+    ----------
+    text : of the file
+    sweeps : their [[sweep]], as TOML; where the file has a list of its own, ``sweep = [...]``, they are added to that
+    bad : readings among them to leave out, as in :func:`leave_out`, each with its ``why``
+    """
+
+    def listed(document: Any) -> None:
+        for entry in tomlkit.parse(sweeps).unwrap()["sweep"]:
+            table = tomlkit.inline_table()
+            table.update(entry)
+            document["sweep"].append(table)
+
+    if isinstance(tomlkit.parse(text).get("sweep"), Array):
+        text = _edited(text, listed)
+    else:
+        text = _whole(SINGLE_SWEEP.sub(r"\1[[sweep]]", text))
+        end = "\r\n" if "\r\n" in text else "\n"
+        text += end + sweeps.replace("\n", end)
+    for one in bad:
+        text = leave_out(text, readings=[one], why=str(one["why"]))
+    return text
+
+
 EDITS: Mapping[str, Callable[..., str]] = {
-    edit.__name__: edit for edit in (coefficient, leave_out, take_back)
+    edit.__name__: edit for edit in (coefficient, leave_out, take_back, add_recordings)
 }
 """The changes by name."""
 
 
 def _edited(text: str, change: Callable[[Any], object]) -> str:
     """The text after a change to its document; line ends stay those of the file."""
-    if text and not text.endswith("\n"):
-        text += "\r\n" if "\r\n" in text else "\n"
+    text = _whole(text)
     document = tomlkit.parse(text)
     change(document)
     found = tomlkit.dumps(document)
     return LONE_NEWLINE.sub("\r\n", found) if "\r\n" in text and not LONE_NEWLINE.search(text) else found
+
+
+def _whole(text: str) -> str:
+    """The text with an end of its last line."""
+    return text if not text or text.endswith("\n") else text + ("\r\n" if "\r\n" in text else "\n")
 
 
 def _table(document: Any, name: str) -> Any:

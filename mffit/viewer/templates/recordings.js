@@ -29,8 +29,9 @@
   }
   const number = name => { const x = document.querySelector(`[name=${name}]`).valueAsNumber; return Number.isFinite(x) ? x : null; };
   const text = name => document.querySelector(`[name=${name}]`).value;
+  const does = byId("choice").dataset.does, adds = does === "add";
   function choice() {
-    return {
+    return adds ? {groups: table.groups, seen: table.seen} : {
       tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"), nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"), nominal_speed: number("nominal_speed"), width: number("width"), rim_radius: number("rim_radius"), side: text("side")},
       rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"), path_centre: text("path_centre")},
       groups: table.groups,
@@ -72,7 +73,7 @@
     const typed = table && table.groups.length ? choice() : null;
     table = table ? carriedOver(table, found) : found;
     show();
-    if (!typed) return;
+    if (!typed || adds) return;
     for (const [name, x] of Object.entries({...typed.tyre, ...typed.rig})) if (x !== null && touched.has(name)) document.querySelector(`[name=${name}]`).value = x;
     document.querySelector("[name=type]").dispatchEvent(new Event("change"));
   }
@@ -85,6 +86,12 @@
     byId("choice").hidden = !table.groups.length;
     list(table.problems);
     if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : "No recordings here yet.", table.problems.length > 0);
+    if (!adds) tyreAndRig(tyre, rig, disc);
+    byId("groups").replaceChildren(...table.groups.map(group));
+    const first = disc && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
+    say(first || (table.problems.length ? "Something was not recognised; see below." : ""), !first && table.problems.length > 0);
+  }
+  function tyreAndRig(tyre, rig, disc) {
     field(tyre, "name", "name", {value: table.tyre.name, required: true});
     field(tyre, "size", "size", {value: table.tyre.size ?? ""});
     const any = {type: "number", step: "any", required: true, min: 0};
@@ -103,9 +110,6 @@
     const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.disabled = type.value !== "rotating-disk"; };
     type.addEventListener("change", curved);
     curved();
-    byId("groups").replaceChildren(...table.groups.map(group));
-    const first = disc ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
-    say(first || (table.problems.length ? "Something was not recognised; see below." : ""), !first && table.problems.length > 0);
   }
   function group(one) {
     const home = element("section"), files = element("div", "", {className: "files"}), scroll = element("div", "", {className: "scroll"});
@@ -168,7 +172,7 @@
   });
   byId("choice").addEventListener("submit", async event => {
     event.preventDefault();
-    if (await post("make")) location.reload();
+    if (await post(does)) location.assign("./");
   });
   load();
 })();

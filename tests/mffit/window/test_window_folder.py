@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,9 @@ from mffit.recordings import DiscPath, Stated
 
 pytest.importorskip("starlette")
 from mffit.window.app import Opened
+from mffit.window.edits import add_recordings
 from mffit.window.recordings_folder import RecordingsFolder
+from mffit.window.session import Session
 
 DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
@@ -278,3 +281,81 @@ def test_the_server_shows_the_table_and_refuses_with_sentences(folder):
         assert "incomplete" in client.post(f"{client.home}check", json={}).json()["error"]
         assert "no project is open" in client.get(f"{client.home}state").json()["error"]
         assert client.get(f"{client.home}out/report.html").status_code == 422
+
+
+ENTRY = '[[sweep]]\nfile = "{}"\n'
+
+
+@pytest.fixture
+def growing(tyre_toml: Path) -> Path:
+    """A project whose last recording is not in its tyre.toml, with a heading that nobody knows."""
+    text = tyre_toml.read_text(encoding="utf-8")
+    tyre_toml.write_text(text.replace(ENTRY.format("camber_900.csv"), ""), encoding="utf-8")
+    other = tyre_toml.with_name("camber_900.csv")
+    table = pd.read_csv(other, comment="#").drop(columns=["u_Fy_N"], errors="ignore")
+    table["Kraft quer"] = -1e-3 * table.pop("Fy_N")
+    table.to_csv(other, index=False)
+    return tyre_toml
+
+
+def as_list(path: Path) -> None:
+    """The sweeps as a list of tables on their lines, as programs write them."""
+    text, names = path.read_text(encoding="utf-8"), [entry.file for entry in config.load(path).sweep]
+    for name in names:
+        text = text.replace(ENTRY.format(name), "")
+    entries = "".join(f'    {{ file = "{name}" }},  # {name}\n' for name in names)
+    path.write_text(f"sweep = [  # all of them\n{entries}]\n\n{text}", encoding="utf-8")
+
+
+def as_windows(path: Path) -> None:
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+
+
+@pytest.mark.parametrize(
+    "written", [None, as_list, as_windows], ids=lambda one: getattr(one, "__name__", "plain")
+)
+def test_a_recording_is_added_to_an_open_project(growing, original, written):
+    """What the page shows is corrected first; the points are then those of the whole project, and one undo takes it back."""
+    if written:
+        written(growing)
+    before = growing.read_bytes()
+    opened = Opened(Session(growing))
+    with client_of(opened) as client:
+        assert "Add them to tyre.toml" in client.get(f"{client.home}add").text
+        table = client.get(f"{client.home}recordings").json()
+        (group,) = table["groups"]
+        assert [file["name"] for file in group["files"]] == ["camber_900.csv"]
+        assert "no heading is known to be Fy_N" in table["problems"][0]
+        choice = {"groups": corrected(table)["groups"], "seen": table["seen"]}
+        checked = client.post(f"{client.home}check", json=choice).json()
+        assert (checked["axes"], checked["points"] > 5) == (["iso"], True)
+        assert growing.read_bytes() == before
+        assert client.post(f"{client.home}add", json=choice).status_code == 200
+        ours, theirs = (points.load(config.load(path))[0] for path in (growing, original))
+        mine, true = (x.Fy[np.array(x.files)[x.file] == "camber_900.csv"] for x in (ours, theirs))
+        np.testing.assert_allclose(np.sort(mine), np.sort(true), atol=1e-6)
+        added = [line for line in growing.read_bytes().splitlines() if line not in before.splitlines()]
+        assert 1 <= len(added) <= 4
+        assert client.get(f"{client.home}recordings").json()["groups"] == []
+        assert client.post(f"{client.home}add", json=choice).status_code == 422
+        client.post(f"{client.home}undo")
+    assert growing.read_bytes() == before
+
+
+def test_a_bad_run_of_a_summary_is_added_and_left_out(growing):
+    choice_of = RecordingsFolder(growing.parent, growing)
+    (growing.parent / "runs.csv").write_text("File;Quality\nsideslip_900.csv;good\ncamber_900;bad\n")
+    text = growing.read_text(encoding="utf-8")
+    growing.write_text(text.replace(ENTRY.format("sideslip_900.csv"), ""), encoding="utf-8")
+    added = choice_of.added(corrected(choice_of.table()))
+    found = config.load(tomllib.loads(add_recordings(growing.read_text(encoding="utf-8"), **added)))
+    assert {entry.file: entry.why for entry in found.fit.exclude}["camber_900.csv"] == "runs.csv, line 3: bad"
+    assert "sideslip_900.csv" in {entry.file for entry in found.sweep}
+
+
+def test_a_single_sweep_becomes_one_of_several():
+    text = '[tyre]\nname = "a"\n\n[sweep]  # the only one\nfile = "a.csv"\n[sweep.columns]\nkappa = "SR"\n'
+    found = add_recordings(text, sweeps='[[sweep]]\nfile = "b.csv"\n')
+    assert [entry["file"] for entry in tomllib.loads(found)["sweep"]] == ["a.csv", "b.csv"]
+    assert tomllib.loads(found)["sweep"][0]["columns"] == {"kappa": "SR"}
+    assert "# the only one" in found
