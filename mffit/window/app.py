@@ -21,6 +21,7 @@ from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
 from mffit.window.guard import App, Entrance, Guard
+from mffit.window.reading import Reading
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
 from mffit.window.session import ChangedElsewhere, Session
@@ -41,9 +42,14 @@ class Opened:
     """What a window shows: a project, or a folder of recordings until a project is made of it, or a finished page."""
 
     def __init__(
-        self, session: Session | None = None, folder: RecordingsFolder | None = None, html: str = ""
+        self,
+        session: Session | None = None,
+        folder: RecordingsFolder | None = None,
+        html: str = "",
+        reading: Reading | None = None,
     ) -> None:
         self._session, self._folder, self.html = session, folder, html
+        self._reading = reading  #: where recordings are read; None: here
 
     @property
     def has_project(self) -> bool:
@@ -71,15 +77,21 @@ class Opened:
             self._folder = RecordingsFolder(path.parent, path)
         return self._folder
 
+    def of_folder(self, what: str, *given: Any) -> Any:
+        """What a method of the folder returns; see :class:`Reading`."""
+        if self._reading is None:
+            return getattr(self.folder, what)(*given)
+        return self._reading.ask(self.folder, what, *given)
+
     def make(self, choice: dict[str, Any]) -> None:
         """Make a project of the folder, and open it; as :meth:`RecordingsFolder.make`."""
-        session = Session(self.folder.make(choice))
+        session = Session(self.of_folder("make", choice))
         session.run("fit")
         self._session, self._folder = session, None
 
     def add(self, choice: dict[str, Any]) -> None:
         """Add recordings to the open project, as :meth:`RecordingsFolder.added` reads them."""
-        self.session.edit("add_recordings", str(choice.get("seen")), self.folder.added(choice))
+        self.session.edit("add_recordings", str(choice.get("seen")), self.of_folder("added", choice))
 
     def edit(self, change: Mapping[str, Any]) -> None:
         """Carry out a change of ``tyre.toml``; as :meth:`Session.edit`."""
@@ -88,8 +100,10 @@ class Opened:
             raise InputError("a change needs do, seen and with")
         self.session.edit(name, seen, arguments)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Stop what is under way."""
+        if self._reading is not None:
+            self._reading.stop()
         if self._session is not None:
             self._session.stop()
 
@@ -99,17 +113,17 @@ def window_app(
 ) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
     shown: dict[str, Callable[[], Any]] = {
-        "recordings": lambda: plain(opened.folder.table()),
+        "recordings": lambda: plain(opened.of_folder("table")),
         "project": lambda: opened.session.data,
         "state": lambda: opened.session.state(),
     }
     actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {
-        "check": lambda content, at: opened.folder.check(content),
+        "check": lambda content, at: opened.of_folder("check", content),
         "make": lambda content, at: opened.make(content),
         "add": lambda content, at: opened.add(content),
         "edit": lambda content, at: opened.edit(content),
         "undo": lambda content, at: opened.session.undo(),
-        "stop": lambda content, at: opened.session.stop(),
+        "stop": lambda content, at: opened.stop(),
         "run/{kind}": lambda content, at: opened.session.run(at["kind"]),
     }
 

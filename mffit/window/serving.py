@@ -51,6 +51,7 @@ def open_path(
             "`mffit show tyre.toml`, which needs no server"
         ) from None
     from mffit.window.guard import Entrance
+    from mffit.window.reading import Reading
     from mffit.window.recordings_folder import PROJECT, RecordingsFolder
     from mffit.window.session import Session
 
@@ -62,11 +63,11 @@ def open_path(
             "opens one project at a time; give this file alone, or property files only", file=first
         )
     elif first.is_dir() and not (first / PROJECT).exists():
-        shown = Opened(folder=RecordingsFolder(first))
+        shown = Opened(folder=RecordingsFolder(first), reading=Reading())
     else:
         session = Session(first / PROJECT if first.is_dir() else first)
         session.file.config()
-        shown = Opened(session)
+        shown = Opened(session, reading=Reading())
     with _listening(port) if port else _usual(first) as listening:
         port = listening.getsockname()[1]
         said: list[str] = []
@@ -91,7 +92,7 @@ def open_path(
                 ).start()  # a browser in the terminal would wait
             with contextlib.suppress(KeyboardInterrupt):  # the usual end
                 server.run(sockets=[listening])
-        shown.end()
+        shown.stop()
 
 
 @contextlib.contextmanager

@@ -22,8 +22,16 @@
     home.append(label);
     return list;
   }
+  // A question for which the recordings are read; meanwhile it can be stopped.
+  async function read(address, given) {
+    byId("stop").hidden = false;
+    const found = await asked(address, () => say("reading the recordings; this takes a while"), given);
+    byId("stop").hidden = true;
+    return found;
+  }
+  byId("stop").addEventListener("click", () => asked("stop", say, sent({})));
   async function post(address) {
-    const found = await asked(address, say, sent(choice()));
+    const found = await read(address, sent(choice()));
     if (!found || found.error) say(found ? found.error : ENDED, true);
     return found && !found.error ? found : null;
   }
@@ -68,7 +76,7 @@
   const touched = new Set();  // fields that were filled in by hand
   byId("choice").addEventListener("input", event => touched.add(event.target.name));
   async function load() {
-    const found = await asked("recordings", () => say("reading the recordings; this takes a while"));
+    const found = await read("recordings");
     if (!found || found.error) return say(found ? found.error : ENDED, true);
     const typed = table && table.groups.length ? choice() : null;
     table = table ? carriedOver(table, found) : found;

@@ -327,6 +327,12 @@ def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, resu
         until(lambda: "has ended" not in browser.find_element("id", "status").text)
 
 
+def drop(browser: Any, path: Path) -> None:
+    files = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        browser.execute_cdp_cmd("Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files})
+
+
 def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original, tmp_path):
     from mffit.window.app import Opened
     from mffit.window.recordings_folder import RecordingsFolder
@@ -340,11 +346,7 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
     with served(Opened(folder=RecordingsFolder(tmp_path / "empty"))) as address:
         enter(browser, address)
         until(lambda: "No recordings here yet" in browser.find_element("id", "status").text)
-        files = {"items": [], "files": [str(tmp_path / "run")], "dragOperationsMask": 1}
-        for kind in ("dragEnter", "dragOver", "drop"):
-            browser.execute_cdp_cmd(
-                "Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files}
-            )
+        drop(browser, tmp_path / "run")
         until(lambda: ask(browser, "document.getElementById('store').open"))
         assert "these 2 recordings" in browser.find_element("id", "store-about").text
         assert "1 other file" in browser.find_element("id", "store-about").text
@@ -402,6 +404,38 @@ def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
             browser.switch_to.window(tab)
             browser.close()
         browser.switch_to.window(first)
+        browser.get("about:blank")
+
+
+def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre_toml, result, tmp_path):
+    before = tyre_toml.read_text(encoding="utf-8")
+    entry = '[[sweep]]\nfile = "camber_900.csv"\n'
+    tyre_toml.write_text(before.replace(entry, ""), encoding="utf-8")
+    shutil.move(tyre_toml.with_name("camber_900.csv"), tmp_path / "rolls_backward.csv")
+    opened = fitted(tyre_toml, result)
+    with served(opened) as address:
+        home = enter(browser, address)
+        console_errors(browser)  # of other tests
+        drop(browser, tmp_path / "rolls_backward.csv")
+        until(lambda: ask(browser, "document.getElementById('store').open"))
+        press(browser, "#store button.main")
+        until(lambda: browser.find_elements("css selector", "#groups tr"))
+        assert browser.current_url == f"{home}add"
+        assert "Fy_N" in [
+            select.get_attribute("value")
+            for select in browser.find_elements("css selector", "#groups td select")
+        ]
+        back = browser.find_element("css selector", ".files label:last-child input")
+        assert back.is_selected()
+        press(browser, ".files label:last-child input")  # its name is wrong
+        assert not any(field.is_displayed() for field in browser.find_elements("css selector", "#tyre, #rig"))
+        assert ask(browser, "document.documentElement.scrollWidth") <= SCREEN
+        press(browser, "#choice button.main")
+        until(lambda: "rolls_backward.csv" in tyre_toml.read_text(encoding="utf-8"), 30.0)
+        until(lambda: browser.current_url.partition("#")[0] == home)
+        until(lambda: not ask(browser, "document.getElementById('undo').disabled"))
+        assert "direction" not in tyre_toml.read_text(encoding="utf-8")
+        assert console_errors(browser) == []
         browser.get("about:blank")
 
 

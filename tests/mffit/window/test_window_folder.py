@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 import tomllib
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +23,7 @@ from mffit.recordings import DiscPath, Stated
 pytest.importorskip("starlette")
 from mffit.window.app import Opened
 from mffit.window.edits import add_recordings
+from mffit.window.reading import Reading
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.session import Session
 
@@ -359,3 +362,30 @@ def test_a_single_sweep_becomes_one_of_several():
     assert [entry["file"] for entry in tomllib.loads(found)["sweep"]] == ["a.csv", "b.csv"]
     assert tomllib.loads(found)["sweep"][0]["columns"] == {"kappa": "SR"}
     assert "# the only one" in found
+
+
+def test_reading_goes_on_in_a_process_that_can_be_stopped(folder, monkeypatch):
+    """Here it would take a minute; the next question begins a new one."""
+    reading, found = Reading(), RecordingsFolder(folder)
+    try:
+        assert reading.ask(found, "table") == found.table()
+        with pytest.raises(InputError, match="incomplete") as caught:
+            reading.ask(found, "make", {})
+        assert caught.value.sentence.startswith("the choice")
+        timer = threading.Timer(0.5, reading.stop)
+        timer.start()
+        with pytest.raises(InputError, match="was stopped"):
+            reading.ask(found, "__init__", Endless())
+        timer.join()
+        monkeypatch.setattr("mffit.window.reading.TIME_TO_READ", 0.5)
+        with pytest.raises(InputError, match="was stopped"):
+            reading.ask(found, "__init__", Endless())
+    finally:
+        reading.stop()
+
+
+class Endless:
+    """Takes for ever to arrive in another process."""
+
+    def __reduce__(self) -> Any:
+        return time.sleep, (60.0,)
