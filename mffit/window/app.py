@@ -115,6 +115,7 @@ def window_app(
     shown: dict[str, Callable[[], Any]] = {
         "recordings": lambda: plain(opened.of_folder("table")),
         "project": lambda: opened.session.data,
+        "settings": lambda: opened.session.settings(),
         "state": lambda: opened.session.state(),
     }
     actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {

@@ -11,7 +11,8 @@ from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
 from mffit.config.lines import LineRange, line_ranges, ranges_text
-from mffit.errors import InputError
+from mffit.errors import InputError, shortened
+from mffit.window.settings import TABLES, value_of
 
 SINGLE_SWEEP = re.compile(r"^([ \t]*)\[[ \t]*sweep[ \t]*\]", re.MULTILINE)
 LONE_NEWLINE = re.compile(r"(?<!\r)\n")
@@ -96,6 +97,39 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
     return _edited(text, change)
 
 
+def setting(text: str, *, table: str, key: str, value: str, file: str = "") -> str:
+    """The text with another value of a key.
+
+    Parameters
+    ----------
+    text : of the file
+    table : its name; "sweep" for the [[sweep]] of ``file``
+    key : in it
+    value : in the notation of TOML; "" removes the key
+    file : as in [[sweep]]
+    """
+
+    def change(document: Any) -> None:
+        if table not in TABLES and table != "sweep":
+            raise InputError(f"[{shortened(table)}] has no settings here")
+        own = _sweep(document, file) if table == "sweep" else _table(document, table)
+        if value == "":
+            own.pop(key, None)
+        else:
+            own[key] = value_of(value)
+
+    return _edited(text, change)
+
+
+def _sweep(document: Any, file: str) -> Any:
+    """The [[sweep]] of a file."""
+    sweeps = document.get("sweep", [])
+    found = [sweep for sweep in ([sweeps] if isinstance(sweeps, Table) else sweeps) if sweep["file"] == file]
+    if not found:
+        raise InputError(f'no [[sweep]] has file = "{shortened(file)}"; load this page again')
+    return found[0]
+
+
 def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] = ()) -> str:
     """The text with further recordings.
 
@@ -124,7 +158,7 @@ def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] =
 
 
 EDITS: Mapping[str, Callable[..., str]] = {
-    edit.__name__: edit for edit in (coefficient, leave_out, take_back, add_recordings)
+    edit.__name__: edit for edit in (coefficient, leave_out, take_back, setting, add_recordings)
 }
 """The changes by name."""
 

@@ -22,6 +22,7 @@ from mffit.sweeps.loading import check_excluded
 from mffit.window import constants
 from mffit.window.edits import EDITS
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
+from mffit.window.settings import settings
 
 BOM = b"\xef\xbb\xbf"
 
@@ -80,6 +81,10 @@ class ProjectFile:
             The file cannot be read or is wrong.
         """
         return self._checked(self._bytes())
+
+    def tables(self) -> dict[str, object]:
+        """The content as it is on the disk; raises as :meth:`config`."""
+        return tables_of(self._bytes(), self.path, TYRE_TOML)[0]
 
     def edit(self, change: Callable[[str], str], seen: str) -> None:
         """Write the changed text, if the file is still the one that was seen and the new one is a right ``tyre.toml``.
@@ -229,6 +234,10 @@ class Session:
                 self.file.edit(lambda text: EDITS[name](text, **arguments), seen)
             except TypeError:
                 raise InputError(f"{name} cannot be done with {', '.join(arguments) or 'nothing'}") from None
+
+    def settings(self) -> list[dict[str, Any]]:
+        """What can be set beside coefficients, as in :func:`mffit.window.settings.settings`."""
+        return settings(self.file.tables())
 
     def undo(self) -> None:
         """Take back the last saved change."""

@@ -128,6 +128,7 @@ chosenActions = () => {
 function setLive(state) {
   live = state;
   ended = false;
+  showSettings();
   if (!live.can_undo) moves = moves.filter(one => one.trial);  // another program has changed the file since
   if (live.fits !== shownFit && live.fits > 0) return bring();
   if (project) {
@@ -187,6 +188,38 @@ function showLinks() {
   }
   byId("links").replaceChildren(...parts);
 }
+
+// ---- settings: every key of tyre.toml that is one value, with its default; empty fields are not written
+let settingsOf = "";
+async function showSettings() {
+  const box = byId("settings"), home = box.querySelector("div");
+  if (!box.open || ended || settingsOf === live.digest) return;
+  settingsOf = live.digest;
+  const tables = await asked("settings", say);
+  if (!Array.isArray(tables)) return;
+  const open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key)), at = document.activeElement.id;
+  home.replaceChildren();
+  for (const {title, table, file, keys} of tables) {
+    const inner = details(home, title, title, open.has(title)), written = keys.filter(one => one.value).length;
+    if (written) inner.querySelector("summary").append(element("span", "unit", ` ${written} written`));
+    for (const one of keys) inner.append(settingRow(one, `setting ${title} ${one.key}`, value => ({table, key: one.key, value, ...(file ? {file} : {})})));
+  }
+  if (at && byId(at)) byId(at).focus();
+}
+function settingRow({key: name, value, default: usual, choices}, id, change) {
+  const line = element("div", "setting"), label = element("label", "", name), problem = element("p", "problem");
+  const field = document.createElement(choices.length ? "select" : "input");
+  if (choices.length) field.append(new Option(`(${usual || "none"})`, ""), ...choices.map(text => new Option(text, text)));
+  else field.placeholder = usual || "none";
+  Object.assign(field, {id, value});
+  label.htmlFor = id;
+  problem.setAttribute("role", "alert");
+  line.classList.toggle("written", value !== "");
+  field.addEventListener("change", () => { problem.textContent = ""; edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; }); });
+  line.append(label, field, problem);
+  return line;
+}
+byId("settings").addEventListener("toggle", showSettings);
 
 takesRecordings(say, refusals => { if (refusals.length) say(refusals.join(" "), true); else location.assign("add"); });
 byId("refit").addEventListener("click", () => post("run/fit"));

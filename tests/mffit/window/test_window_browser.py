@@ -464,6 +464,25 @@ def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml,
         browser.get("about:blank")
 
 
+def test_settings_are_seen_changed_and_refused_in_their_place(browser, tyre_toml, result):
+    with served(fitted(tyre_toml, result)) as address:
+        enter(browser, address)
+        press(browser, "#settings summary")
+        row = "document.getElementById('setting [normal] weight')"
+        until(lambda: ask(browser, f"{row} !== null"))
+        ask(browser, f"({row}.value = '\"road\"', {row}.dispatchEvent(new Event('change')))")
+        until(lambda: 'weight = "road"' in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        until(lambda: "differs from the fit" in browser.find_element("id", "status").text, 10.0)
+        until(lambda: ask(browser, f"{row}.value") == '"road"', 10.0)
+        row = "document.getElementById('setting [tyre] nominal_load')"
+        ask(browser, f"({row}.value = '1.4', {row}.dispatchEvent(new Event('change')))")
+        until(lambda: "looks like kilonewtons" in ask(browser, f"{row}.parentNode.textContent"), 10.0)
+        for width in (PHONE, SCREEN):
+            look(browser, width)
+            assert ask(browser, "document.documentElement.scrollWidth") <= width
+        browser.get("about:blank")
+
+
 def test_a_call_without_an_answer_says_so(browser, tyre_toml, result):
     opened = fitted(tyre_toml, result)
     session, go = opened.session, Event()

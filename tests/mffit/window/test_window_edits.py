@@ -15,8 +15,12 @@ from hypothesis import strategies as st
 
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
-from mffit.window.edits import EDITS, coefficient, leave_out, take_back
+from mffit.window.edits import EDITS, coefficient, leave_out, setting, take_back
 from mffit.window.session import ChangedElsewhere, ProjectFile
+from mffit.window.settings import settings
+
+ROOT = Path(__file__).parents[3]
+LEFT_OUT = 'exclude = [ { file = "sideslip_1400.csv", lines = "4", why = "belt tracking" } ]  # by Anna'
 
 TEXT = """# the front tyre
 [tyre]
@@ -257,6 +261,74 @@ def test_a_mark_of_the_encoding_stays(tyre_toml):
     file = ProjectFile(tyre_toml)
     file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
     assert tyre_toml.read_bytes().startswith(b"\xef\xbb\xbf#")
+
+
+def test_every_setting_is_offered_and_saved(tyre_toml):
+    """Its default, written down, means the same; the keys are those of the documentation."""
+    file = ProjectFile(tyre_toml)
+    whole, documented = file.config(), (ROOT / "docs" / "configuration.md").read_text(encoding="utf-8")
+    listed = settings(file.tables())
+    assert {one["table"] for one in listed} >= {"tyre", "rig", "fit", "normal", "spin", "sweep"}
+    text = tyre_toml.read_text(encoding="utf-8")
+    for one in listed:
+        for key in one["keys"]:
+            assert f"`{key['key']}`" in documented
+            if key["default"] in ("", "required") or key["value"] or key["key"] == "u_path_radius":
+                continue
+            text = setting(text, table=one["table"], file=one["file"], key=key["key"], value=key["default"])
+    tyre_toml.write_text(text, encoding="utf-8")
+    given = [key for one in settings(file.tables()) for key in one["keys"] if key["value"]]
+    assert len(given) > 50
+    assert file.config().model_dump() == whole.model_dump()
+    assert LEFT_OUT in text
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"table": "tyre", "key": "size", "value": "120/70 ZR17"}, 'size = "120/70 ZR17"'),
+        ({"table": "tyre", "key": "size", "value": '"17"'}, 'size = "17"'),
+        ({"table": "normal", "key": "weight", "value": '"road"'}, 'weight = "road"'),
+        ({"table": "fit", "key": "wear", "value": "true"}, "wear = true"),
+        ({"table": "lab", "key": "measured", "value": "2026-03-01"}, "measured = 2026-03-01"),
+        (
+            {"table": "rig", "key": "u_Fx_offset_N", "value": "{ value = 20.0, dof = 5 }"},
+            "u_Fx_offset_N = { value = 20.0, dof = 5 }",
+        ),
+        ({"table": "sweep", "file": "camber_900.csv", "key": "setup", "value": "second"}, 'setup = "second"'),
+    ],
+)
+def test_a_setting_is_one_line(tyre_toml, given, line):
+    before = tyre_toml.read_text(encoding="utf-8")
+    after = setting(before, **given)
+    gone, new = changed_lines(before, after)
+    assert gone == set()
+    assert {one.strip() for one in new if one.strip() and one[0] != "["} == {line}
+    file = ProjectFile(tyre_toml)
+    file.edit(lambda text: setting(text, **given), file.digest)
+    assert (
+        setting(after, **{**given, "value": ""}).replace("[normal]", "").replace("[lab]", "").split()
+        == before.split()
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"table": "coefficients", "key": "PCY1", "value": "1"}, "no settings here"),
+        ({"table": "normal", "key": "weight", "value": '"rode"'}, "weight"),
+        ({"table": "normal", "key": "wait", "value": "1"}, "did you mean"),
+        ({"table": "tyre", "key": "width", "value": "1\nbase = 'x'"}, "is no value"),
+        ({"table": "tyre", "key": "width", "value": "[1"}, "is no value"),
+        ({"table": "tyre", "key": "nominal_load", "value": ""}, "missing"),
+        ({"table": "sweep", "file": "none.csv", "key": "setup", "value": "b"}, "load this page again"),
+    ],
+)
+def test_a_setting_that_a_build_would_refuse_is_not_saved(tyre_toml, given, sentence):
+    file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
+    with pytest.raises(InputError, match=sentence):
+        file.edit(lambda text: setting(text, **given), file.digest)
+    assert tyre_toml.read_bytes() == before
 
 
 def test_every_edit_is_known_by_its_name():
