@@ -70,9 +70,12 @@ class RecordingsFolder:
 
     def _named(self) -> list[Path]:
         """Everything in the folder with the name of a recording."""
-        sweeps = config.load(self.project).sweep if self.project else ()
-        known = {*NOT_READABLE_HERE, *(Path(entry.file).name for entry in sweeps)}
-        return [path for path in files_of_folder(self.folder) if path.name not in known]
+        found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        if self.project is None:
+            return found
+        project = config.load(self.project)
+        known = {(project.folder / entry.file).resolve() for entry in project.sweep}
+        return [path for path in found if path.resolve() not in known]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.

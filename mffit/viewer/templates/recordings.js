@@ -93,7 +93,7 @@
     byId("found").hidden = true;
     byId("choice").hidden = !table.groups.length;
     list(table.problems);
-    if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : "No recordings here yet.", table.problems.length > 0);
+    if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : adds ? "Every recording of this folder is in tyre.toml." : "No recordings here yet.", table.problems.length > 0);
     if (!adds) tyreAndRig(tyre, rig, disc);
     byId("groups").replaceChildren(...table.groups.map(group));
     const first = disc && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
