@@ -48,7 +48,8 @@ class ChangedElsewhere(InputError):
 def _difference(before: bytes, after: bytes) -> str:
     """The lines that differ, each with one around it."""
     old, new = (content.decode("utf-8-sig", errors="replace").splitlines() for content in (before, after))
-    return "\n".join(list(difflib.unified_diff(old, new, n=1, lineterm=""))[2:])
+    lines = list(difflib.unified_diff(old, new, n=1, lineterm=""))[2:]
+    return "\n".join("..." if line.startswith("@@") else line for line in lines)
 
 
 class ProjectFile:
