@@ -21,7 +21,7 @@ from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
 from mffit.window.guard import App, Entrance, Guard
-from mffit.window.reading import Reading
+from mffit.window.reading import ReadingProcess
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
 from mffit.window.session import ChangedElsewhere, Session
@@ -46,7 +46,7 @@ class Opened:
         session: Session | None = None,
         folder: RecordingsFolder | None = None,
         html: str = "",
-        reading: Reading | None = None,
+        reading: ReadingProcess | None = None,
     ) -> None:
         self._session, self._folder, self.html = session, folder, html
         self._reading = reading  #: where recordings are read; None: here
@@ -78,7 +78,7 @@ class Opened:
         return self._folder
 
     def of_folder(self, what: str, *given: Any) -> Any:
-        """What a method of the folder returns; see :class:`Reading`."""
+        """What a method of the folder returns; see :class:`ReadingProcess`."""
         if self._reading is None:
             return getattr(self.folder, what)(*given)
         return self._reading.ask(self.folder, what, *given)

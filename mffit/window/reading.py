@@ -17,7 +17,7 @@ from mffit.window import constants
 from mffit.window.recordings_folder import RecordingsFolder
 
 
-class Reading:
+class ReadingProcess:
     """A process that reads recordings, begun at the first use and again after a stop."""
 
     def __init__(self) -> None:

@@ -51,7 +51,7 @@ def open_path(
             "`mffit show tyre.toml`, which needs no server"
         ) from None
     from mffit.window.guard import Entrance
-    from mffit.window.reading import Reading
+    from mffit.window.reading import ReadingProcess
     from mffit.window.recordings_folder import PROJECT, RecordingsFolder
     from mffit.window.session import Session
 
@@ -63,11 +63,11 @@ def open_path(
             "opens one project at a time; give this file alone, or property files only", file=first
         )
     elif first.is_dir() and not (first / PROJECT).exists():
-        shown = Opened(folder=RecordingsFolder(first), reading=Reading())
+        shown = Opened(folder=RecordingsFolder(first), reading=ReadingProcess())
     else:
         session = Session(first / PROJECT if first.is_dir() else first)
         session.file.config()
-        shown = Opened(session, reading=Reading())
+        shown = Opened(session, reading=ReadingProcess())
     with _listening(port) if port else _usual(first) as listening:
         port = listening.getsockname()[1]
         said: list[str] = []

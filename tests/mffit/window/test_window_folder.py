@@ -23,7 +23,7 @@ from mffit.recordings import DiscPath, Stated
 pytest.importorskip("starlette")
 from mffit.window.app import Opened
 from mffit.window.edits import add_recordings
-from mffit.window.reading import Reading
+from mffit.window.reading import ReadingProcess
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.session import Session
 
@@ -366,7 +366,7 @@ def test_a_single_sweep_becomes_one_of_several():
 
 def test_reading_goes_on_in_a_process_that_can_be_stopped(folder, monkeypatch):
     """Here it would take a minute; the next question begins a new one."""
-    reading, found = Reading(), RecordingsFolder(folder)
+    reading, found = ReadingProcess(), RecordingsFolder(folder)
     try:
         assert reading.ask(found, "table") == found.table()
         with pytest.raises(InputError, match="incomplete") as caught:
