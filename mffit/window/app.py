@@ -100,10 +100,14 @@ class Opened:
             raise InputError("a change needs do, seen and with")
         self.session.edit(name, seen, arguments)
 
-    def stop(self) -> None:
-        """Stop what is under way."""
+    def stop_reading(self) -> None:
+        """Stop reading recordings."""
         if self._reading is not None:
             self._reading.stop()
+
+    def stop(self) -> None:
+        """Stop what is under way."""
+        self.stop_reading()
         if self._session is not None:
             self._session.stop()
 
@@ -124,7 +128,8 @@ def window_app(
         "add": lambda content, at: opened.add(content),
         "edit": lambda content, at: opened.edit(content),
         "undo": lambda content, at: opened.session.undo(),
-        "stop": lambda content, at: opened.stop(),
+        "stop": lambda content, at: opened.session.stop(),
+        "stop-reading": lambda content, at: opened.stop_reading(),
         "run/{kind}": lambda content, at: opened.session.run(at["kind"]),
     }
 

@@ -29,7 +29,7 @@
     byId("stop").hidden = true;
     return found;
   }
-  byId("stop").addEventListener("click", () => asked("stop", say, sent({})));
+  byId("stop").addEventListener("click", () => asked("stop-reading", say, sent({})));
   async function post(address) {
     const found = await read(address, sent(choice()));
     if (!found || found.error) say(found ? found.error : ENDED, true);
