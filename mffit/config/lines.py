@@ -40,13 +40,14 @@ def line_ranges(text: str) -> tuple[LineRange, ...]:
             raise LineListError(
                 f'"{shortened(item)}" is not a line or a range of lines; write "39", "39-44" or "39-44, 60"'
             )
-        if max(len(number.lstrip("0")) for number in match.groups("")) > DIGITS:
+        digits = [number.lstrip("0") for number in (match[1], match[2] or match[1])]
+        if max(map(len, digits)) > DIGITS:
             raise LineListError(f'"{shortened(item)}" is beyond the end of any file; correct it')
-        first, last = int(match[1]), int(match[2] or match[1])
+        first, last = (int(number or 0) for number in digits)
         if first < 1:
-            raise LineListError(f'"{item.strip()}" begins with line 0, but lines are counted from 1')
+            raise LineListError(f'"{shortened(item)}" begins with line 0, but lines are counted from 1')
         if last < first:
-            raise LineListError(f'"{item.strip()}" ends before it begins; write "{last}-{first}"')
+            raise LineListError(f'"{shortened(item)}" ends before it begins; write "{last}-{first}"')
         found.append((first, last))
     return _joined(sorted(found))
 

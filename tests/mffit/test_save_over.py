@@ -25,7 +25,10 @@ def path(tmp_path: Path) -> Path:
     return found
 
 
-def test_another_content_stays(path):
+@pytest.mark.parametrize("names", [1, 2])
+def test_another_content_stays(path, names):
+    if names == 2:
+        os.link(path, path.parent.parent / f"{path.parent.name}-hard.toml")
     with pytest.raises(ChangedMeanwhile) as error:
         save_over(path, NEW, OLD + NEW)
     assert (error.value.now, path.read_bytes()) == (OLD, OLD)

@@ -198,6 +198,17 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
             {"readings": [{"file": "a", "first": 1, "last": 1e400}], "why": "x"},
             "first and last line",
         ),
+        ("coefficient", {"name": "PCY1", "entry": 10**400}, "more digits than a number can have"),
+        (
+            "leave_out",
+            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**400}], "why": "x"},
+            "beyond the end of any file",
+        ),
+        (
+            "leave_out",
+            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**11}], "why": "x"},
+            "beyond the end of the file; the readings of camber_900.csv are in lines 2-",
+        ),
         (
             "leave_out",
             {"readings": [{"file": "camber_900.csv", "first": 2, "last": 2}], "why": "\ud800"},
