@@ -284,7 +284,7 @@ def test_every_setting_is_offered_and_saved(tyre_toml):
 
 
 def test_another_name_of_a_choice_is_shown():
-    (tyre, rig, *_) = settings({"rig": {"axes": "calspan"}})
+    _, rig, *_ = settings({"rig": {"axes": "calspan"}})
     (axes,) = [key for key in rig["keys"] if key["key"] == "axes"]
     assert (axes["value"], axes["choices"][-1]) == ('"calspan"', '"calspan"')
 
