@@ -351,7 +351,8 @@ def save_over(path: Path, before: bytes, after: bytes) -> None:
     """Replace the content ``before`` of a user's own file in one step.
 
     A link stays one; permissions, owner and extended attributes stay. Where a new file could not have them, or the old one has
-    other names (hard links), or the folder takes no new file, the old one is written over.
+    other names (hard links), or the folder takes no new file, the old one is written over: not in one step if it is longer than
+    a page of memory (4 kB).
 
     Raises
     ------
@@ -367,7 +368,7 @@ def save_over(path: Path, before: bytes, after: bytes) -> None:
                 if (now := old.read()) != before:
                     raise ChangedMeanwhile(now)
                 if new is None:
-                    # In one call, which a kill does not divide; what is too long is blank until it is cut off.
+                    # In one call, which a kill divides between pages at most; what is too long is blank until it is cut off.
                     longer = after.ljust(len(before), b"\n")
                     if old.seek(0) + old.write(longer) < len(longer):
                         old.seek(0)
