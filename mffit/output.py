@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import errno
 import hashlib
 import json
@@ -9,7 +11,9 @@ import os
 import platform
 import re
 import shutil
+import sys
 import tempfile
+import time
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
@@ -333,3 +337,120 @@ def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
             f"cannot be written to ({error.strerror}); name another folder", file=folder
         ) from None
     return [folder / name for name in contents]
+
+
+class ChangedMeanwhile(Exception):
+    """A file has no longer the content that was to be replaced; ``now`` is the one it has."""
+
+    def __init__(self, now: bytes) -> None:
+        super().__init__()
+        self.now = now
+
+
+def save_over(path: Path, before: bytes, after: bytes) -> None:
+    """Replace the content ``before`` of a user's own file in one step.
+
+    A link stays one; permissions, owner and extended attributes stay. Where a new file could not have them, or the old one has
+    other names (hard links), or the folder takes no new file, the old one is written over: not in one step if it is longer than
+    a page of memory (4 kB).
+
+    Raises
+    ------
+    ChangedMeanwhile
+        The file has another content, and keeps it. It is compared at the replacement, where no other process of mffit saves.
+    InputError
+        The file cannot be written.
+    """
+    try:
+        path = path.resolve(strict=True)
+        with _alone(path.parent), _new_like(path, after) as new:
+            with path.open("r+b", buffering=0) as old:  # refuses a file that the user may not write
+                if (now := old.read()) != before:
+                    raise ChangedMeanwhile(now)
+                if new is None:
+                    # In one call, which a kill divides between pages at most; what is too long is blank until it is cut off.
+                    longer = after.ljust(len(before), b"\n")
+                    if old.seek(0) + old.write(longer) < len(longer):
+                        old.seek(0)
+                        old.truncate(old.write(before))
+                        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+                    old.truncate(len(after))
+            if new is not None:
+                _put(new, path, before, after)
+    except OSError as error:
+        is_full = error.errno in DISK_FULL - {errno.EROFS}
+        remedy = "free some space" if is_full else "check the permissions of file and folder"
+        raise InputError(f"cannot be written ({error.strerror}); {remedy}", file=path) from None
+
+
+def _put(new: str, path: Path, before: bytes, after: bytes) -> None:
+    """Put a new file in the place of another; where the two can be exchanged, what comes out is compared once more."""
+    expected, placed = before, after
+    while _exchanged(new, path):
+        came_out = Path(new).read_bytes()
+        if came_out == expected:
+            if placed != after:
+                raise ChangedMeanwhile(placed)
+            return
+        expected, placed = placed, came_out  # saved by another program since: it goes back
+    os.replace(new, path)
+
+
+def _exchanged(new: str, path: Path) -> bool:
+    """Whether two files exchanged their names in one step, which not every system can do."""
+    names = [os.fsencode(name) for name in (new, path)]
+    try:
+        libc = ctypes.CDLL(None)
+        if sys.platform == "linux":
+            here, exchange = -100, 2
+            return bool(libc.renameat2(here, names[0], here, names[1], exchange) == 0)
+        return sys.platform == "darwin" and bool(libc.renamex_np(*names, 2) == 0)
+    except (AttributeError, OSError, TypeError):
+        return False
+
+
+@contextmanager
+def _new_like(path: Path, content: bytes) -> Iterator[str | None]:
+    """A complete file beside ``path`` that may take its place; None if it cannot have its owner or all its names."""
+    old, new, whole = path.stat(), "", False
+    try:
+        if old.st_nlink == 1:
+            with contextlib.suppress(PermissionError):
+                handle, new = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+                with os.fdopen(handle, "wb") as stream:
+                    stream.write(content)
+                if sys.platform != "win32":
+                    os.chown(new, old.st_uid, old.st_gid)
+                shutil.copystat(path, new)
+                os.utime(new)
+                whole = True
+        yield new if whole else None
+    finally:
+        if new:
+            Path(new).unlink(missing_ok=True)
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Within this block, no other process of mffit is in its block for the same folder; no file is left there."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        name = f"mffit-{hashlib.sha256(os.fsencode(folder)).hexdigest()}.lock"
+        with (Path(tempfile.gettempdir()) / name).open("wb") as lock:
+            msvcrt.locking(lock.fileno(), msvcrt.LK_LOCK, 1)
+            yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        for _ in range(100):  # another user could hold it for ever; the comparison of contents is left then
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:  # held, or a network folder that knows no locks
+                time.sleep(0.01)
+        yield
+    finally:
+        os.close(handle)

@@ -235,13 +235,13 @@ def write(tyre: TyreRecord, path: str | Path, target: str | None = None) -> None
     replace_file(Path(path), text.encode(encoding))
 
 
-def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
+def replace_file(path: Path, content: bytes) -> None:
     """Write a file in one step: the one at ``path`` is replaced only once the new one is complete."""
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
-        os.chmod(temporary, mode)
+        os.chmod(temporary, 0o644)
         os.replace(temporary, path)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)

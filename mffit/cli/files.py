@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import webbrowser
 from pathlib import Path
 
 import click
@@ -117,10 +118,16 @@ def open_window(paths: tuple[Path, ...], port: int, no_browser: bool, voice: Voi
     """
     from mffit import window
 
+    addresses: list[str] = []
+
     def opened(address: str) -> None:
+        addresses.append(address)
+        if len(addresses) > 1:
+            return voice.say(f"another browser: {address}")
         voice.say(f"{paths[0]}: open at {address}\nCtrl-C ends it")
         voice.give({"address": address})
-        if not no_browser:
-            click.launch(address)
 
-    window.open_path(paths, port=port, opened=opened)
+    def launch(page: Path) -> None:
+        webbrowser.open(page.as_uri())
+
+    window.open_path(paths, port=port, opened=opened, launch=None if no_browser else launch)

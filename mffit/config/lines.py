@@ -11,14 +11,14 @@ from pydantic import AfterValidator, BeforeValidator
 
 from mffit.config import quantities as q
 from mffit.config.table import Table
-from mffit.errors import meant
+from mffit.errors import meant, shortened
 
 LineRange = tuple[int, int]
 """First and last line, both included, counted from 1."""
 
 ITEM = re.compile(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", re.ASCII)
-LARGEST = 10**12
-"""No file has so many lines; larger numbers do not fit into an array."""
+DIGITS = 12
+"""No file has a line with more; larger numbers do not fit into an array, and Python reads none of thousands of digits."""
 
 
 class LineListError(ValueError):
@@ -38,15 +38,16 @@ def line_ranges(text: str) -> tuple[LineRange, ...]:
         match = ITEM.fullmatch(item)
         if match is None:
             raise LineListError(
-                f'"{item.strip()}" is not a line or a range of lines; write "39", "39-44" or "39-44, 60"'
+                f'"{shortened(item)}" is not a line or a range of lines; write "39", "39-44" or "39-44, 60"'
             )
-        first, last = int(match[1]), int(match[2] or match[1])
+        digits = [number.lstrip("0") for number in (match[1], match[2] or match[1])]
+        if max(map(len, digits)) > DIGITS:
+            raise LineListError(f'"{shortened(item)}" is beyond the end of any file; correct it')
+        first, last = (int(number or 0) for number in digits)
         if first < 1:
-            raise LineListError(f'"{item.strip()}" begins with line 0, but lines are counted from 1')
-        if last > LARGEST:
-            raise LineListError(f'"{item.strip()}" is beyond the end of any file; correct it')
+            raise LineListError(f'"{shortened(item)}" begins with line 0, but lines are counted from 1')
         if last < first:
-            raise LineListError(f'"{item.strip()}" ends before it begins; write "{last}-{first}"')
+            raise LineListError(f'"{shortened(item)}" ends before it begins; write "{last}-{first}"')
         found.append((first, last))
     return _joined(sorted(found))
 

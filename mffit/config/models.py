@@ -108,7 +108,7 @@ class MachineTable(Table):
     )
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
-        Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))
+        Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(str(name), name))
     ] = "iso"
     force_frame: Literal["W", "C"] = "W"
     moments: Literal["contact", "wheel-centre"] = "contact"

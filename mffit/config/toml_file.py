@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
+
+import tomli_w
 
 from mffit.config.quantities import TOO_MANY_DIGITS
 from mffit.errors import InputError, readable
@@ -35,6 +37,18 @@ def lines_of_keys(text: str) -> dict[str, int]:
                 found.setdefault(table, number)
         fence, depth = _after(line, fence, depth)
     return found
+
+
+def toml_text(content: Mapping[str, object]) -> str:
+    """Tables as a person writes them: a list of tables is one ``[[table]]`` per entry."""
+    parts = []
+    for name, table in content.items():
+        if isinstance(table, list | tuple):
+            entries = (tomli_w.dumps({name: entry}).removeprefix(f"[{name}]\n") for entry in table)
+            parts += [f"[[{name}]]\n{entry}" for entry in entries]
+        else:
+            parts.append(tomli_w.dumps({name: table}))
+    return "\n".join(parts)
 
 
 def line_of(key: str, lines: dict[str, int]) -> int | None:
@@ -110,10 +124,15 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, 
     InputError
         The file cannot be read, is not UTF-8 text or not valid TOML, or is evidently a file of another kind.
     """
+    return tables_of(_bytes(path, kind), path, kind)
+
+
+def tables_of(content: bytes, path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, int]]:
+    """As :func:`read_toml`, of bytes that the file ``path`` has or may get."""
     is_toml = path.name.lower().endswith(".toml")
     try:
-        text = _bytes(path, kind).decode("utf-8-sig")
-        content = tomllib.loads(text)
+        text = content.decode("utf-8-sig")
+        tables = tomllib.loads(text)
     except UnicodeDecodeError:
         if not is_toml:
             raise _other_file(path, kind) from None
@@ -131,9 +150,9 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, 
         line = 1 + text.count("\n", 0, found.start())
         key = next((name for name, at in lines_of_keys(text).items() if at == line), None)
         raise InputError(TOO_MANY_DIGITS, file=path, line=line, key=key) from None
-    if not is_toml and content.keys().isdisjoint(kind.tables):
+    if not is_toml and tables.keys().isdisjoint(kind.tables):
         raise _other_file(path, kind)
-    return content, lines_of_keys(text)
+    return tables, lines_of_keys(text)
 
 
 def _bytes(path: Path, kind: TomlKind) -> bytes:

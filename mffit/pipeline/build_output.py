@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import tomli_w
 
 from mffit import config as configuration
 from mffit import prediction
 from mffit.comparison import characteristics
 from mffit.config import Config
+from mffit.config.toml_file import toml_text
 from mffit.csv_tables import write_csv
 from mffit.fit import Posterior, name_at_temperature
 from mffit.output import output_folder
@@ -68,7 +68,7 @@ def write_build(
 
 def resolved_text(config: Config, out: Path) -> bytes:
     """The content of ``resolved.toml`` in a folder ``out``."""
-    return tomli_w.dumps(configuration.resolved(config, folder=out)).encode()
+    return toml_text(configuration.resolved(config, folder=out)).encode()
 
 
 def points_table(result: BuildResult) -> pd.DataFrame:

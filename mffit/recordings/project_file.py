@@ -104,8 +104,19 @@ def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED
         *([ROLLING_RADIUS] if stated.disc is not None else []),
         ["[columns]  # of all files", *_comments(of_all), *_columns(shared)],
         *_bad_runs(sniffed, folder),
-        *_sweeps(recordings, folder, shared, of_all),
+        *_sweeps(recordings, folder, {name: guess.column for name, guess in shared.items()}, of_all),
     ]
+    return _text(tables)
+
+
+def sweeps_text(sniffed: Sniffed, folder: Path, columns: Mapping[str, Column]) -> str:
+    """The [[sweep]] of recordings for a ``tyre.toml`` in ``folder`` whose [columns] are given."""
+    own_names = {name: Column(column=name) for recording in sniffed.recordings for name in recording.guesses}
+    named = {name: one.model_copy(update={"column": one.column or name}) for name, one in columns.items()}
+    return _text(_sweeps(sniffed.recordings, folder, {**own_names, **named}, ()))
+
+
+def _text(tables: Sequence[Sequence[str]]) -> str:
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
 
 
@@ -219,7 +230,7 @@ def _bad_runs(sniffed: Sniffed, folder: Path) -> list[list[str]]:
 def _sweeps(
     recordings: Sequence[SniffedRecording],
     folder: Path,
-    shared: Mapping[str, Guess],
+    shared: Mapping[str, Column],
     remarks_of_all: Collection[str],
 ) -> list[list[str]]:
     """A [[sweep]] for every recording."""
@@ -234,9 +245,9 @@ def _sweeps(
     ]
 
 
-def _content(recording: SniffedRecording, shared: Mapping[str, Guess]) -> tuple[str, ...]:
+def _content(recording: SniffedRecording, shared: Mapping[str, Column]) -> tuple[str, ...]:
     """What the [[sweep]] of a recording says beside its file."""
-    own = {name: guess for name, guess in recording.guesses.items() if _differs(shared.get(name), guess)}
+    own = {name: guess for name, guess in recording.guesses.items() if guess.column != shared.get(name)}
     return (
         *([f'direction = "backward"  # {_why_backward(recording)}'] if recording.backward else []),
         *(["[sweep.columns]", *(_column(guess) for guess in own.values())] if own else []),
@@ -292,10 +303,6 @@ def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:
         for name, guess in recording.guesses.items():
             channels.setdefault(guess.heading, set()).add(name)
     return {name: guess for name, guess in shared.items() if len(channels[guess.heading]) == 1}
-
-
-def _differs(shared: Guess | None, guess: Guess) -> bool:
-    return shared is None or shared.column != guess.column
 
 
 def _columns(guesses: Mapping[str, Guess]) -> list[str]:

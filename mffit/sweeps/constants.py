@@ -19,6 +19,12 @@ LARGEST_UNPACKED = Count(
     "Largest table that is read, unpacked: twice the largest recording that was tried, of five million rows and eight channels; "
     "a packed file of 1 MB may hold 1 GB.",
 )
+LARGEST_RATIO = Count(
+    50,
+    "-",
+    "Largest size of a table over that of its packed file: readings have noise, which leaves a fifth of a text; a packed row "
+    "that repeats is a thousand times smaller.",
+)
 CAMBER_THAT_TURNS_LOAD = Real(
     5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
 )

@@ -56,6 +56,10 @@ def opened(path: Path) -> IO[bytes]:
 
 
 BYTES_OF_A_NUMBER = 8
+FLOOR = 65_536
+"""Bytes that are added to a packed size, so that a few rows that are all alike are no suspicion."""
+TIME_TO_READ = 600.0
+"""Time [s] in which a file is read that is read in a process of its own."""
 
 
 def content_of(path: Path) -> bytes:
@@ -69,17 +73,23 @@ def content_of(path: Path) -> bytes:
     with readable(path):
         try:
             with opened(path) as file:
-                content = file.read(int(constants.LARGEST_UNPACKED) + 1)
+                content = file.read(largest(path) + 1)
         except (gzip.BadGzipFile, EOFError, zlib.error):
             raise InputError("is not a complete gzip file; compress it again", file=path) from None
     check_size(len(content), path)
     return content
 
 
+def largest(path: Path) -> int:
+    """Bytes that a recording of the size of this file holds at most once it is unpacked."""
+    ratio = int(constants.LARGEST_RATIO)
+    return min(int(constants.LARGEST_UNPACKED), ratio * (path.stat().st_size + FLOOR))
+
+
 def check_size(size: int, path: Path) -> None:
     """Refuse a file that holds more bytes than any recording once it is unpacked; a small file may claim to."""
-    if size > constants.LARGEST_UNPACKED:
-        most = f"{constants.LARGEST_UNPACKED / 1e6:.0f} MB"
+    if size > (most := largest(path)):
         raise InputError(
-            f"holds more than {most} when unpacked; split it, or export fewer channels", file=path
+            f"holds more than {most / 1e6:.0f} MB when unpacked; split it, or export fewer channels",
+            file=path,
         )

@@ -160,14 +160,10 @@ def _apart(
     lines = np.asarray(raw.lines)
     out = np.zeros(len(lines), dtype=bool)
     excluded = []
-    for index, one in enumerate(config.fit.exclude):
+    check_excluded(config, entry.file, lines)
+    for one in config.fit.exclude:
         if one.file != entry.file:
             continue
-        # The first end of a range that is not the line of a row.
-        wrong = next((end for pair in one.ranges for end in pair if not np.any(lines == end)), None)
-        if wrong is not None:
-            line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
-            raise InputError(_no_reading(raw, wrong), file=config.path, line=line, key=key)
         mask = inside(lines, one.ranges) & ~out  # a line that two entries name is listed with the first
         out |= mask
         if np.any(mask):
@@ -175,9 +171,25 @@ def _apart(
     return None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw, excluded
 
 
-def _no_reading(raw: RawTable, wrong: int) -> str:
-    first, last = int(np.min(raw.lines)), int(np.max(raw.lines))
-    place = f"the readings of {raw.path.name} are in lines {ranges_text([(first, last)])}"
+def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
+    """Refuse entries of ``[fit] exclude`` about a file whose rows are at ``lines`` (n,), if a range ends beside these.
+
+    Raises
+    ------
+    InputError
+        Names the entry and the first such end.
+    """
+    for index, one in enumerate(config.fit.exclude):
+        ends = (end for pair in one.ranges for end in pair) if one.file == file else ()
+        wrong = next((end for end in ends if not np.any(lines == end)), None)
+        if wrong is not None:
+            line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
+            raise InputError(_no_reading(Path(file).name, lines, wrong), file=config.path, line=line, key=key)
+
+
+def _no_reading(name: str, lines: np.ndarray, wrong: int) -> str:
+    first, last = int(np.min(lines)), int(np.max(lines))
+    place = f"the readings of {name} are in lines {ranges_text([(first, last)])}"
     if wrong > last:
         return f"line {wrong} is beyond the end of the file; {place}"
     reason = "is above the first reading" if wrong < first else "holds no reading"

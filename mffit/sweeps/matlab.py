@@ -19,7 +19,7 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.sweeps import constants, matlab_apart
-from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, damaged, needed, undamaged
+from mffit.sweeps.extras import BYTES_OF_A_NUMBER, TIME_TO_READ, check_size, damaged, needed, undamaged
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE
 from mffit.sweeps.raw_table import RawTable
 
@@ -75,7 +75,7 @@ def _classic(path: Path) -> dict[str, Any]:
         most = str(constants.LARGEST_UNPACKED // BYTES_OF_A_NUMBER)
         command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name, most]
         try:
-            subprocess.run(command, check=True, timeout=600.0, capture_output=True)
+            subprocess.run(command, check=True, timeout=TIME_TO_READ, capture_output=True)
         except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
             raise damaged(path, KIND, "reading it failed without a reason") from None
         if (folder / SIZE).exists():

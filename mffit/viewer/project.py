@@ -64,6 +64,7 @@ def project_html(
     turn_slip: bool,
     star: bool,
     window: dict[str, Json] | None = None,
+    here: dict[str, Json] | None = None,
 ) -> str:
     """The page of a project.
 
@@ -72,7 +73,8 @@ def project_html(
     name : of the tyre
     data : of :func:`project_data`; None before the first fit
     turn_slip, star : which model the page evaluates
-    window : state of the local window, see :mod:`mffit.window`; None for a page without a server
+    window, here : state of the local window, see :mod:`mffit.window`, and folder and endings of recordings that it takes; None
+        for a page without a server
     """
     return (
         environment("mffit.viewer")
@@ -83,6 +85,7 @@ def project_html(
             model=javascript(MODELLED, turn_slip=turn_slip, star=star),
             turn_slip=turn_slip,
             window=window,
+            here=here,
             version=mffit.__version__,
         )
     )

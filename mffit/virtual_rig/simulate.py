@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import tomli_w
 
 import tir
+from mffit.config.toml_file import toml_text
 from mffit.csv_tables import csv_text
 from mffit.output import output_folder
 from mffit.virtual_rig.campaign import Campaign, run
@@ -69,14 +69,9 @@ def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
 
 
 def configuration_text(configuration: Mapping[str, Any]) -> str:
-    """The text of tyre.toml; a list becomes one ``[[table]]`` per entry, as a person would write it."""
-    parts = ["# Written by `mffit simulate`; truth.json holds the true values behind these data.\n"]
-    for name, content in configuration.items():
-        if isinstance(content, list | tuple):
-            parts += [f"[[{name}]]\n{tomli_w.dumps(entry)}" for entry in content]
-        else:
-            parts.append(tomli_w.dumps({name: content}))
-    return "\n".join(parts)
+    """The text of tyre.toml."""
+    head = "# Written by `mffit simulate`; truth.json holds the true values behind these data.\n"
+    return f"{head}\n{toml_text(configuration)}"
 
 
 def write_table(table: pd.DataFrame, path: Path) -> None:

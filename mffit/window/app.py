@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,11 @@ from mffit.sweeps.formats import ENDINGS
 from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
-from mffit.window.guard import App, Guard
+from mffit.window.guard import App, Entrance, Guard
+from mffit.window.reading import ReadingProcess
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
-from mffit.window.session import Session
+from mffit.window.session import ChangedElsewhere, Session
 
 Endpoint = Callable[[Request], Awaitable[Response]]
 SERVED = (".html", ".png", ".svg", ".json", ".csv", ".tir", ".toml")
@@ -42,9 +42,14 @@ class Opened:
     """What a window shows: a project, or a folder of recordings until a project is made of it, or a finished page."""
 
     def __init__(
-        self, session: Session | None = None, folder: RecordingsFolder | None = None, html: str = ""
+        self,
+        session: Session | None = None,
+        folder: RecordingsFolder | None = None,
+        html: str = "",
+        reading: ReadingProcess | None = None,
     ) -> None:
         self._session, self._folder, self.html = session, folder, html
+        self._reading = reading  #: where recordings are read; None: here
 
     @property
     def has_project(self) -> bool:
@@ -66,16 +71,27 @@ class Opened:
 
     @property
     def folder(self) -> RecordingsFolder:
-        """The folder of which no project is made yet; raises as :attr:`session`."""
-        if self._folder is None or self.has_project:
-            raise InputError("no folder of recordings is open in this window")
+        """The folder with recordings that are in no project yet; raises as :attr:`session`."""
+        if self._folder is None:
+            path = self.session.file.path
+            self._folder = RecordingsFolder(path.parent, path)
         return self._folder
+
+    def of_folder(self, what: str, *given: Any) -> Any:
+        """What a method of the folder returns; see :class:`ReadingProcess`."""
+        if self._reading is None:
+            return getattr(self.folder, what)(*given)
+        return self._reading.ask(self.folder, what, *given)
 
     def make(self, choice: dict[str, Any]) -> None:
         """Make a project of the folder, and open it; as :meth:`RecordingsFolder.make`."""
-        session = Session(self.folder.make(choice))
+        session = Session(self.of_folder("make", choice))
         session.run("fit")
-        self._session = session
+        self._session, self._folder = session, None
+
+    def add(self, choice: dict[str, Any]) -> None:
+        """Add recordings to the open project, as :meth:`RecordingsFolder.added` reads them."""
+        self.session.edit("add_recordings", str(choice.get("seen")), self.of_folder("added", choice))
 
     def edit(self, change: Mapping[str, Any]) -> None:
         """Carry out a change of ``tyre.toml``; as :meth:`Session.edit`."""
@@ -84,25 +100,36 @@ class Opened:
             raise InputError("a change needs do, seen and with")
         self.session.edit(name, seen, arguments)
 
-    def end(self) -> None:
+    def stop_reading(self) -> None:
+        """Stop reading recordings."""
+        if self._reading is not None:
+            self._reading.stop()
+
+    def stop(self) -> None:
         """Stop what is under way."""
+        self.stop_reading()
         if self._session is not None:
             self._session.stop()
 
 
-def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], bool] = lambda: False) -> App:
+def window_app(
+    opened: Opened, *, entrance: Entrance, port: int, closing: Callable[[], bool] = lambda: False
+) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
     shown: dict[str, Callable[[], Any]] = {
-        "recordings": lambda: plain(opened.folder.table()),
+        "recordings": lambda: plain(opened.of_folder("table")),
         "project": lambda: opened.session.data,
+        "settings": lambda: opened.session.settings(),
         "state": lambda: opened.session.state(),
     }
     actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {
-        "check": lambda content, at: opened.folder.check(content),
+        "check": lambda content, at: opened.of_folder("check", content),
         "make": lambda content, at: opened.make(content),
+        "add": lambda content, at: opened.add(content),
         "edit": lambda content, at: opened.edit(content),
         "undo": lambda content, at: opened.session.undo(),
         "stop": lambda content, at: opened.session.stop(),
+        "stop-reading": lambda content, at: opened.stop_reading(),
         "run/{kind}": lambda content, at: opened.session.run(at["kind"]),
     }
 
@@ -121,6 +148,9 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
 
     async def page(request: Request) -> Response:
         return HTMLResponse(await run_in_threadpool(_page, opened))
+
+    async def adding(request: Request) -> Response:
+        return HTMLResponse(await run_in_threadpool(_recordings_page, opened))
 
     async def store(request: Request) -> Response:
         folder, name = opened.folder, request.path_params["name"]
@@ -146,15 +176,16 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
         return JSONResponse({"error": str(error)}, REFUSED)
 
     routes = [
-        Route("/{token}/", page),
-        *(Route(f"/{{token}}/{name}", showing(found)) for name, found in shown.items()),
-        *(Route(f"/{{token}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
-        Route("/{token}/store/{name}", store, methods=["POST"]),
-        Route("/{token}/events", events),
-        Route("/{token}/out/{path:path}", result),
+        Route("/{home}/", page),
+        Route("/{home}/add", adding),
+        *(Route(f"/{{home}}/{name}", showing(found)) for name, found in shown.items()),
+        *(Route(f"/{{home}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
+        Route("/{home}/store/{name}", store, methods=["POST"]),
+        Route("/{home}/events", events),
+        Route("/{home}/out/{path:path}", result),
     ]
     application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
-    return Guard(application, token=token, port=port)
+    return Guard(application, entrance=entrance, port=port)
 
 
 def within(folder: Path, name: str) -> Path | None:
@@ -171,20 +202,31 @@ def _page(opened: Opened) -> str:
     if opened.html:
         return opened.html
     if not opened.has_project:
-        css = files("mffit.viewer").joinpath("templates", "show.css").read_text(encoding="utf-8")
-        own = files("mffit.viewer").joinpath("templates", "project.css").read_text(encoding="utf-8")
-        template = environment("mffit.window").get_template("recordings.html.j2")
-        return template.render(name=opened.folder.folder.name, css=css + own, endings=ENDINGS)
+        return _recordings_page(opened)
     session = opened.session
-    data, state = session.data, session.state()
+    data, state, here = session.data, session.state(), _here(session.file.path.parent)
     if data is not None:
-        return project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"], window=state)
+        return project_html(
+            data["name"], data, turn_slip=data["turn_slip"], star=data["star"], window=state, here=here
+        )
     try:
         config = session.file.config()
         name, turn_slip = config.tyre.name, config.rig.on_disc
     except InputError:
         name, turn_slip = session.file.path.name, False
-    return project_html(name, None, turn_slip=turn_slip, star=False, window=state)
+    return project_html(name, None, turn_slip=turn_slip, star=False, window=state, here=here)
+
+
+def _recordings_page(opened: Opened) -> str:
+    """The recordings of a folder, or those to add to a project."""
+    folder, to = opened.folder.folder, opened.session.file.path.name if opened.has_project else ""
+    template = environment("mffit.viewer").get_template("recordings.html.j2")
+    return template.render(name=folder.name, to=to, here=_here(folder))
+
+
+def _here(folder: Path) -> dict[str, Any]:
+    """What a page needs to take recordings for a folder."""
+    return {"folder": folder.name, "endings": ENDINGS}
 
 
 async def _events(session: Session, request: Request, closing: Callable[[], bool]) -> AsyncIterator[str]:
@@ -225,6 +267,7 @@ async def _answer(action: Callable[[], Any], opened: Opened) -> Response:
         found = await run_in_threadpool(action) or {}
     except InputError as error:
         found = {"error": str(error), "sentence": error.sentence, "key": error.key}
+        found["versions"] = error.versions if isinstance(error, ChangedElsewhere) else None
         status = REFUSED
     if opened.has_project:
         found["state"] = await run_in_threadpool(opened.session.state)

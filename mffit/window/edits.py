@@ -7,12 +7,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import tomlkit
-from tomlkit.items import AoT, Table
+from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
 from mffit.config.lines import LineRange, line_ranges, ranges_text
-from mffit.errors import InputError
+from mffit.errors import InputError, shortened
+from mffit.window.settings import TABLES, value_of
 
+SINGLE_SWEEP = re.compile(r"^([ \t]*)\[[ \t]*sweep[ \t]*\]", re.MULTILINE)
 LONE_NEWLINE = re.compile(r"(?<!\r)\n")
 
 
@@ -95,20 +97,84 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
     return _edited(text, change)
 
 
+def setting(text: str, *, table: str, key: str, value: str, file: str = "") -> str:
+    """The text with another value of a key.
+
+    Parameters
+    ----------
+    text : of the file
+    table : its name; "sweep" for the [[sweep]] of ``file``
+    key : in it
+    value : in the notation of TOML; "" removes the key
+    file : as in [[sweep]]
+    """
+
+    def change(document: Any) -> None:
+        if table not in TABLES and table != "sweep":
+            raise InputError(f"[{shortened(table)}] has no settings here")
+        own = _sweep(document, file) if table == "sweep" else _table(document, table)
+        if value == "":
+            own.pop(key, None)
+        else:
+            own[key] = value_of(value)
+
+    return _edited(text, change)
+
+
+def _sweep(document: Any, file: str) -> Any:
+    """The [[sweep]] of a file."""
+    sweeps = document.get("sweep", [])
+    found = [sweep for sweep in ([sweeps] if isinstance(sweeps, Table) else sweeps) if sweep["file"] == file]
+    if not found:
+        raise InputError(f'no [[sweep]] has file = "{shortened(file)}"; load this page again')
+    return found[0]
+
+
+def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] = ()) -> str:
+    """The text with further recordings.
+
+    Parameters
+    ----------
+    text : of the file
+    sweeps : their [[sweep]], as TOML; where the file has a list of its own, ``sweep = [...]``, they are added to that
+    bad : readings among them to leave out, as in :func:`leave_out`, each with its ``why``
+    """
+
+    def listed(document: Any) -> None:
+        for entry in tomlkit.parse(sweeps).unwrap()["sweep"]:
+            table = tomlkit.inline_table()
+            table.update(entry)
+            document["sweep"].append(table)
+
+    if isinstance(tomlkit.parse(text).get("sweep"), Array):
+        text = _edited(text, listed)
+    else:
+        text = _whole(SINGLE_SWEEP.sub(r"\1[[sweep]]", text))
+        end = "\r\n" if "\r\n" in text else "\n"
+        text += end + sweeps.replace("\n", end)
+    for one in bad:
+        text = leave_out(text, readings=[one], why=str(one["why"]))
+    return text
+
+
 EDITS: Mapping[str, Callable[..., str]] = {
-    edit.__name__: edit for edit in (coefficient, leave_out, take_back)
+    edit.__name__: edit for edit in (coefficient, leave_out, take_back, setting, add_recordings)
 }
 """The changes by name."""
 
 
 def _edited(text: str, change: Callable[[Any], object]) -> str:
     """The text after a change to its document; line ends stay those of the file."""
-    if text and not text.endswith("\n"):
-        text += "\r\n" if "\r\n" in text else "\n"
+    text = _whole(text)
     document = tomlkit.parse(text)
     change(document)
     found = tomlkit.dumps(document)
     return LONE_NEWLINE.sub("\r\n", found) if "\r\n" in text and not LONE_NEWLINE.search(text) else found
+
+
+def _whole(text: str) -> str:
+    """The text with an end of its last line."""
+    return text if not text or text.endswith("\n") else text + ("\r\n" if "\r\n" in text else "\n")
 
 
 def _table(document: Any, name: str) -> Any:
@@ -135,11 +201,12 @@ def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]
         except (KeyError, TypeError, ValueError, OverflowError):
             raise InputError("a reading needs file, first and last line") from None
         if not 1 <= first <= last:
-            raise InputError(
-                f"a reading is at the lines {first} to {last}, which are not in order; select it again"
-            )
+            raise InputError("the first and last line of a reading are not in order; select it again")
         found.setdefault(file, []).append((first, last))
-    return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
+    try:
+        return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
+    except ValueError as error:  # of lines beyond any file
+        raise InputError(f"a reading cannot be at these lines: {error}") from None
 
 
 def _ranges(entry: Mapping[str, Any]) -> tuple[LineRange, ...]:

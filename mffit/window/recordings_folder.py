@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mffit import config
+from mffit.config import Config
+from mffit.config.lines import line_ranges
 from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
-from mffit.output import new_files
+from mffit.output import digest, new_files
 from mffit.pipeline.intake import project_of
 from mffit.points import Points, levels
 from mffit.points.loading import read
 from mffit.quantities import CONDITIONS
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, guesses
-from mffit.recordings.project_file import Stated, slug, tyre_found
+from mffit.recordings.project_file import Stated, relative, slug, sweeps_text, tyre_found
 from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, rolls_backward, sniff
 from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
@@ -28,6 +32,7 @@ from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.viewer.controls import in_si
+from mffit.window.edits import add_recordings
 
 PROJECT = "tyre.toml"
 NOT_READABLE_HERE = (PROJECT, "stretches.csv")
@@ -38,10 +43,10 @@ SETTINGS = ("Fz_N", "gamma_deg", "kappa", "p_kPa", "V_mps")
 
 
 class RecordingsFolder:
-    """Recordings in a folder that has no ``tyre.toml`` yet."""
+    """Recordings in a folder that have no ``tyre.toml`` yet, or that are not in the ``tyre.toml`` there."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder.resolve()
+    def __init__(self, folder: Path, project: Path | None = None) -> None:
+        self.folder, self.project = folder.resolve(), project
         self._seen: object = None
         self._apart: tuple[list[Path], tuple[SummaryRow, ...]] = [], ()
 
@@ -65,7 +70,12 @@ class RecordingsFolder:
 
     def _named(self) -> list[Path]:
         """Everything in the folder with the name of a recording."""
-        return [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        if self.project is None:
+            return found
+        project = config.load(self.project)
+        known = {(project.folder / entry.file).resolve() for entry in project.sweep}
+        return [path for path in found if path.resolve() not in known]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -120,6 +130,7 @@ class RecordingsFolder:
             "tyre": {key: value for key, value in known._asdict().items() if value},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
+            "seen": digest(self.project) if self.project else "",
         }
 
     def _of_summaries(self) -> list[str]:
@@ -136,15 +147,15 @@ class RecordingsFolder:
         InputError
             They cannot be read so.
         """
-        config = checked(tomllib.loads(self._text(choice)), path=None, folder=self.folder, lines={})
+        chosen = self._chosen_config(choice)
         with formats.reading_once():
-            reading = read(config, may_be_empty=True)
+            reading = read(chosen, may_be_empty=True)
         warnings = [*reading.notes, *reading.warnings]
         axes: tuple[str, ...] = ()
         wrong: tuple[str, ...] = ()
         if len(reading.points):
-            axes, wrong = axes_of(reading.points, config.rig.axes, load_falls=False)
-            warnings += before_the_fit(reading.points, config)
+            axes, wrong = axes_of(reading.points, chosen.rig.axes, load_falls=False)
+            warnings += before_the_fit(reading.points, chosen)
         return {
             "points": len(reading.points),
             "conditions": _conditions(reading.points) if len(reading.points) else [],
@@ -152,6 +163,36 @@ class RecordingsFolder:
             "wrong": list(wrong),
             "warnings": warnings,
         }
+
+    def _chosen_config(self, choice: Mapping[str, Any]) -> Config:
+        """The project as chosen, of these recordings alone."""
+        if self.project is None:
+            return checked(tomllib.loads(self._text(choice)), path=None, folder=self.folder, lines={})
+        text = add_recordings(self.project.read_bytes().decode("utf-8-sig"), **self.added(choice))
+        found = checked(tomllib.loads(text), path=self.project, folder=self.project.parent, lines={})
+        known = config.load(self.project).sweep
+        return found.model_copy(update={"sweep": tuple(one for one in found.sweep if one not in known)})
+
+    @formats.reading_once()
+    def added(self, choice: Mapping[str, Any]) -> dict[str, Any]:
+        """What :func:`mffit.window.edits.add_recordings` adds to the project.
+
+        Raises
+        ------
+        InputError
+            The recordings cannot be read as chosen.
+        """
+        assert self.project is not None
+        project = config.load(self.project)
+        with _complete():
+            chosen = self._chosen_files(choice)
+        found = sniff(sorted(chosen), unloaded_radius=project.tyre.unloaded_radius, chosen=chosen)
+        bad = [
+            {"file": relative(run.recording, self.folder), "first": first, "last": last, "why": run.why}
+            for run in found.bad_runs
+            for first, last in line_ranges(run.lines)
+        ]
+        return {"sweeps": sweeps_text(found, self.folder, project.columns), "bad": bad}
 
     def make(self, choice: Mapping[str, Any]) -> Path:
         """Write the ``tyre.toml``; returns its path.
@@ -166,22 +207,21 @@ class RecordingsFolder:
     @formats.reading_once()
     def _text(self, choice: Mapping[str, Any]) -> str:
         """The ``tyre.toml``, as ``mffit init --from`` makes it; only files of this folder are named."""
-        try:
-            groups: Sequence[Mapping[str, Any]] = choice["groups"]
-            known = {path.name: path for path in self.files}
-            chosen = {
-                known[file["name"]]: _chosen(
-                    known[file["name"]], group["columns"], bool(file.get("backward"))
-                )
-                for group in groups
-                for file in group["files"]
-                if file["name"] in known and file.get("used", True)
-            }
+        with _complete():
+            chosen = self._chosen_files(choice)
             stated = self._stated(choice["tyre"], choice["rig"], [path.name for path in chosen])
-        except (KeyError, TypeError, AttributeError, IndexError):
-            raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
         found = sniff(sorted(chosen), unloaded_radius=stated.unloaded_radius, chosen=chosen)
         return project_of(found, self.folder, stated)[1]
+
+    def _chosen_files(self, choice: Mapping[str, Any]) -> dict[Path, ChosenFile]:
+        """The files that are used, with what the page says of them; only files of this folder."""
+        known = {path.name: path for path in self.files}
+        return {
+            known[file["name"]]: _chosen(known[file["name"]], group["columns"], bool(file.get("backward")))
+            for group in choice["groups"]
+            for file in group["files"]
+            if file["name"] in known and file.get("used", True)
+        }
 
     def _stated(self, tyre: Mapping[str, Any], rig: Mapping[str, Any], files: Sequence[str]) -> Stated:
         """What the page says of tyre and rig, checked as that of a ``tyre.toml``."""
@@ -234,6 +274,15 @@ class RecordingsFolder:
             return sniff(files), ""
         except InputError as error:
             return None, str(error)
+
+
+@contextmanager
+def _complete() -> Iterator[None]:
+    """Within this block, what the page leaves out is an :class:`InputError`."""
+    try:
+        yield
+    except (KeyError, TypeError, AttributeError, IndexError):
+        raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
 
 
 def _column(raw: RawTable, heading: str, guess: Guess | None) -> dict[str, Any]:

@@ -6,8 +6,11 @@ import contextlib
 import os
 import socket
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from threading import Thread
+
+import click
 
 from mffit import viewer
 from mffit.errors import InputError
@@ -17,14 +20,21 @@ FREE_PORTS = range(49_152, 65_536)
 """Ports that no service has by convention (RFC 6335); a project has its usual one among them."""
 
 
-def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], None]) -> None:
+def open_path(
+    paths: Sequence[Path],
+    *,
+    port: int = 0,
+    opened: Callable[[str], None],
+    launch: Callable[[Path], None] | None = None,
+) -> None:
     """Serve a window until it is interrupted.
 
     Parameters
     ----------
     paths : a ``tyre.toml``, the folder that it is in, a folder of recordings, or property files
     port : on the loopback address; 0 for the usual one of this project, or any if that is in use
-    opened : called with the address, once requests are answered
+    opened : called with the address once requests are answered, and with another when that has let a browser in
+    launch : called with a file that takes a browser there, for none but this user to read; None to open none
 
     Raises
     ------
@@ -40,11 +50,12 @@ def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], N
             f'the window needs {error.name}, which is not installed; run pip install "mffit[window]", or use '
             "`mffit show tyre.toml`, which needs no server"
         ) from None
-    from mffit.window.guard import new_token
+    from mffit.window.guard import Entrance
+    from mffit.window.reading import ReadingProcess
     from mffit.window.recordings_folder import PROJECT, RecordingsFolder
     from mffit.window.session import Session
 
-    first, token = paths[0], new_token()
+    first = paths[0]
     if all(path.suffix.lower() == ".tir" for path in paths):
         shown = Opened(html=viewer.show(paths).html)
     elif len(paths) > 1:
@@ -52,22 +63,58 @@ def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], N
             "opens one project at a time; give this file alone, or property files only", file=first
         )
     elif first.is_dir() and not (first / PROJECT).exists():
-        shown = Opened(folder=RecordingsFolder(first))
+        shown = Opened(folder=RecordingsFolder(first), reading=ReadingProcess())
     else:
         session = Session(first / PROJECT if first.is_dir() else first)
         session.file.config()
-        shown = Opened(session)
+        shown = Opened(session, reading=ReadingProcess())
     with _listening(port) if port else _usual(first) as listening:
         port = listening.getsockname()[1]
-        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
+        said: list[str] = []
+
+        def say_new(used: str) -> None:
+            if used in said[-1:]:
+                said.append(entrance.new_address())
+                opened(f"http://{ADDRESS}:{port}{said[-1]}")
+
+        entrance = Entrance(say_new)
+        app = window_app(shown, entrance=entrance, port=port, closing=lambda: server.should_exit)
         settings = uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=2, lifespan="off")
         server = uvicorn.Server(settings)
         if shown.has_project:
             shown.session.run("fit")
-        opened(f"http://{ADDRESS}:{port}/{token}/")
-        with contextlib.suppress(KeyboardInterrupt):  # the usual end
-            server.run(sockets=[listening])
-        shown.end()
+        said.append(entrance.new_address())
+        opened(f"http://{ADDRESS}:{port}{said[-1]}")
+        with _leading_to(f"http://{ADDRESS}:{port}{entrance.new_address()}", port) as page:
+            if launch is not None and page is not None:
+                Thread(
+                    target=launch, args=(page,), daemon=True
+                ).start()  # a browser in the terminal would wait
+            with contextlib.suppress(KeyboardInterrupt):  # the usual end
+                server.run(sockets=[listening])
+        shown.stop()
+
+
+@contextlib.contextmanager
+def _leading_to(address: str, port: int) -> Iterator[Path | None]:
+    """A file that takes a browser to an address, in a folder of the user's own; None where there can be none.
+
+    Other users of the machine see with what a browser is started, so that is this file, which they cannot read.
+    """
+    folder = Path(click.get_app_dir("mffit")) / "windows"
+    page = folder / f"{port}.html"
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        page.unlink(missing_ok=True)
+        with os.fdopen(os.open(page, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as stream:
+            stream.write(f'<!doctype html><meta http-equiv="refresh" content="0; url={address}">')
+    except OSError:
+        yield None
+        return
+    try:
+        yield page
+    finally:
+        page.unlink(missing_ok=True)
 
 
 def _usual(path: Path) -> socket.socket:

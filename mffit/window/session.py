@@ -2,47 +2,76 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
-import stat
 import threading
-import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mffit.config import Config
-from mffit.config.loading import checked
-from mffit.config.toml_file import lines_of_keys
+from mffit.config.lines import ExcludeTable
+from mffit.config.loading import TYRE_TOML, checked
+from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
+from mffit.output import ChangedMeanwhile, save_over
+from mffit.sweeps import formats
+from mffit.sweeps.loading import check_excluded
 from mffit.window import constants
 from mffit.window.edits import EDITS
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
-from tir.writing import replace_file
+from mffit.window.settings import settings
 
 BOM = b"\xef\xbb\xbf"
 
 
 class Step(NamedTuple):
-    """A saved change: the bytes before it, and the digest after it."""
+    """A saved change: the bytes before and after it."""
 
     before: bytes
-    after: str
+    after: bytes
+
+
+class ChangedElsewhere(InputError):
+    """A change was meant for another content of the file than it has; ``versions`` are both, as differences to that content."""
+
+    def __init__(self, path: Path, seen: bytes, now: bytes, mine: bytes) -> None:
+        super().__init__(
+            "was changed elsewhere in the meantime; your change is not saved, that of the others is",
+            file=path,
+        )
+        self.versions = {"theirs": _difference(seen, now), "mine": _difference(seen, mine)}
+
+
+def _difference(before: bytes, after: bytes) -> str:
+    """The lines that differ, each with one around it."""
+    old, new = (content.decode("utf-8-sig", errors="replace").splitlines() for content in (before, after))
+    lines = list(difflib.unified_diff(old, new, n=1, lineterm=""))[2:]
+    return "\n".join("..." if line.startswith("@@") else line for line in lines)
 
 
 class ProjectFile:
     """A ``tyre.toml`` and the changes that the window made to it."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path.resolve()
+        self.path = path.absolute()  # a link lies in its own folder, with the files that it names
         self.steps: list[Step] = []
+        self._lines: dict[tuple[Path, int], np.ndarray] = {}  #: (n,) of the rows of a file, by path and time
+        self._shown: dict[str, bytes] = {}  #: contents that windows may have seen, by digest
 
     @property
     def digest(self) -> str:
         """Digest of the content as it is on the disk; empty if the file is gone."""
         try:
-            return digest_of(self.path.read_bytes())
+            content = self.path.read_bytes()
         except OSError:
             return ""
+        found = digest_of(content)
+        if found not in self._shown:
+            self._shown = dict([*self._shown.items()][1 - constants.MOST_UNDONE :]) | {found: content}
+        return found
 
     def config(self) -> Config:
         """The configuration as it is on the disk.
@@ -53,6 +82,10 @@ class ProjectFile:
             The file cannot be read or is wrong.
         """
         return self._checked(self._bytes())
+
+    def tables(self) -> dict[str, object]:
+        """The content as it is on the disk; raises as :meth:`config`."""
+        return tables_of(self._bytes(), self.path, TYRE_TOML)[0]
 
     def edit(self, change: Callable[[str], str], seen: str) -> None:
         """Write the changed text, if the file is still the one that was seen and the new one is a right ``tyre.toml``.
@@ -68,23 +101,29 @@ class ProjectFile:
             The file was changed by another program or another window, or the new content would be refused; nothing is written.
         """
         before = self._bytes()
-        if digest_of(before) != seen:
-            raise InputError(
-                "was changed elsewhere in the meantime; look at it as it is shown now, and repeat",
-                file=self.path,
-            )
-        text, _ = self._parsed(before)
         try:
-            after = (BOM if before.startswith(BOM) else b"") + change(text).encode()
+            if digest_of(before) != seen:
+                raise ChangedMeanwhile(before)
+            after = self._changed(before, change)
+            if after == before:
+                return
+            self._refuse_lines(self._checked(after), self._excluded(before))
+            save_over(self.path, before, after)
+        except ChangedMeanwhile as error:
+            shown = self._shown.get(seen, before)
+            raise ChangedElsewhere(self.path, shown, error.now, self._changed(shown, change)) from None
+        self.steps = [*self.steps[1 - constants.MOST_UNDONE :], Step(before, after)]
+
+    def _changed(self, before: bytes, change: Callable[[str], str]) -> bytes:
+        """The content after a change."""
+        tables_of(before, self.path, TYRE_TOML)
+        text = before.decode("utf-8-sig")
+        try:
+            return (BOM if before.startswith(BOM) else b"") + change(text).encode()
         except UnicodeEncodeError:
             raise InputError(
                 "cannot hold a character of the new text; leave it away", file=self.path
             ) from None
-        if after == before:
-            return
-        self._checked(after)
-        self._write(after)
-        self.steps = [*self.steps[1 - constants.MOST_UNDONE :], Step(before, digest_of(after))]
 
     def undo(self) -> None:
         """Take back the last change that the window saved.
@@ -94,15 +133,20 @@ class ProjectFile:
         InputError
             There is none, or the file was changed elsewhere since.
         """
-        if not self.can_undo:
+        try:
+            step = self.steps.pop()
+            save_over(self.path, step.after, step.before)
+        except (IndexError, ChangedMeanwhile):
             self.steps = []
-            raise InputError("has no change of this window to undo", file=self.path)
-        self._write(self.steps.pop().before)
+            raise InputError("has no change of this window to undo", file=self.path) from None
+        except InputError:
+            self.steps.append(step)
+            raise
 
     @property
     def can_undo(self) -> bool:
         """Whether the last change of the window can be taken back."""
-        return bool(self.steps) and self.steps[-1].after == self.digest
+        return bool(self.steps) and digest_of(self.steps[-1].after) == self.digest
 
     def _bytes(self) -> bytes:
         try:
@@ -110,26 +154,28 @@ class ProjectFile:
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror}); put it back", file=self.path) from None
 
-    def _parsed(self, content: bytes) -> tuple[str, dict[str, object]]:
-        """Text and tables."""
-        try:
-            text = content.decode("utf-8-sig")
-            return text, tomllib.loads(text)
-        except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise InputError(f"is not valid TOML ({error}); correct it", file=self.path) from None
-
     def _checked(self, content: bytes) -> Config:
-        text, tables = self._parsed(content)
-        return checked(tables, path=self.path, folder=self.path.parent, lines=lines_of_keys(text))
+        tables, lines = tables_of(content, self.path, TYRE_TOML)
+        return checked(tables, path=self.path, folder=self.path.parent, lines=lines)
 
-    def _write(self, content: bytes) -> None:
-        """Replace the file only when the new one is complete."""
+    def _excluded(self, content: bytes) -> Sequence[ExcludeTable]:
+        """The entries of ``[fit] exclude``; none if the file is wrong elsewhere."""
         try:
-            replace_file(self.path, content, stat.S_IMODE(self.path.stat().st_mode))
-        except OSError as error:
-            raise InputError(
-                f"cannot be written ({error.strerror}); check the folder's permissions", file=self.path
-            ) from None
+            return self._checked(content).fit.exclude
+        except InputError:
+            return ()
+
+    def _refuse_lines(self, config: Config, known: Sequence[ExcludeTable]) -> None:
+        """Refuse new entries of ``[fit] exclude`` that a build would refuse, if their file can be read."""
+        for file in {one.file for one in config.fit.exclude if one not in known}:
+            path = config.folder / file
+            try:
+                key = (path, path.stat().st_mtime_ns)
+                if key not in self._lines:
+                    self._lines[key] = np.asarray(formats.read(path).lines)
+            except (OSError, InputError):  # a build will say why
+                continue
+            check_excluded(config, file, self._lines[key])
 
 
 def digest_of(content: bytes) -> str:
@@ -189,6 +235,10 @@ class Session:
                 self.file.edit(lambda text: EDITS[name](text, **arguments), seen)
             except TypeError:
                 raise InputError(f"{name} cannot be done with {', '.join(arguments) or 'nothing'}") from None
+
+    def settings(self) -> list[dict[str, Any]]:
+        """What can be set beside coefficients, as in :func:`mffit.window.settings.settings`."""
+        return settings(self.file.tables())
 
     def undo(self) -> None:
         """Take back the last saved change."""

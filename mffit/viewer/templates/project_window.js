@@ -6,14 +6,8 @@ const say = (sentence, bad = false) => {
   byId("status").classList.toggle("bad", bad);
 };
 async function post(address, body = {}, refused = found => say(found.error, true)) {
-  let answer;
-  try {
-    answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
-  } catch {
-    return lost();
-  }
-  if (answer.status === 403) return lost();
-  const found = await answer.json().catch(() => ({error: `The server answered with status ${answer.status}; see the terminal.`}));
+  const found = await asked(address, say, sent(body));
+  if (!found) return lost();
   if (found.state) setLive(found.state);
   if (found.error) refused(found);
   return !found.error;
@@ -24,14 +18,21 @@ function lost() {
   return false;
 }
 // One change after the other: each is meant for the file as the one before left it. A refusal is said at the place of the click.
-function edit(name, given, refused) {
-  waiting = waiting.then(async () => {
-    const done = await post("edit", {do: name, seen: live.digest, with: given}, refused);
+function edit(name, given, refused = found => say(found.error, true)) {
+  const change = async () => {
+    const done = await post("edit", {do: name, seen: live.digest, with: given}, found => found.versions ? showBoth(found.versions) : refused(found));
     if (done) moves.push({edit: true});
     if (project) frame();
     return done;
-  });
-  return waiting;
+  };
+  const showBoth = versions => {
+    const dialog = byId("both");
+    for (const [whose, lines] of Object.entries(versions)) byId(`both-${whose}`).textContent = lines || "nothing";
+    dialog.returnValue = "";
+    dialog.onclose = () => { if (dialog.returnValue === "yes") waiting = waiting.then(change); };
+    dialog.showModal();
+  };
+  return waiting = waiting.then(change);
 }
 canUndo = () => live.can_undo;
 undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
@@ -127,6 +128,7 @@ chosenActions = () => {
 function setLive(state) {
   live = state;
   ended = false;
+  showSettings();
   if (!live.can_undo) moves = moves.filter(one => one.trial);  // another program has changed the file since
   if (live.fits !== shownFit && live.fits > 0) return bring();
   if (project) {
@@ -143,10 +145,9 @@ function setLive(state) {
 async function bring() {
   if (fetching) return;
   fetching = true;
-  const answer = await fetch("project").catch(() => null), wantedFit = live.fits;
+  const wantedFit = live.fits, data = await asked("project", say);
   fetching = false;
-  if (!answer || !answer.ok) return lost();
-  const data = await answer.json();
+  if (!data || data.error) return lost();
   if (project && (data.turn_slip !== project.turn_slip || data.star !== project.star)) return location.reload();
   if (shownFit >= 0) {  // a new fit: what the sliders tried is over
     trial = {};
@@ -164,7 +165,7 @@ function showStatus() {
   byId("stop").hidden = !live.run;
   byId("undo").disabled = !moves.length && !live.can_undo;
   showLinks();
-  if (ended) return say("The server of this window has ended. Everything that you saved is in tyre.toml; run `mffit open` again, and this page follows.", true);
+  if (ended) return say(ENDED, true);
   if (live.problem) return say(live.problem, true);
   if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
@@ -188,22 +189,67 @@ function showLinks() {
   byId("links").replaceChildren(...parts);
 }
 
-// A file that is dropped here would replace the page.
-addEventListener("dragover", event => event.preventDefault());
-addEventListener("drop", event => {
-  event.preventDefault();
-  const names = [...event.dataTransfer.files].map(file => file.name);
-  if (names.length) say(`${names.join(", ")}: not added, because a project is open. Copy it into the folder of tyre.toml and add [[sweep]] with file = "${names[0]}" there; this page then follows.`, true);
-});
+// ---- settings: every key of tyre.toml that is one value, with its default; empty fields are not written
+let settingsOf = "";
+async function showSettings() {
+  const box = byId("settings"), home = box.querySelector("div");
+  if (!box.open || ended || settingsOf === live.digest) return;
+  settingsOf = live.digest;
+  const tables = await asked("settings", say);
+  if (!Array.isArray(tables)) return;
+  const open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key)), at = document.activeElement.id;
+  home.replaceChildren();
+  for (const {title, table, file, keys} of tables) {
+    const inner = details(home, title, title, open.has(title)), written = keys.filter(one => one.value).length;
+    if (written) inner.querySelector("summary").append(element("span", "unit", ` ${written} written`));
+    for (const one of keys) inner.append(settingRow(one, `setting ${title} ${one.key}`, value => ({table, key: one.key, value, ...(file ? {file} : {})})));
+  }
+  if (at && byId(at)) byId(at).focus();
+}
+function settingRow({key: name, value, default: usual, choices}, id, change) {
+  const line = element("div", "setting"), label = element("label", "", name), problem = element("p", "problem");
+  const field = document.createElement(choices.length ? "select" : "input");
+  if (choices.length) field.append(new Option(`(${usual || "none"})`, ""), ...choices.map(text => new Option(text, text)));
+  else field.placeholder = usual || "none";
+  Object.assign(field, {id, value});
+  label.htmlFor = id;
+  problem.setAttribute("role", "alert");
+  line.classList.toggle("written", value !== "");
+  field.addEventListener("change", () => { problem.textContent = ""; edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; }); });
+  line.append(label, field, problem);
+  return line;
+}
+byId("settings").addEventListener("toggle", showSettings);
+
+takesRecordings(say, refusals => { if (refusals.length) say(refusals.join(" "), true); else location.assign("add"); });
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
-const events = new EventSource("events");
-events.onmessage = message => setLive(JSON.parse(message.data));
-events.onerror = () => { ended = true; showStatus(); };
 // A server that was started again has another address: its page says so to those of the old one, which follow with their view.
 const windows = new BroadcastChannel("mffit window"), here = {project: live.project, address: location.pathname};
+function heard({state = null}) {
+  if (state) return setLive(state);
+  ended = true;
+  showStatus();
+}
 windows.onmessage = ({data}) => {
-  if (data.project === here.project && data.address !== here.address && /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
+  if (data.address === here.address) return heard(data);
+  if (data.project === here.project && /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
 };
-windows.postMessage(here);
+windows.postMessage({...here, state: live});
+// Of all pages that are seen, one listens to the server and tells the others: a browser has six connections for all of them.
+let quiet = new AbortController();
+function listen() {
+  quiet.abort();
+  const {signal} = quiet = new AbortController();
+  if (document.hidden) return;
+  asked("state", say).then(found => { if (!signal.aborted && found && !found.error) setLive(found); });
+  navigator.locks.request(`mffit ${here.address}`, {signal}, () => new Promise(done => {
+    const events = new EventSource("events"), tell = news => { heard(news); windows.postMessage({...here, ...news}); };
+    signal.addEventListener("abort", () => { events.close(); done(); });
+    events.onmessage = message => tell({state: JSON.parse(message.data)});
+    events.onerror = () => tell({});
+  })).catch(() => {});  // it was hidden before its turn
+}
+document.addEventListener("visibilitychange", listen);
+listen();
 showStatus();

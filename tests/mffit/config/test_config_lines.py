@@ -50,6 +50,8 @@ def test_a_list_of_lines(text, ranges):
         "3:5",
         "\u0663",
         "9" * 30,
+        "9" * 5000,  # Python reads no number of so many digits
+        "0" * 5000,
     ],
 )
 def test_what_is_no_list_of_lines_is_refused_with_a_remedy(text):

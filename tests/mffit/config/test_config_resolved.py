@@ -6,10 +6,10 @@ import shutil
 from pathlib import Path
 
 import pytest
-import tomli_w
 from test_config_loading import COMPLETE, MINIMAL
 
 from mffit import config
+from mffit.config.toml_file import toml_text
 from mffit.errors import InputError
 
 
@@ -21,7 +21,7 @@ def settings(found: config.Config) -> dict:
 def written(found: config.Config, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "resolved.toml"
-    path.write_bytes(tomli_w.dumps(config.resolved(found, folder)).encode())
+    path.write_bytes(toml_text(config.resolved(found, folder)).encode())
     return path
 
 
@@ -30,7 +30,8 @@ def test_it_means_the_same_and_names_the_same_files(tmp_path):
         (tmp_path / "tyre.toml").write_text(text)
         found = config.load(tmp_path / "tyre.toml")
         for folder in (tmp_path / "out", tmp_path, tmp_path.parent / "elsewhere"):
-            again = config.load(written(found, folder))
+            again = config.load(path := written(found, folder))
+            assert path.read_text(encoding="utf-8").count("[[sweep]]\n") == len(found.sweep)
             assert settings(again) == settings(found)
             for sweep, original in zip(again.sweep, found.sweep, strict=True):
                 assert (again.folder / sweep.file).resolve() == (tmp_path / original.file).resolve()

@@ -102,3 +102,13 @@ def test_what_is_below_the_limit_is_read(tmp_path, monkeypatch, order):
     alpha = np.random.default_rng(1).standard_normal(50_000).astype(f"{order}f8")
     scipy.io.savemat(tmp_path / "a.mat", {"SA": alpha[:, None], "FY": alpha[:, None]}, do_compression=True)
     np.testing.assert_array_equal(formats.read(tmp_path / "a.mat").column("SA"), alpha)
+
+
+def test_a_small_file_holds_little(tmp_path):
+    """Whatever the largest recording is: rows that are all alike, which no rig reads."""
+    packed_text(tmp_path / "a.csv.gz")
+    with pytest.raises(InputError, match="holds more than 4 MB when unpacked"):
+        formats.read(tmp_path / "a.csv.gz")
+    noise = np.random.default_rng(1).standard_normal((100_000, 2))
+    pd.DataFrame(noise, columns=["alpha_deg", "Fy_N"]).round(3).to_csv(tmp_path / "b.csv.gz", index=False)
+    assert len(formats.read(tmp_path / "b.csv.gz")) == 100_000

@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -256,26 +256,53 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     assert ask(page, "window.hacked") is None
 
 
+def enter(browser: Any, address: str) -> str:
+    """Open a window by an address that lets one browser in; returns the address of its page."""
+    browser.get(address)
+    until(lambda: "/enter/" not in browser.current_url and browser.find_elements("id", "status"))
+    return browser.current_url.partition("#")[0]
+
+
 @contextmanager
-def served(shown: Any, token: str, port: int = 0) -> Iterator[str]:
-    """Address of a window whose server runs in this process."""
+def served(shown: Any, port: int = 0) -> Iterator[str]:
+    """Address, for one browser, of a window whose server runs in this process."""
     uvicorn = pytest.importorskip("uvicorn")
     from mffit.window.app import window_app
+    from mffit.window.guard import Entrance
     from mffit.window.serving import _listening
 
     with _listening(port) as listening:
         port = listening.getsockname()[1]
-        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
+        entrance = Entrance()
+        app = window_app(shown, entrance=entrance, port=port, closing=lambda: server.should_exit)
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="error", lifespan="off", timeout_graceful_shutdown=1)
         )
         thread = Thread(target=server.run, kwargs={"sockets": [listening]})
         thread.start()
         try:
-            yield f"http://127.0.0.1:{port}/{token}/"
+            yield f"http://127.0.0.1:{port}{entrance.new_address()}"
         finally:
             server.should_exit = True
             thread.join()
+
+
+def test_a_file_leads_into_the_window_and_the_address_bar_has_no_key(browser, tyre_toml):
+    """As `mffit open` starts a browser: cookies of SameSite=Strict stay behind where a file redirects."""
+    from mffit.window.app import Opened
+    from mffit.window.serving import _leading_to
+
+    with served(Opened(Session(tyre_toml))) as address, _leading_to(address, 1) as page:
+        home = enter(browser, page.as_uri())
+        assert urlsplit(home).netloc == urlsplit(address).netloc
+        assert ask(browser, "document.cookie") == ""
+        (cookie,) = [one for one in browser.get_cookies() if one["name"] == "mffit"]
+        assert (cookie["httpOnly"], cookie["sameSite"]) == (True, "Strict")
+        assert cookie["value"] not in home
+        browser.refresh()
+        assert browser.find_elements("id", "status")
+        shown = browser.execute_cdp_cmd("Page.getNavigationHistory", {})["entries"]
+        assert [entry["url"] for entry in shown if "/enter/" in entry["url"]] == []
 
 
 def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, result):
@@ -285,18 +312,25 @@ def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, resu
     session = Session(tyre_toml)
     session.data, session.fits, session._fitted = mffit.viewer.project_data(result) | {"before": None}, 1, ""
     first = browser.current_window_handle
-    with served(Opened(session), "first-token") as address:
-        browser.get(address)
+    with served(Opened(session)) as address:
+        old = enter(browser, address)
         ask(browser, "mffit.move('PCY1', 1.5)")
     until(lambda: "has ended" in browser.find_element("id", "status").text)
-    with served(Opened(session), "second-token", urlsplit(address).port) as again:
+    with served(Opened(session), urlsplit(address).port) as again:
         browser.switch_to.new_window("tab")
-        browser.get(again)
+        new = enter(browser, again)
+        assert new != old
         browser.close()
         browser.switch_to.window(first)
-        until(lambda: browser.current_url.startswith(again))
+        until(lambda: browser.current_url.startswith(new))
         assert ask(browser, "mffit.trial()") == {"PCY1": 1.5}
         until(lambda: "has ended" not in browser.find_element("id", "status").text)
+
+
+def drop(browser: Any, path: Path) -> None:
+    files = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        browser.execute_cdp_cmd("Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files})
 
 
 def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original, tmp_path):
@@ -308,19 +342,16 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
     shutil.copy(original.parent / "sideslip_900.csv", tmp_path / "run")
     shutil.copy(original.parent / "camber_900.csv", tmp_path / "run" / "deep")
     (tmp_path / "run" / "photo.jpg").write_bytes(b"jpg")
-    with served(Opened(folder=RecordingsFolder(tmp_path / "empty")), "a-token") as address:
-        browser.get(address)
+    console_errors(browser)  # of other tests
+    with served(Opened(folder=RecordingsFolder(tmp_path / "empty"))) as address:
+        enter(browser, address)
         until(lambda: "No recordings here yet" in browser.find_element("id", "status").text)
-        files = {"items": [], "files": [str(tmp_path / "run")], "dragOperationsMask": 1}
-        for kind in ("dragEnter", "dragOver", "drop"):
-            browser.execute_cdp_cmd(
-                "Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files}
-            )
-        until(lambda: ask(browser, "document.getElementById('ask').open"))
-        assert "these 2 recordings" in browser.find_element("id", "ask-about").text
-        assert "1 other file" in browser.find_element("id", "ask-about").text
+        drop(browser, tmp_path / "run")
+        until(lambda: ask(browser, "document.getElementById('store').open"))
+        assert "these 2 recordings" in browser.find_element("id", "store-about").text
+        assert "1 other file" in browser.find_element("id", "store-about").text
         assert list((tmp_path / "empty").iterdir()) == []
-        press(browser, "#ask button.main")
+        press(browser, "#store button.main")
         until(lambda: browser.find_elements("css selector", "#groups tr"))
         stored = sorted(path.name for path in (tmp_path / "empty").iterdir())
         assert stored == ["camber_900.csv", "sideslip_900.csv"]
@@ -342,12 +373,138 @@ def window(tyre_toml: Path) -> Iterator[tuple[str, subprocess.Popen]]:
         process.communicate()
 
 
+def fitted(tyre_toml: Path, result: Any) -> Any:
+    """An open project whose first fit has finished."""
+    from mffit.window.app import Opened
+
+    session = Session(tyre_toml)
+    session.data, session.fits = mffit.viewer.project_data(result) | {"before": None}, 1
+    session._fitted = session.file.digest
+    return Opened(session)
+
+
+def test_each_of_eight_tabs_saves(browser, tyre_toml, result):
+    """All of them show what each saved; a headless browser says that all are seen, as windows side by side are."""
+    first = browser.current_window_handle
+    with served(fitted(tyre_toml, result)) as address:
+        home, tabs = enter(browser, address), [first]
+        for _ in range(7):
+            browser.switch_to.new_window("tab")
+            browser.get(home)
+            tabs.append(browser.current_window_handle)
+        for k, tab in enumerate(tabs):
+            browser.switch_to.window(tab)
+            ask(browser, f"mffit.move('PEY1', {-0.5 - 0.01 * k})")
+            press(browser, ".coefficient[data-name=PEY1] .keys button")
+            until(lambda k=k: f"PEY1 = {-0.5 - 0.01 * k:g}" in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        for tab in tabs:
+            browser.switch_to.window(tab)
+            until(lambda: ask(browser, "mffit.data().hand.PEY1") == -0.57, 5.0)
+        for tab in tabs[1:]:
+            browser.switch_to.window(tab)
+            browser.close()
+        browser.switch_to.window(first)
+        browser.get("about:blank")
+
+
+def test_a_recording_dropped_on_an_open_project_is_shown_and_added(browser, tyre_toml, result, tmp_path):
+    before = tyre_toml.read_text(encoding="utf-8")
+    entry = '[[sweep]]\nfile = "camber_900.csv"\n'
+    tyre_toml.write_text(before.replace(entry, ""), encoding="utf-8")
+    shutil.move(tyre_toml.with_name("camber_900.csv"), tmp_path / "rolls_backward.csv")
+    opened = fitted(tyre_toml, result)
+    with served(opened) as address:
+        home = enter(browser, address)
+        console_errors(browser)  # of other tests
+        drop(browser, tmp_path / "rolls_backward.csv")
+        until(lambda: ask(browser, "document.getElementById('store').open"))
+        press(browser, "#store button.main")
+        until(lambda: browser.find_elements("css selector", "#groups tr"))
+        assert browser.current_url == f"{home}add"
+        assert "Fy_N" in [
+            select.get_attribute("value")
+            for select in browser.find_elements("css selector", "#groups td select")
+        ]
+        back = browser.find_element("css selector", ".files label:last-child input")
+        assert back.is_selected()
+        press(browser, ".files label:last-child input")  # its name is wrong
+        assert not any(field.is_displayed() for field in browser.find_elements("css selector", "#tyre, #rig"))
+        assert ask(browser, "document.documentElement.scrollWidth") <= SCREEN
+        press(browser, "#choice button.main")
+        until(lambda: "rolls_backward.csv" in tyre_toml.read_text(encoding="utf-8"), 30.0)
+        until(lambda: browser.current_url.partition("#")[0] == home)
+        until(lambda: not ask(browser, "document.getElementById('undo').disabled"))
+        assert "direction" not in tyre_toml.read_text(encoding="utf-8")
+        assert console_errors(browser) == []
+        browser.get("about:blank")
+
+
+def test_a_save_of_another_program_is_shown_beside_the_click(browser, tyre_toml, result):
+    opened = fitted(tyre_toml, result)
+    session = opened.session
+    with served(opened) as address:
+        enter(browser, address)
+        edit = session.edit
+
+        def late(name: str, seen: str, arguments: dict[str, Any]) -> None:
+            session.edit = edit
+            tyre_toml.write_bytes(tyre_toml.read_bytes() + b"# theirs\n")
+            edit(name, seen, arguments)
+
+        session.edit = late
+        ask(browser, "mffit.move('PEY1', -0.5)")
+        press(browser, ".coefficient[data-name=PEY1] .keys button")
+        until(lambda: ask(browser, "document.getElementById('both').open"), 10.0)
+        assert "+# theirs" in browser.find_element("id", "both-theirs").text
+        assert "+PEY1 = -0.5" in browser.find_element("id", "both-mine").text
+        assert "PEY1" not in tyre_toml.read_text(encoding="utf-8")
+        press(browser, "#both button.main")
+        until(lambda: "PEY1 = -0.5" in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        assert "# theirs" in tyre_toml.read_text(encoding="utf-8")
+        browser.get("about:blank")
+
+
+def test_settings_are_seen_changed_and_refused_in_their_place(browser, tyre_toml, result):
+    with served(fitted(tyre_toml, result)) as address:
+        enter(browser, address)
+        press(browser, "#settings summary")
+        row = "document.getElementById('setting [normal] weight')"
+        until(lambda: ask(browser, f"{row} !== null"))
+        ask(browser, f"({row}.value = '\"road\"', {row}.dispatchEvent(new Event('change')))")
+        until(lambda: 'weight = "road"' in tyre_toml.read_text(encoding="utf-8"), 10.0)
+        until(lambda: "differs from the fit" in browser.find_element("id", "status").text, 10.0)
+        until(lambda: ask(browser, f"{row}.value") == '"road"', 10.0)
+        row = "document.getElementById('setting [tyre] nominal_load')"
+        ask(browser, f"({row}.value = '1.4', {row}.dispatchEvent(new Event('change')))")
+        until(lambda: "looks like kilonewtons" in ask(browser, f"{row}.parentNode.textContent"), 10.0)
+        for width in (PHONE, SCREEN):
+            look(browser, width)
+            assert ask(browser, "document.documentElement.scrollWidth") <= width
+        browser.get("about:blank")
+
+
+def test_a_call_without_an_answer_says_so(browser, tyre_toml, result):
+    opened = fitted(tyre_toml, result)
+    session, go = opened.session, Event()
+    with served(opened) as address:
+        enter(browser, address)
+        edit = session.edit
+        session.edit = lambda *given: (go.wait(30.0), edit(*given))[1]
+        ask(browser, "mffit.move('PEY1', -0.5)")
+        press(browser, ".coefficient[data-name=PEY1] .keys button")
+        until(lambda: "No answer for 3 s" in browser.find_element("id", "status").text, 10.0)
+        go.set()
+        until(lambda: "differs from the fit" in browser.find_element("id", "status").text, 10.0)
+        assert "PEY1 = -0.5" in tyre_toml.read_text(encoding="utf-8")
+        browser.get("about:blank")
+
+
 def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml):
     """A walk: what is shown at its end is what mffit build gives for the file that was saved on the way."""
     before = tyre_toml.read_text(encoding="utf-8")
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
-    with window(tyre_toml) as (address, process):
-        browser.get(address)
+    with window(tyre_toml) as (once, process):
+        address = enter(browser, once)
         until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
         ask(browser, "mffit.move('PEY1', -0.9)")
         press(browser, ".coefficient[data-name=PEY1] .keys button")

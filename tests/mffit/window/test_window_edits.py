@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import random
+import threading
+import time
 import tomllib
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -10,8 +15,12 @@ from hypothesis import strategies as st
 
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
-from mffit.window.edits import EDITS, coefficient, leave_out, take_back
-from mffit.window.session import ProjectFile
+from mffit.window.edits import EDITS, coefficient, leave_out, setting, take_back
+from mffit.window.session import ChangedElsewhere, ProjectFile
+from mffit.window.settings import settings
+
+ROOT = Path(__file__).parents[3]
+LEFT_OUT = 'exclude = [ { file = "sideslip_1400.csv", lines = "4", why = "belt tracking" } ]  # by Anna'
 
 TEXT = """# the front tyre
 [tyre]
@@ -191,11 +200,141 @@ def test_changes_of_others_are_neither_overwritten_nor_undone(tyre_toml):
     assert tyre_toml.read_text(encoding="utf-8") == mine
 
 
+def test_thirty_of_thirty_saves_of_another_program_are_kept(tyre_toml):
+    """At any time while a click is saved; a click that was too late is refused with both versions."""
+    file, draw, before = ProjectFile(tyre_toml), random.Random(31), tyre_toml.read_bytes()
+    begun, seen = time.perf_counter(), file.digest
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.31), seen)
+    duration, refused = time.perf_counter() - begun, []
+    for k in range(30):
+        tyre_toml.write_bytes(before)
+        seen, theirs, other = file.digest, before + b"# theirs %d\n" % k, tyre_toml.with_name("other")
+
+        def save(
+            content: bytes = theirs, wait: float = draw.uniform(0.0, duration), to: Path = other
+        ) -> None:
+            time.sleep(wait)
+            to.write_bytes(content)
+            os.replace(to, tyre_toml)
+
+        thread = threading.Thread(target=save)
+        thread.start()
+        try:
+            file.edit(lambda text: coefficient(text, name="PCY1", entry=1.32), seen)
+        except ChangedElsewhere as error:
+            refused.append(error.versions)
+        thread.join()
+        assert tyre_toml.read_bytes() == theirs
+    for both in refused:
+        assert "+# theirs" in both["theirs"]
+        assert "+PCY1 = 1.32" in both["mine"]
+
+
+def test_both_versions_are_shown(tyre_toml):
+    file, seen = ProjectFile(tyre_toml), ProjectFile(tyre_toml).digest
+    assert file.digest == seen  # shown in a window
+    tyre_toml.write_bytes(tyre_toml.read_bytes() + b"# theirs\n")
+    with pytest.raises(ChangedElsewhere) as error:
+        file.edit(lambda text: coefficient(text, name="PCY1", entry=1.32), seen)
+    assert [line for line in error.value.versions["theirs"].splitlines() if line[0] == "+"] == ["+# theirs"]
+    mine = [line for line in error.value.versions["mine"].splitlines() if line[0] == "+"]
+    assert "+PCY1 = 1.32" in mine
+    assert "+# theirs" not in mine
+
+
+def test_a_link_is_read_and_saved_beside_its_own_files(tyre_toml):
+    """The file that it leads to lies in another folder, where no recording is."""
+    away = tyre_toml.parent.parent / "away.toml"
+    tyre_toml.rename(away)
+    tyre_toml.symlink_to(away)
+    file = ProjectFile(tyre_toml)
+    file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
+    assert tyre_toml.is_symlink()
+    assert b"PCY1 = 1.35" in away.read_bytes()
+    assert file.config().folder == tyre_toml.parent
+    file.undo()
+    assert b"PCY1 = 1.35" not in away.read_bytes()
+
+
 def test_a_mark_of_the_encoding_stays(tyre_toml):
     tyre_toml.write_bytes(b"\xef\xbb\xbf" + tyre_toml.read_bytes())
     file = ProjectFile(tyre_toml)
     file.edit(lambda text: coefficient(text, name="PCY1", entry=1.35), file.digest)
     assert tyre_toml.read_bytes().startswith(b"\xef\xbb\xbf#")
+
+
+def test_every_setting_is_offered_and_saved(tyre_toml):
+    """Its default, written down, means the same; the keys are those of the documentation."""
+    file = ProjectFile(tyre_toml)
+    whole, documented = file.config(), (ROOT / "docs" / "configuration.md").read_text(encoding="utf-8")
+    listed = settings(file.tables())
+    assert {one["table"] for one in listed} >= {"tyre", "rig", "fit", "normal", "spin", "sweep"}
+    text = tyre_toml.read_text(encoding="utf-8")
+    for one in listed:
+        for key in one["keys"]:
+            assert f"`{key['key']}`" in documented
+            if key["default"] in ("", "required") or key["value"] or key["key"] == "u_path_radius":
+                continue
+            text = setting(text, table=one["table"], file=one["file"], key=key["key"], value=key["default"])
+    tyre_toml.write_text(text, encoding="utf-8")
+    given = [key for one in settings(file.tables()) for key in one["keys"] if key["value"]]
+    assert len(given) > 50
+    assert file.config().model_dump() == whole.model_dump()
+    assert LEFT_OUT in text
+
+
+def test_another_name_of_a_choice_is_shown():
+    _, rig, *_ = settings({"rig": {"axes": "calspan"}})
+    (axes,) = [key for key in rig["keys"] if key["key"] == "axes"]
+    assert (axes["value"], axes["choices"][-1]) == ('"calspan"', '"calspan"')
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"table": "tyre", "key": "size", "value": "120/70 ZR17"}, 'size = "120/70 ZR17"'),
+        ({"table": "tyre", "key": "size", "value": '"17"'}, 'size = "17"'),
+        ({"table": "normal", "key": "weight", "value": '"road"'}, 'weight = "road"'),
+        ({"table": "fit", "key": "wear", "value": "true"}, "wear = true"),
+        ({"table": "lab", "key": "measured", "value": "2026-03-01"}, "measured = 2026-03-01"),
+        (
+            {"table": "rig", "key": "u_Fx_offset_N", "value": "{ value = 20.0, dof = 5 }"},
+            "u_Fx_offset_N = { value = 20.0, dof = 5 }",
+        ),
+        ({"table": "sweep", "file": "camber_900.csv", "key": "setup", "value": "second"}, 'setup = "second"'),
+    ],
+)
+def test_a_setting_is_one_line(tyre_toml, given, line):
+    before = tyre_toml.read_text(encoding="utf-8")
+    after = setting(before, **given)
+    gone, new = changed_lines(before, after)
+    assert gone == set()
+    assert {one.strip() for one in new if one.strip() and one[0] != "["} == {line}
+    file = ProjectFile(tyre_toml)
+    file.edit(lambda text: setting(text, **given), file.digest)
+    assert (
+        setting(after, **{**given, "value": ""}).replace("[normal]", "").replace("[lab]", "").split()
+        == before.split()
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"table": "coefficients", "key": "PCY1", "value": "1"}, "no settings here"),
+        ({"table": "normal", "key": "weight", "value": '"rode"'}, "weight"),
+        ({"table": "normal", "key": "wait", "value": "1"}, "did you mean"),
+        ({"table": "tyre", "key": "width", "value": "1\nbase = 'x'"}, "is no value"),
+        ({"table": "tyre", "key": "width", "value": "[1"}, "is no value"),
+        ({"table": "tyre", "key": "nominal_load", "value": ""}, "missing"),
+        ({"table": "sweep", "file": "none.csv", "key": "setup", "value": "b"}, "load this page again"),
+    ],
+)
+def test_a_setting_that_a_build_would_refuse_is_not_saved(tyre_toml, given, sentence):
+    file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
+    with pytest.raises(InputError, match=sentence):
+        file.edit(lambda text: setting(text, **given), file.digest)
+    assert tyre_toml.read_bytes() == before
 
 
 def test_every_edit_is_known_by_its_name():

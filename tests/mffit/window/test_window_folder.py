@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,6 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from flat_belt import drive_recording, recording, write_mat
+from inside import client_of
 
 from mffit import config, points
 from mffit.errors import InputError
@@ -17,13 +21,12 @@ from mffit.pipeline import init_from
 from mffit.recordings import DiscPath, Stated
 
 pytest.importorskip("starlette")
-testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
+from mffit.window.app import Opened
+from mffit.window.edits import add_recordings
+from mffit.window.reading import ReadingProcess
+from mffit.window.recordings_folder import RecordingsFolder
+from mffit.window.session import Session
 
-from mffit.window.app import Opened, window_app  # noqa: E402
-from mffit.window.recordings_folder import RecordingsFolder  # noqa: E402
-
-TOKEN, PORT = "a-token-of-the-test", 8124
-HERE = f"http://127.0.0.1:{PORT}"
 DISC = Path(__file__).parents[3] / "samples" / "front-120-70"
 TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
 BELT = {"type": "flat-track", "axes": "iso", "path_radius": None, "path_centre": "left"}
@@ -118,7 +121,7 @@ def test_the_window_and_the_command_make_the_same_project(tmp_path, kind):
 
 
 def test_the_form_has_every_field_that_a_project_is_made_of():
-    script = files("mffit.window").joinpath("templates", "recordings.js").read_text(encoding="utf-8")
+    script = files("mffit.viewer").joinpath("templates", "recordings.js").read_text(encoding="utf-8")
     path = {"disc": ("path_radius", "path_centre"), "belt": ("type",)}
     names = [name for field in Stated._fields for name in path.get(field, (field,))]
     assert [name for name in names if f'"{name}"' not in script] == []
@@ -225,16 +228,17 @@ def test_one_file_that_is_no_recording_leaves_the_others_recognised(folder, orig
 
 @pytest.fixture
 def client(folder):
-    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
-    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as found:
+    with client_of(Opened(folder=RecordingsFolder(folder))) as found:
         yield found
 
 
 def test_a_dropped_recording_is_stored_and_recognised(client, folder, original):
     content = (original.parent / "sideslip_900.csv").read_bytes()
-    assert client.post(f"/{TOKEN}/store/added%20one.csv", content=content).json() == {"name": "added one.csv"}
+    assert client.post(f"{client.home}store/added%20one.csv", content=content).json() == {
+        "name": "added one.csv"
+    }
     assert (folder / "added one.csv").read_bytes() == content
-    names = [f["name"] for g in client.get(f"/{TOKEN}/recordings").json()["groups"] for f in g["files"]]
+    names = [f["name"] for g in client.get(f"{client.home}recordings").json()["groups"] for f in g["files"]]
     assert sorted(names) == ["added one.csv", "camber_1400.csv", "sideslip_1400.csv"]
 
 
@@ -253,16 +257,16 @@ def test_a_dropped_recording_is_stored_and_recognised(client, folder, original):
 )
 def test_nothing_is_overwritten_and_nothing_else_is_stored(client, folder, name):
     before = {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()}
-    answer = client.post(f"/{TOKEN}/store/{name}", content=b"x")
+    answer = client.post(f"{client.home}store/{name}", content=b"x")
     assert answer.status_code in (404, 422)
     assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
 
 
 def test_a_recording_that_is_too_large_or_from_elsewhere_is_refused(client, folder, monkeypatch):
     monkeypatch.setattr("mffit.window.constants.LARGEST_RECORDING", 10)
-    assert "larger than" in client.post(f"/{TOKEN}/store/a.csv", content=b"x" * 11).json()["error"]
+    assert "larger than" in client.post(f"{client.home}store/a.csv", content=b"x" * 11).json()["error"]
     for headers in ({"origin": "http://tyres.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"}):
-        assert client.post(f"/{TOKEN}/store/a.csv", content=b"x", headers=headers).status_code == 403
+        assert client.post(f"{client.home}store/a.csv", content=b"x", headers=headers).status_code == 403
     assert not (folder / "a.csv").exists()
 
 
@@ -272,12 +276,116 @@ def test_a_folder_without_recordings_waits_for_them(tmp_path):
 
 
 def test_the_server_shows_the_table_and_refuses_with_sentences(folder):
-    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
-    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as client:
-        page = client.get(f"/{TOKEN}/").text
+    with client_of(Opened(folder=RecordingsFolder(folder))) as client:
+        page = client.get(f"{client.home}").text
         assert "Make the project" in page
         assert [word for word in ("http://", "https://", " src=") if word in page] == []
-        assert client.get(f"/{TOKEN}/recordings").json()["folder"] == "recordings"
-        assert "incomplete" in client.post(f"/{TOKEN}/check", json={}).json()["error"]
-        assert "no project is open" in client.get(f"/{TOKEN}/state").json()["error"]
-        assert client.get(f"/{TOKEN}/out/report.html").status_code == 422
+        assert client.get(f"{client.home}recordings").json()["folder"] == "recordings"
+        assert "incomplete" in client.post(f"{client.home}check", json={}).json()["error"]
+        assert "no project is open" in client.get(f"{client.home}state").json()["error"]
+        assert client.get(f"{client.home}out/report.html").status_code == 422
+
+
+ENTRY = '[[sweep]]\nfile = "{}"\n'
+
+
+@pytest.fixture
+def growing(tyre_toml: Path) -> Path:
+    """A project whose last recording is not in its tyre.toml, with a heading that nobody knows."""
+    text = tyre_toml.read_text(encoding="utf-8")
+    tyre_toml.write_text(text.replace(ENTRY.format("camber_900.csv"), ""), encoding="utf-8")
+    other = tyre_toml.with_name("camber_900.csv")
+    table = pd.read_csv(other, comment="#").drop(columns=["u_Fy_N"], errors="ignore")
+    table["Kraft quer"] = -1e-3 * table.pop("Fy_N")
+    table.to_csv(other, index=False)
+    return tyre_toml
+
+
+def as_list(path: Path) -> None:
+    """The sweeps as a list of tables on their lines, as programs write them."""
+    text, names = path.read_text(encoding="utf-8"), [entry.file for entry in config.load(path).sweep]
+    for name in names:
+        text = text.replace(ENTRY.format(name), "")
+    entries = "".join(f'    {{ file = "{name}" }},  # {name}\n' for name in names)
+    path.write_text(f"sweep = [  # all of them\n{entries}]\n\n{text}", encoding="utf-8")
+
+
+def as_windows(path: Path) -> None:
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+
+
+@pytest.mark.parametrize(
+    "written", [None, as_list, as_windows], ids=lambda one: getattr(one, "__name__", "plain")
+)
+def test_a_recording_is_added_to_an_open_project(growing, original, written):
+    """What the page shows is corrected first; the points are then those of the whole project, and one undo takes it back."""
+    if written:
+        written(growing)
+    before = growing.read_bytes()
+    opened = Opened(Session(growing))
+    with client_of(opened) as client:
+        assert "Add them to tyre.toml" in client.get(f"{client.home}add").text
+        table = client.get(f"{client.home}recordings").json()
+        (group,) = table["groups"]
+        assert [file["name"] for file in group["files"]] == ["camber_900.csv"]
+        assert "no heading is known to be Fy_N" in table["problems"][0]
+        choice = {"groups": corrected(table)["groups"], "seen": table["seen"]}
+        checked = client.post(f"{client.home}check", json=choice).json()
+        assert (checked["axes"], checked["points"] > 5) == (["iso"], True)
+        assert growing.read_bytes() == before
+        assert client.post(f"{client.home}add", json=choice).status_code == 200
+        ours, theirs = (points.load(config.load(path))[0] for path in (growing, original))
+        mine, true = (x.Fy[np.array(x.files)[x.file] == "camber_900.csv"] for x in (ours, theirs))
+        np.testing.assert_allclose(np.sort(mine), np.sort(true), atol=1e-6)
+        added = [line for line in growing.read_bytes().splitlines() if line not in before.splitlines()]
+        assert 1 <= len(added) <= 4
+        assert client.get(f"{client.home}recordings").json()["groups"] == []
+        assert client.post(f"{client.home}add", json=choice).status_code == 422
+        client.post(f"{client.home}undo")
+    assert growing.read_bytes() == before
+
+
+def test_a_bad_run_of_a_summary_is_added_and_left_out(growing):
+    choice_of = RecordingsFolder(growing.parent, growing)
+    (growing.parent / "runs.csv").write_text("File;Quality\nsideslip_900.csv;good\ncamber_900;bad\n")
+    text = growing.read_text(encoding="utf-8")
+    growing.write_text(text.replace(ENTRY.format("sideslip_900.csv"), ""), encoding="utf-8")
+    added = choice_of.added(corrected(choice_of.table()))
+    found = config.load(tomllib.loads(add_recordings(growing.read_text(encoding="utf-8"), **added)))
+    assert {entry.file: entry.why for entry in found.fit.exclude}["camber_900.csv"] == "runs.csv, line 3: bad"
+    assert "sideslip_900.csv" in {entry.file for entry in found.sweep}
+
+
+def test_a_single_sweep_becomes_one_of_several():
+    text = '[tyre]\nname = "a"\n\n[sweep]  # the only one\nfile = "a.csv"\n[sweep.columns]\nkappa = "SR"\n'
+    found = add_recordings(text, sweeps='[[sweep]]\nfile = "b.csv"\n')
+    assert [entry["file"] for entry in tomllib.loads(found)["sweep"]] == ["a.csv", "b.csv"]
+    assert tomllib.loads(found)["sweep"][0]["columns"] == {"kappa": "SR"}
+    assert "# the only one" in found
+
+
+def test_reading_goes_on_in_a_process_that_can_be_stopped(folder, monkeypatch):
+    """Here it would take a minute; the next question begins a new one."""
+    reading, found = ReadingProcess(), RecordingsFolder(folder)
+    try:
+        assert reading.ask(found, "table") == found.table()
+        with pytest.raises(InputError, match="incomplete") as caught:
+            reading.ask(found, "make", {})
+        assert caught.value.sentence.startswith("the choice")
+        timer = threading.Timer(0.5, reading.stop)
+        timer.start()
+        with pytest.raises(InputError, match="was stopped"):
+            reading.ask(found, "__init__", Endless())
+        timer.join()
+        monkeypatch.setattr("mffit.window.reading.TIME_TO_READ", 0.5)
+        with pytest.raises(InputError, match="was stopped"):
+            reading.ask(found, "__init__", Endless())
+    finally:
+        reading.stop()
+
+
+class Endless:
+    """Takes for ever to arrive in another process."""
+
+    def __reduce__(self) -> Any:
+        return time.sleep, (60.0,)

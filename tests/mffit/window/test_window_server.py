@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import signal
+import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Callable
 from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
 import pytest
+from inside import client_of
 
 from mffit.errors import InputError
 from mffit.viewer import project_data
 from mffit.window.runs import _work, out_of
 
 pytest.importorskip("starlette")
-testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
-
-from mffit.window.app import Opened, window_app, within  # noqa: E402
-from mffit.window.session import Session  # noqa: E402
-
-TOKEN, PORT = "a-token-of-the-test", 8123
-HERE = f"http://127.0.0.1:{PORT}"
+from mffit.window.app import Opened, within
+from mffit.window.session import Session
 
 
 @pytest.fixture
@@ -37,14 +37,12 @@ def session(tyre_toml: Path, result: Any) -> Session:
 
 @pytest.fixture
 def client(session: Session) -> Any:
-    with testclient.TestClient(
-        window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE, headers={"origin": HERE}
-    ) as found:
+    with client_of(Opened(session)) as found:
         yield found
 
 
 def post(client: Any, address: str, **content: Any) -> Any:
-    return client.post(f"/{TOKEN}/{address}", content=json.dumps(content))
+    return client.post(f"{client.home}{address}", content=json.dumps(content))
 
 
 def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
@@ -54,54 +52,115 @@ def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
 @pytest.mark.parametrize(
     ("path", "headers"),
     [
-        ("/wrong-token/", {}),
+        ("/wrong-home/state", {}),
         ("//", {}),
         ("/", {}),
-        (f"/{TOKEN}/", {"host": "tyres.example:8123"}),  # a name that another site lets point to this machine
-        (f"/{TOKEN}/", {"host": "127.0.0.1:9999"}),
-        (f"/{TOKEN}/state", {"origin": "http://tyres.example"}),
-        (f"/{TOKEN}/state", {"origin": "null"}),  # a sandboxed page, such as a report
-        (f"/{TOKEN}/state", {"sec-fetch-site": "cross-site"}),
+        ("*", {}),
+        ("/enter/", {}),
+        ("{home}", {"host": "tyres.example:8123"}),  # a name that another site lets point to this machine
+        ("{home}", {"host": "127.0.0.1:9999"}),
+        ("{home}state", {"origin": "http://tyres.example"}),
+        ("{home}state", {"origin": "null"}),  # a sandboxed page, such as a report
+        ("{home}state", {"sec-fetch-site": "cross-site"}),
         (
-            f"/{TOKEN}/",
+            "{home}",
             {"sec-fetch-site": "cross-site", "sec-fetch-mode": "navigate", "sec-fetch-dest": "iframe"},
         ),
     ],
 )
 def test_others_are_refused(session, path, headers):
     """Also without an origin, which a browser does not send when it opens a page."""
-    client = testclient.TestClient(window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE)
-    assert client.get(f"/{TOKEN}/state").status_code == 200
-    answer = client.get(path, headers=headers)
-    assert answer.status_code == 403
-    assert "coefficients" not in answer.text
+    client = client_of(Opened(session), headers={})
+    assert client.get(f"{client.home}state").status_code == 200
+    for method in ("GET", "OPTIONS"):
+        answer = client.request(method, path.format(home=client.home), headers=headers)
+        assert answer.status_code == 403
+        assert "coefficients" not in answer.text
+
+
+def test_the_address_of_the_page_is_no_key(session):
+    """Whoever reads it over a shoulder or in a history; nor is a wrong cookie."""
+    client = client_of(Opened(session), has_cookie=False)
+    for cookie in ("", "mffit=", "mffit=x", client.entrance.secret, f"other={client.entrance.secret}"):
+        assert client.get(f"{client.home}state", headers={"cookie": cookie}).status_code == 403
+    assert client.post(f"{client.home}undo").status_code == 403
+
+
+def test_an_address_lets_one_browser_in(session):
+    client = client_of(Opened(session), has_cookie=False)
+    address = client.entrance.new_address()
+    for refused in ({"host": "tyres.example"}, {"sec-fetch-site": "cross-site", "sec-fetch-dest": "image"}):
+        assert client.get(address, headers=refused).status_code == 403
+    assert client.head(address).status_code == 403  # a look that opens nothing leaves the address
+    answer = client.get(address)
+    assert answer.status_code == 200
+    cookie = answer.headers["set-cookie"]
+    assert cookie.endswith(f"; Path={client.home}; HttpOnly; SameSite=Strict")
+    assert client.home in answer.text
+    assert address not in answer.text
+    assert client.get(client.home).status_code == 200  # the client keeps cookies as a browser does
+    again = client_of(Opened(session), has_cookie=False)
+    assert again.get(address).status_code == 403
+    assert client.get(address).status_code == 403
 
 
 def test_a_change_needs_an_origin(client, session):
     before = session.file.path.read_bytes()
     for origin in ({"origin": "http://tyres.example"}, {"origin": ""}):
-        assert client.post(f"/{TOKEN}/undo", headers=origin).status_code == 403
-    without = testclient.TestClient(window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE)
-    assert without.post(f"/{TOKEN}/undo").status_code == 403
+        assert client.post(f"{client.home}undo", headers=origin).status_code == 403
+    without = client_of(Opened(session), headers={})
+    assert without.post(f"{without.home}undo").status_code == 403
     assert session.file.path.read_bytes() == before
 
 
 def test_a_link_from_elsewhere_opens_the_page(client):
+    """From a terminal within a browser, for example."""
     headers = {"sec-fetch-site": "cross-site", "sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
-    answer = client.get(f"/{TOKEN}/", headers=headers)
+    answer = client.get(client.entrance.new_address(), headers=headers)
     assert answer.status_code == 200
     assert answer.headers["x-frame-options"] == "DENY"
     assert answer.headers["referrer-policy"] == "no-referrer"
 
 
+def test_no_process_shows_how_to_get_in(tyre_toml, tmp_path):
+    """A stand-in for the browser notes with what it is started; the address is in a file that only this user reads."""
+    pytest.importorskip("uvicorn")
+    noted, home = tmp_path / "noted", tmp_path / "home"
+    browser = tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\necho "$@" > {noted}\n')
+    browser.chmod(0o755)
+    surroundings = {**os.environ, "HOME": str(home), "XDG_CONFIG_HOME": str(home), "BROWSER": f"{browser} %s"}
+    command = [sys.executable, "-m", "mffit", "open", str(tyre_toml)]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings
+    )
+    try:
+        printed = process.stdout.readline().split()[-1]
+        until(lambda: noted.exists() and noted.read_text(), 30.0)
+        page = Path(noted.read_text().strip().removeprefix("file://"))
+        assert (page.stat().st_mode & 0o777, page.parent.stat().st_mode & 0o777) == (0o600, 0o700)
+        (address,) = re.findall(r"url=(http://127\.0\.0\.1:\d+/enter/[\w-]+)", page.read_text())
+        assert address != printed
+        with urllib.request.urlopen(address) as answer:
+            assert "mffit=" in answer.headers["set-cookie"]
+        with urllib.request.urlopen(printed) as answer:
+            assert "mffit=" in answer.headers["set-cookie"]
+        process.stdout.readline()
+        assert "another browser: http" in process.stdout.readline()
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert not page.exists()
+
+
 def test_the_page_asks_nobody_else(client):
-    page = client.get(f"/{TOKEN}/").text
+    page = client.get(f"{client.home}").text
     assert "default-src 'none'" in page
     assert [word for word in ("http://", "https://", " src=", "@import") if word in page] == []
 
 
 def test_the_data_are_those_of_the_build(client, result):
-    found = client.get(f"/{TOKEN}/project").json()
+    found = client.get(f"{client.home}project").json()
     assert {row["name"]: row["rmse"] for row in found["channels"] if row["of_fit"]} == {
         name: row.rmse for name, row in result.fit.channels.items() if row.n
     }
@@ -139,6 +198,17 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
             {"readings": [{"file": "a", "first": 1, "last": 1e400}], "why": "x"},
             "first and last line",
         ),
+        ("coefficient", {"name": "PCY1", "entry": 10**400}, "more digits than a number can have"),
+        (
+            "leave_out",
+            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**400}], "why": "x"},
+            "beyond the end of any file",
+        ),
+        (
+            "leave_out",
+            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**11}], "why": "x"},
+            "beyond the end of the file; the readings of camber_900.csv are in lines 2-",
+        ),
         (
             "leave_out",
             {"readings": [{"file": "camber_900.csv", "first": 2, "last": 2}], "why": "\ud800"},
@@ -164,7 +234,7 @@ def test_what_is_not_possible_is_refused_with_a_sentence(client, session, name, 
 )
 def test_a_request_that_is_no_change_is_refused(client, session, body):
     before = session.file.path.read_bytes()
-    answer = client.post(f"/{TOKEN}/edit", content=body)
+    answer = client.post(f"{client.home}edit", content=body)
     assert (answer.status_code, answer.json()["error"]) == (422, "a change needs do, seen and with")
     assert session.file.path.read_bytes() == before
 
@@ -182,10 +252,10 @@ def test_two_windows_do_not_overwrite_each_other(client, session):
 
 def test_a_file_that_somebody_broke_is_said_and_left_alone(client, session):
     session.file.path.write_text("[tyre\n", encoding="utf-8")
-    state = client.get(f"/{TOKEN}/state").json()
+    state = client.get(f"{client.home}state").json()
     assert "not valid TOML" in state["problem"]
     assert edit(client, session, "coefficient", name="PCY1", entry=1.35).status_code == 422
-    assert client.get(f"/{TOKEN}/").status_code == 200
+    assert client.get(f"{client.home}").status_code == 200
     assert session.file.path.read_text(encoding="utf-8") == "[tyre\n"
 
 
@@ -198,11 +268,11 @@ def test_only_results_are_served(client, session, tmp_path):
     (tmp_path / "secret.html").write_text("secret", encoding="utf-8")
     (out / "link.html").symlink_to(tmp_path / "secret.html")
     (out / "run.sh").write_text("echo", encoding="utf-8")
-    report = client.get(f"/{TOKEN}/out/report.html")
+    report = client.get(f"{client.home}out/report.html")
     assert report.text == "<p>the report</p>"
     assert report.headers["content-security-policy"].startswith("sandbox allow-scripts")
     assert "allow-same-origin" not in report.headers["content-security-policy"]
-    assert client.get(f"/{TOKEN}/out/plots/Fy.png").status_code == 200
+    assert client.get(f"{client.home}out/plots/Fy.png").status_code == 200
     for name in (
         "link.html",
         "run.sh",
@@ -212,9 +282,9 @@ def test_only_results_are_served(client, session, tmp_path):
         "%2e%2e/tyre.toml",
         "/etc/passwd",
     ):
-        assert client.get(f"/{TOKEN}/out/{name}").status_code == 404, name
+        assert client.get(f"{client.home}out/{name}").status_code == 404, name
     assert within(out, "../tyre.toml") is None
-    state = client.get(f"/{TOKEN}/state").json()
+    state = client.get(f"{client.home}state").json()
     assert [page["href"] for page in state["pages"] if page["run"] == "build"] == ["out/report.html"]
 
 
@@ -255,9 +325,8 @@ def test_an_unknown_run_is_refused(client):
 
 def test_events_bring_the_state_at_once(session):
     """The stream ends when the server is about to."""
-    app = window_app(Opened(session), token=TOKEN, port=PORT, closing=iter([False, True]).__next__)
-    with testclient.TestClient(app, base_url=HERE) as client:
-        text = client.get(f"/{TOKEN}/events").text
+    with client_of(Opened(session), closing=iter([False, True]).__next__) as client:
+        text = client.get(f"{client.home}events").text
     assert re.match(r'data: \{"project": "\w{64}", "digest": "', text)
 
 

@@ -22,17 +22,24 @@
     home.append(label);
     return list;
   }
-  async function post(address) {
-    const answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(choice())}).catch(() => null);
-    if (!answer) { say("The server of this window has ended; run `mffit open` again.", true); return null; }
-    const found = await answer.json();
-    if (found.error) { say(found.error, true); return null; }
+  // A question for which the recordings are read; meanwhile it can be stopped.
+  async function read(address, given) {
+    byId("stop").hidden = false;
+    const found = await asked(address, () => say("reading the recordings; this takes a while"), given);
+    byId("stop").hidden = true;
     return found;
+  }
+  byId("stop").addEventListener("click", () => asked("stop-reading", say, sent({})));
+  async function post(address) {
+    const found = await read(address, sent(choice()));
+    if (!found || found.error) say(found ? found.error : ENDED, true);
+    return found && !found.error ? found : null;
   }
   const number = name => { const x = document.querySelector(`[name=${name}]`).valueAsNumber; return Number.isFinite(x) ? x : null; };
   const text = name => document.querySelector(`[name=${name}]`).value;
+  const does = byId("choice").dataset.does, adds = does === "add";
   function choice() {
-    return {
+    return adds ? {groups: table.groups, seen: table.seen} : {
       tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"), nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"), nominal_speed: number("nominal_speed"), width: number("width"), rim_radius: number("rim_radius"), side: text("side")},
       rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"), path_centre: text("path_centre")},
       groups: table.groups,
@@ -42,56 +49,14 @@
     byId("problems").replaceChildren(...sentences.map(sentence => element("li", sentence)));
     byId("problems").hidden = !sentences.length;
   }
-  // ---- recordings that are dropped or chosen: stored in the folder once the user agrees
-  const endings = JSON.parse(byId("endings").textContent);
-  const isRecording = file => endings.some(ending => file.name.toLowerCase().endsWith(ending)) && !file.name.startsWith(".");
-  async function filesOf(transfer) {
-    const entries = [...transfer.items].filter(item => item.kind === "file").map(item => item.webkitGetAsEntry()).filter(Boolean);
-    const within = async entry => {
-      if (entry.isFile) return [await new Promise((done, failed) => entry.file(done, failed))];
-      const reader = entry.createReader(), found = [];
-      for (let some = [null]; some.length;) {  // a reader gives a hundred at a time
-        some = await new Promise((done, failed) => reader.readEntries(done, failed));
-        for (const one of some) found.push(...await within(one));
-      }
-      return found;
-    };
-    return (await Promise.all(entries.map(within))).flat();
-  }
-  function offer(files) {
-    const taken = files.filter(isRecording), dialog = byId("ask");
-    if (!taken.length) return say(`No recording among ${files.length === 1 ? "it" : `these ${files.length} files`}: their names end in ${endings.join(", ")}.`, true);
-    const size = taken.reduce((sum, file) => sum + file.size, 0) / 1e6, others = files.length - taken.length;
-    byId("ask-about").textContent = `Store ${taken.length === 1 ? "this recording" : `these ${taken.length} recordings`} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB) in the folder ${table.folder}?${others ? ` ${others} other ${others === 1 ? "file is no recording" : "files are no recordings"}.` : ""}`;
-    byId("ask-files").replaceChildren(...taken.map(file => element("li", file.name)));
-    dialog.returnValue = "";
-    dialog.onclose = () => { if (dialog.returnValue === "yes") store(taken); };
-    dialog.showModal();
-  }
-  async function store(files) {
-    const refusals = [];
-    for (const [k, file] of files.entries()) {
-      say(`storing ${k + 1} of ${files.length}: ${file.name}`);
-      const answer = await fetch(`store/${encodeURIComponent(file.name)}`, {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: file}).catch(() => null);
-      if (!answer) return say("The server of this window has ended; run `mffit open` again.", true);
-      const found = await answer.json().catch(() => ({error: `${file.name} was not taken (status ${answer.status})`}));
-      if (found.error) refusals.push(found.error);
-    }
+  const offer = takesRecordings(say, async (refusals, count) => {
     say("reading the recordings");
     await load();
-    if (refusals.length) {
-      say(`${refusals.length} of ${files.length} files were not stored; see below.`, true);
-      list([...refusals, ...table.problems]);
-    }
-  }
-  addEventListener("dragover", event => { event.preventDefault(); byId("drop").classList.add("over"); });
-  addEventListener("dragleave", event => { if (!event.relatedTarget) byId("drop").classList.remove("over"); });
-  addEventListener("drop", async event => {
-    event.preventDefault();
-    byId("drop").classList.remove("over");
-    if (table) offer(await filesOf(event.dataTransfer).catch(() => []));
+    if (!refusals.length) return;
+    say(`${refusals.length} of ${count} files were not stored; see below.`, true);
+    list([...refusals, ...table.problems]);
   });
-  for (const id of ["add-files", "add-folder"]) byId(id).addEventListener("change", event => { if (table) offer([...event.target.files]); event.target.value = ""; });
+  for (const id of ["add-files", "add-folder"]) byId(id).addEventListener("change", event => { offer([...event.target.files]); event.target.value = ""; });
   // What was corrected stays when recordings are added.
   function carriedOver(before, after) {
     const columns = new Map(before.groups.flatMap(group => group.columns).map(one => [`${one.heading} ${one.stated}`, one]));
@@ -111,12 +76,12 @@
   const touched = new Set();  // fields that were filled in by hand
   byId("choice").addEventListener("input", event => touched.add(event.target.name));
   async function load() {
-    const answer = await fetch("recordings").catch(() => null);
-    if (!answer || !answer.ok) return say("The recordings cannot be read; see the terminal.", true);
-    const found = await answer.json(), typed = table && table.groups.length ? choice() : null;
+    const found = await read("recordings");
+    if (!found || found.error) return say(found ? found.error : ENDED, true);
+    const typed = table && table.groups.length ? choice() : null;
     table = table ? carriedOver(table, found) : found;
     show();
-    if (!typed) return;
+    if (!typed || adds) return;
     for (const [name, x] of Object.entries({...typed.tyre, ...typed.rig})) if (x !== null && touched.has(name)) document.querySelector(`[name=${name}]`).value = x;
     document.querySelector("[name=type]").dispatchEvent(new Event("change"));
   }
@@ -128,7 +93,13 @@
     byId("found").hidden = true;
     byId("choice").hidden = !table.groups.length;
     list(table.problems);
-    if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : "No recordings here yet.", table.problems.length > 0);
+    if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : adds ? "Every recording of this folder is in tyre.toml." : "No recordings here yet.", table.problems.length > 0);
+    if (!adds) tyreAndRig(tyre, rig, disc);
+    byId("groups").replaceChildren(...table.groups.map(group));
+    const first = disc && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
+    say(first || (table.problems.length ? "Something was not recognised; see below." : ""), !first && table.problems.length > 0);
+  }
+  function tyreAndRig(tyre, rig, disc) {
     field(tyre, "name", "name", {value: table.tyre.name, required: true});
     field(tyre, "size", "size", {value: table.tyre.size ?? ""});
     const any = {type: "number", step: "any", required: true, min: 0};
@@ -147,9 +118,6 @@
     const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.disabled = type.value !== "rotating-disk"; };
     type.addEventListener("change", curved);
     curved();
-    byId("groups").replaceChildren(...table.groups.map(group));
-    const first = disc ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
-    say(first || (table.problems.length ? "Something was not recognised; see below." : ""), !first && table.problems.length > 0);
   }
   function group(one) {
     const home = element("section"), files = element("div", "", {className: "files"}), scroll = element("div", "", {className: "scroll"});
@@ -212,7 +180,7 @@
   });
   byId("choice").addEventListener("submit", async event => {
     event.preventDefault();
-    if (await post("make")) location.reload();
+    if (await post(does)) location.assign("./");
   });
   load();
 })();
