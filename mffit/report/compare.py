@@ -76,7 +76,7 @@ def differences(found: Comparison) -> Sheet:
         series=[bars],
         guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )
-    return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)
+    return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
 
 
 COMPARISON: tuple[Picture[Comparison], ...] = (
