@@ -20,7 +20,8 @@ PHONE, SCREEN, PAPER = 420, 1200, 703
 COMPLAINTS = """
 const width = document.documentElement.clientWidth, found = [], phone = matchMedia('screen and (max-width: 820px)').matches;
 if (document.documentElement.scrollWidth > width) found.push(`the page is ${document.documentElement.scrollWidth} px wide`);
-for (const fold of document.querySelectorAll('details.fold')) fold.open = true;
+const folds = document.querySelectorAll('details.fold:not([open])');
+for (const fold of folds) fold.open = true;
 for (const scroll of document.querySelectorAll('.scroll')) {
   if (scroll.scrollWidth > scroll.clientWidth + 1) found.push(`a table is cut: ${scroll.textContent.trim().slice(0, 40)}`);
 }
@@ -42,6 +43,7 @@ for (const drawing of document.querySelectorAll('.plot canvas, .plot svg')) {
   const sharp = !(drawing.width < 2 * box.width);  // a canvas; an SVG has no width of pixels
   if (matchMedia('print').matches && !sharp) found.push(`a picture for the screen: ${drawing.width} px`);
 }
+for (const fold of folds) fold.open = false;
 return found;
 """
 

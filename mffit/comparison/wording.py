@@ -25,11 +25,12 @@ def quantity(row: Difference) -> QuantityName:
 
 
 def headline(found: Comparison) -> str:
-    """What the files are relative to, if that differs, and the largest differences in a sentence."""
-    return " ".join(filter(None, (found.nominal, _differences(found))))
+    """What the files are evaluated or relative to, if that differs, and the largest differences in a sentence."""
+    return " ".join(filter(None, (found.apart, differences(found))))
 
 
-def _differences(found: Comparison) -> str:
+def differences(found: Comparison) -> str:
+    """The largest differences in a sentence."""
     if found.sweeps:
         parts = []
         for channel, known in CHANNELS.items():
@@ -67,25 +68,26 @@ def place(row: Difference) -> str:
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
 
 
-def on_nominal(first: ComparedSubject, second: ComparedSubject) -> str:
-    """How the nominal conditions differ; empty if they do not."""
+def apart(first: ComparedSubject, second: ComparedSubject) -> str:
+    """How the use of two files and their nominal conditions differ; empty if they do not."""
+    said = []
+    if first.turn_slip != second.turn_slip:
+        on, off = (first, second) if first.turn_slip else (second, first)
+        said.append(
+            f"{on.name} is evaluated with turn slip on, {off.name} with turn slip off, each for its own use."
+        )
     one, other = Nominal.of(first.tyre.values).beside(Nominal.of(second.tyre.values))
-    if not one:
-        return ""
-    return (
-        f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that equal "
-        "ones give other forces."
-    )
+    if one:
+        said.append(
+            f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that "
+            "equal ones give other forces."
+        )
+    return " ".join(said)
 
 
 def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[str, ...]:
-    """Remarks on a comparison of two files: their use, what is known of their uncertainty, and what they have in common."""
+    """Remarks on a comparison of two files: what is known of their uncertainty, and what they have in common."""
     notes = []
-    if first.turn_slip != second.turn_slip:
-        on, off = (first, second) if first.turn_slip else (second, first)
-        notes.append(
-            f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated for its own use."
-        )
     bare = [side.name for side in (first, second) if side.known is None]
     if bare:
         notes.append(
