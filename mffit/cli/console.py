@@ -40,10 +40,10 @@ class _ShownStep:
         self.done, self.left = remaining(sentence, seconds)
 
     def __rich__(self) -> str:
-        said = self.sentence if self.done is None else f"{self.sentence}, {100.0 * self.done:.0f} % done"
+        said = [] if self.done is None else [f"{100.0 * self.done:.0f} % done"]
         if self.left is not None:
-            said += f", about {max(1.0, self.left - (time.monotonic() - self.begun)):.0f} s left"
-        return said
+            said.append(f"about {max(1.0, self.left - (time.monotonic() - self.begun)):.0f} s left")
+        return ": ".join([*([", ".join(said)] if said else []), self.sentence])
 
 
 class Voice:

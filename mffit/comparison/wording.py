@@ -10,7 +10,7 @@ from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from mffit.rig_errors import words_of
-from tir.errors import listed
+from tir.errors import listed, some
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -54,7 +54,7 @@ def _significant(found: Comparison) -> str:
     rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
         names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {', '.join(names)}"
+        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {some(names)}"
     if any(row.z is not None for row in found.numbers):
         return f"no number differs by more than {limit:.2g} standard uncertainties"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
