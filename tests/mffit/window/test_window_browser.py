@@ -349,6 +349,14 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
         stored = sorted(path.name for path in (tmp_path / "empty").iterdir())
         assert stored == ["camber_900.csv", "sideslip_900.csv"]
         assert ask(browser, "document.querySelector('[name=axes]').value") == "iso"
+        for width, media in ((PHONE, ""), (PAPER, "print")):
+            look(browser, width, media=media)
+            assert complaints(browser) == []
+        shown = browser.find_element("css selector", ".folder").text
+        assert "sideslip_900.csv" in shown
+        assert "rolls backwards" not in shown  # which nobody ticked
+        assert browser.find_element("css selector", "#tyre").is_displayed()
+        look(browser)
         assert console_errors(browser) == []
 
 
