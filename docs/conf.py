@@ -12,7 +12,7 @@ import mffit  # noqa: E402
 project = "mffit"
 author = "the mffit project"
 release = version = mffit.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sitepages"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sitepages", "samplepages"]
 exclude_patterns = ["examples"]
 html_math_renderer = "mathml"
 html_theme = "furo"

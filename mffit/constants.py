@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 USUAL_CORNERING_STIFFNESS = Real(
     10.0,
@@ -98,4 +98,11 @@ NOMINAL_OVER_HIGHEST_LOAD = Real(
     1.05,
     "-",
     "Nominal load over the highest level of load from which it is pointed out; levels scatter by less.",
+)
+
+SHARES_OF_A_BUILD = Series(
+    (0.05, 0.03, 0.34, 0.03, 0.10, 0.03, 0.09, 0.33),
+    "-",
+    "Usual shares of the steps of a build in its time, for the share done and the time left that a terminal shows.",
+    "the samples and two measured flat-track runs, 5 to 57 s: fitting takes 8 to 41 %, writing 25 to 48 %",
 )

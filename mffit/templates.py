@@ -8,9 +8,10 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 
-def environment(package: str, **options: Any) -> Environment:
-    """The templates in a package's folder ``templates``; content is escaped, and missing content is an error."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+def environment(*packages: str, **options: Any) -> Environment:
+    """The templates in the packages' folders ``templates``; content is escaped, and missing content is an error."""
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     given = {"autoescape": True, "trim_blocks": True, "lstrip_blocks": True, **options}
-    return Environment(loader=PackageLoader(package), undefined=StrictUndefined, **given)
+    loader = ChoiceLoader([PackageLoader(package) for package in packages])
+    return Environment(loader=loader, undefined=StrictUndefined, **given)

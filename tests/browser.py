@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,8 +18,17 @@ PHONE, SCREEN, PAPER = 420, 1200, 703
 """Widths in pixels; A4 between the margins of our pages."""
 
 COMPLAINTS = """
-const width = document.documentElement.clientWidth, found = [];
+const width = document.documentElement.clientWidth, found = [], phone = matchMedia('screen and (max-width: 820px)').matches;
 if (document.documentElement.scrollWidth > width) found.push(`the page is ${document.documentElement.scrollWidth} px wide`);
+const folds = document.querySelectorAll('details.fold:not([open])');
+for (const fold of folds) fold.open = true;
+for (const scroll of document.querySelectorAll('.scroll')) {
+  if (scroll.scrollWidth > scroll.clientWidth + 1) found.push(`a table is cut: ${scroll.textContent.trim().slice(0, 40)}`);
+}
+if (matchMedia('print').matches) for (const control of document.querySelectorAll('button, select, input, a.data')) {
+  const framed = getComputedStyle(control).borderTopStyle !== 'none';
+  if (control.checkVisibility() && framed) found.push(`on paper: ${control.outerHTML.slice(0, 60)}`);
+}
 for (const drawing of document.querySelectorAll('figure img')) {
   const box = drawing.getBoundingClientRect(), said = drawing.closest('[role=img]').getAttribute('aria-label').slice(0, 40);
   if (box.width < 5 || box.height < 5) found.push(`invisible: ${said}`);
@@ -26,6 +36,14 @@ for (const drawing of document.querySelectorAll('figure img')) {
   const letter = 7.8 * 2; // of the smallest text, in pixels of the image
   if (letter * box.width / drawing.naturalWidth < 7) found.push(`too small to read: ${said}`);
 }
+for (const drawing of document.querySelectorAll('.plot canvas, .plot svg')) {
+  const box = drawing.getBoundingClientRect(), home = drawing.closest('.grid').getBoundingClientRect();
+  const cut = box.width < 5 || box.height < 5 || box.left < home.left - 1 || (box.right > width + 1 && !phone);
+  if (cut) found.push(`picture cut: ${box.left} to ${box.right}`);
+  const sharp = !(drawing.width < 2 * box.width);  // a canvas; an SVG has no width of pixels
+  if (matchMedia('print').matches && !sharp) found.push(`a picture for the screen: ${drawing.width} px`);
+}
+for (const fold of folds) fold.open = false;
 return found;
 """
 
@@ -56,9 +74,19 @@ def look(
 ) -> None:
     """Change window size and colour scheme; ``media`` "print" shows the printed page."""
     scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+    browser.execute_script(f"dispatchEvent(new Event('{'before' if media == 'print' else 'after'}print'))")
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme, "media": media})
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+
+def sheets(browser: Any) -> int:
+    """Number of sheets of A4 that the page takes when it is printed."""
+    cut = {"paperWidth": 8.27, "paperHeight": 11.69, "preferCSSPageSize": True}
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [], "media": ""})
+    document = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", cut)["data"])
+    return len(re.findall(rb"/Type\s*/Page\b", document))
 
 
 def console_errors(browser: Any) -> list[str]:

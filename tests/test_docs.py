@@ -101,6 +101,12 @@ def test_every_page_is_reached_from_the_index():
     assert not missing, f"docs/index.md does not link to {', '.join(missing)}"
 
 
+def test_the_gallery_links_to_the_pages_of_every_sample():
+    linked = set(re.findall(r'href="shown/([\w./-]+)"', text_of(DOCS / "gallery.md")))
+    samples = [path.parent.name for path in (ROOT / "samples").glob("*/rig.toml")]
+    assert linked == {f"{name}/{kind}.html" for name in samples for kind in ("report", "diagnosis", "show")}
+
+
 def test_the_pages_together_stay_short():
     """The list of constants and the changelog are looked up, not read."""
     pages = [page for page in PAGES if page.name not in ("constants.md", "changelog.md")]

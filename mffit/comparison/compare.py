@@ -65,7 +65,7 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
         curves=tuple(curves),
         sweeps=(),
         notes=wording.notes_between(first, second, shared),
-        nominal=wording.on_nominal(first, second),
+        apart=wording.apart(first, second),
     )
 
 

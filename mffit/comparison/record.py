@@ -128,6 +128,6 @@ class Comparison(Brief):
     curves: tuple[CurveGap, ...]
     sweeps: tuple[SweepGap, ...]  #: against data, worst first
     notes: tuple[str, ...]
-    nominal: str = ""  #: how the nominal conditions of two files differ; empty if they do not
+    apart: str = ""  #: how the use of two files and their nominal conditions differ; empty if they do not
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data

@@ -10,7 +10,7 @@ from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from mffit.rig_errors import words_of
-from tir.errors import listed
+from tir.errors import listed, some
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -25,11 +25,12 @@ def quantity(row: Difference) -> QuantityName:
 
 
 def headline(found: Comparison) -> str:
-    """What the files are relative to, if that differs, and the largest differences in a sentence."""
-    return " ".join(filter(None, (found.nominal, _differences(found))))
+    """What the files are evaluated or relative to, if that differs, and the largest differences in a sentence."""
+    return " ".join(filter(None, (found.apart, differences(found))))
 
 
-def _differences(found: Comparison) -> str:
+def differences(found: Comparison) -> str:
+    """The largest differences in a sentence."""
     if found.sweeps:
         parts = []
         for channel, known in CHANNELS.items():
@@ -53,7 +54,7 @@ def _significant(found: Comparison) -> str:
     rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
         names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {', '.join(names)}"
+        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {some(names)}"
     if any(row.z is not None for row in found.numbers):
         return f"no number differs by more than {limit:.2g} standard uncertainties"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
@@ -67,25 +68,26 @@ def place(row: Difference) -> str:
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
 
 
-def on_nominal(first: ComparedSubject, second: ComparedSubject) -> str:
-    """How the nominal conditions differ; empty if they do not."""
+def apart(first: ComparedSubject, second: ComparedSubject) -> str:
+    """How the use of two files and their nominal conditions differ; empty if they do not."""
+    said = []
+    if first.turn_slip != second.turn_slip:
+        on, off = (first, second) if first.turn_slip else (second, first)
+        said.append(
+            f"{on.name} is evaluated with turn slip on, {off.name} with turn slip off, each for its own use."
+        )
     one, other = Nominal.of(first.tyre.values).beside(Nominal.of(second.tyre.values))
-    if not one:
-        return ""
-    return (
-        f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that equal "
-        "ones give other forces."
-    )
+    if one:
+        said.append(
+            f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that "
+            "equal ones give other forces."
+        )
+    return " ".join(said)
 
 
 def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[str, ...]:
-    """Remarks on a comparison of two files: their use, what is known of their uncertainty, and what they have in common."""
+    """Remarks on a comparison of two files: what is known of their uncertainty, and what they have in common."""
     notes = []
-    if first.turn_slip != second.turn_slip:
-        on, off = (first, second) if first.turn_slip else (second, first)
-        notes.append(
-            f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated for its own use."
-        )
     bare = [side.name for side in (first, second) if side.known is None]
     if bare:
         notes.append(

@@ -51,6 +51,26 @@ def headline(diagnosis: Diagnosis) -> str:
     )
 
 
+def verdict(diagnosis: Diagnosis) -> str:
+    """The answer without numbers and full stop."""
+    effects = diagnosis.repaired or diagnosis.effects
+    if effects:
+        names = listed([_with_ties(found) for found in effects])
+        if (
+            min(found.confidence_of_tie(diagnosis.alternatives) for found in effects)
+            < constants.LIKELY_ANSWER
+        ):
+            return f"The best explanation, though uncertain, is {names}"
+        return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
+    if not diagnosis.unexplained:
+        return "No effect is missing as far as these data can show"
+    if diagnosis.smooth is not None:
+        return "Smooth structure remains that no effect of the library describes"
+    if diagnosis.bump is None:
+        return "The model misses the data by more than their noise, and no effect of the library explains it"
+    return "A local misfit remains that no effect of the library describes"
+
+
 def _taken_off(diagnosis: Diagnosis) -> list[str]:
     """Sentences, without full stop, about errors that were taken off the readings before effects were looked for."""
     return [remark.said for remark in diagnosis.notes if isinstance(remark, TakenOff)]
@@ -69,16 +89,10 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
             [f"{short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)]
         )
         misfit += f"; with the zeros of every set-up, estimated within what [rig] declares, it is {after}"
-    if not diagnosis.unexplained:
-        return f"No effect is missing as far as these data can show: {misfit}."
-    if diagnosis.smooth is not None:
-        return f"Smooth structure remains that no effect of the library describes: {misfit}."
-    if bump is None:
-        return f"The model misses the data by more than their noise, and no effect of the library explains it: {misfit}."
-    return (
-        f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {short(bump.amplitude)} "
-        f"{CHANNELS[bump.channel].unit} around {_around(bump)}; {misfit}."
-    )
+    if diagnosis.unexplained and diagnosis.smooth is None and bump is not None:
+        off = f"{short(bump.amplitude)} {CHANNELS[bump.channel].unit}"
+        misfit = f"{bump.channel} is off by {off} around {_around(bump)}; {misfit}"
+    return f"{verdict(diagnosis)}: {misfit}."
 
 
 def _as_read(diagnosis: Diagnosis, channel: str) -> str:
@@ -108,10 +122,6 @@ def _zeros(diagnosis: Diagnosis) -> list[str]:
 def _named(diagnosis: Diagnosis) -> str:
     effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
     after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
-    names, one = listed([_with_ties(found) for found in effects]), len(effects) == 1
-    verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
-    if min(found.confidence_of_tie(diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
-        verdict = f"The best explanation, though uncertain, is {names}"
     misfit = listed(
         [
             f"{short(after.rms(name))} {unit} instead of {short(diagnosis.gap_examined.rms(name))} {unit} in "
@@ -123,8 +133,8 @@ def _named(diagnosis: Diagnosis) -> str:
     if diagnosis.unexplained:
         what = f"{bump.channel} around {_around(bump)}" if bump else "the rest"
         rest = f"; {what} stays unexplained"
-    them, is_ = "it" if one else "them", "is" if diagnosis.repaired else "would be"
-    return f"{verdict}: with {them} the rms misfit {is_} {misfit}{rest}.{_suspicions(diagnosis)}"
+    them, is_ = "it" if len(effects) == 1 else "them", "is" if diagnosis.repaired else "would be"
+    return f"{verdict(diagnosis)}: with {them} the rms misfit {is_} {misfit}{rest}.{_suspicions(diagnosis)}"
 
 
 def _suspicions(diagnosis: Diagnosis) -> str:

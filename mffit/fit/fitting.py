@@ -46,7 +46,7 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.prediction import predictor
-from mffit.progress import Progress, silent
+from mffit.progress import DERIVING, PREDICTING, Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import BESIDE
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
@@ -114,7 +114,7 @@ def fit(
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
     at_turns = full.problem.turning()
 
-    progress("deriving the property files")
+    progress(DERIVING)
     use = plain_use(config)
     beside = Beside(radii, steps, sister)
     made = deliver(config, known, points, base, fitted, beside)
@@ -192,7 +192,7 @@ def _fitted_and_judged(
     the build."""
 
     found = fit_with_nuisances(config, problem, start, plan, progress)
-    progress("predicting each sweep from the others")
+    progress(PREDICTING)
 
     def refit(without: np.ndarray) -> FittedModel:
         others = np.setdiff1d(np.arange(len(problem.points)), without)

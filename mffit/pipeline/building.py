@@ -27,7 +27,7 @@ from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, wit
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.points.loading import Reading
 from mffit.prediction import correction, missed_at_readings, missed_sentence
-from mffit.progress import Progress, silent
+from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent
 from mffit.results import CORRECTION, BuildResult
 from tir import Tyre
 
@@ -62,11 +62,11 @@ def build(
     """
     began = time.perf_counter()
     config = configuration.load(config)
-    progress("reading sweeps")
+    progress(READING)
     reading = read_points(config)
     base = read_base(config)
     made_of = made(input_hashes(config))
-    progress("measuring the camber reduction factor")
+    progress(MEASURING)
     parts, measured = measure(config, reading.points, base)
     names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     special = fitting.name_at_temperature(config.tyre.name)
@@ -75,7 +75,7 @@ def build(
         refuse_early(Path(out), (*names.values(), special, further, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress)
-        progress("judging what the fit leaves")
+        progress(JUDGING)
         assert fitted.files is not None
         files = fitted.files.by_use
         trust, left = judged(
@@ -134,7 +134,7 @@ def build(
         excluded=reading.excluded,
     )
     if out is not None:
-        progress("writing the report" if with_report else "writing the files")
+        progress(f"{WRITING} {'report' if with_report else 'files'}")
         write_build(result, Path(out), reading.stretches, with_report=with_report)
     return result
 

@@ -21,7 +21,7 @@ from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, temperature_of, use_of
 from mffit.points import Points
-from mffit.progress import Progress, silent
+from mffit.progress import READING, Progress, silent
 from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
@@ -65,7 +65,7 @@ def compare(
         )
     if data:
         config = configuration.load(data[0])
-        progress("reading sweeps")
+        progress(READING)
         found = _with_data(_subject(files[0]), config)
         files += inputs_of(config)
     else:

@@ -27,7 +27,7 @@ from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
-from mffit.progress import Progress, silent
+from mffit.progress import READING, Progress, silent
 from mffit.results import as_json
 from tir import Tyre
 
@@ -61,7 +61,7 @@ def diagnose(
         With the direct method repeated on corrected points if a rig effect was found.
     """
     config = configuration.load(config)
-    progress("reading sweeps")
+    progress(READING)
     reading = read_points(config, continuous=True)
     points, base = reading.points, read_base(config)
     read = [*inputs_of(config), last_build(config), *([Path(model)] if isinstance(model, str | Path) else [])]

@@ -71,12 +71,12 @@ def differences(found: Comparison) -> Sheet:
         colours=[style.CONTRAST if abs(value) > COVERAGE_FACTOR_95 else style.FAINT for value in z],
     )
     panel = Panel(
-        x=Axis(label=f"{found.second} less {found.first}, in standard uncertainties"),
+        x=Axis(label="difference in standard uncertainties"),
         y=listed([f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows]),
         series=[bars],
         guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
     )
-    return Sheet(rows=[[panel]], wide=True, height=0.20 * len(rows) + 0.3)
+    return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
 
 
 COMPARISON: tuple[Picture[Comparison], ...] = (

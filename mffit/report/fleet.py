@@ -39,9 +39,7 @@ def epsilon_of_all(found: Fleet) -> Sheet:
         for k, (key, words) in enumerate(EPSILON.items())
     ]
     panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
-    return Sheet(
-        rows=[[panel]], wide=True, height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()}
-    )
+    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()})
 
 
 def numbers_of_all(found: Fleet) -> Sheet:

@@ -88,7 +88,7 @@ def draw(folder: Path, picture: Picture[View], view: View) -> PagePicture | None
 
 @cache
 def _environment() -> Environment:
-    found = environment("mffit.report")
+    found = environment("mffit.report", "mffit.viewer")
     found.filters["shortened"] = shortened
     found.filters["together"] = partial(together, most=int(NAMED_IN_SENTENCE))
     for rounded in (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from html import escape, unescape
 
 from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
@@ -14,6 +15,12 @@ VOID = frozenset({"meta", "img", "br", "col", "input", "link", "hr"})
 TAG = re.compile(r"(<script\b.*?</script>|<style\b.*?</style>|<[^>]*>)", re.DOTALL)
 """A tag, or a whole script or style element, in which ``<`` does not begin a tag."""
 NAME = re.compile(r"</?([a-zA-Z][\w-]*)")
+TABLE = re.compile(r"<table\b.*?</table>", re.DOTALL)
+HEADING = re.compile(r"<th\b[^>]*>(.*?)</th>", re.DOTALL)
+ROW = re.compile(r"<tr\b.*?</tr>", re.DOTALL)
+CELL = re.compile(r'<td\b(?:[^>]*?colspan="(\d+)")?')
+FEW_COLUMNS = 3
+"""So many fit a telephone."""
 
 SYMBOLS = {
     **{name: channel.html for name, channel in CHANNELS.items()},
@@ -64,6 +71,10 @@ def page(html: str) -> str:
     ----------
     html : well-formed HTML, in which ``<`` and ``>`` outside of tags are escaped
     """
+    return TABLE.sub(_stacked, _typeset(html))
+
+
+def _typeset(html: str) -> str:
     out: list[str] = []
     open_tags: list[bool] = []  # whether each is verbatim
     for piece in TAG.split(html):
@@ -79,3 +90,24 @@ def page(html: str) -> str:
         else:
             open_tags.append(name[1] in VERBATIM or re.search(r'class="[^"]*\bmono\b', piece) is not None)
     return "".join(out)
+
+
+def _stacked(table: re.Match[str]) -> str:
+    """A table whose cells know their headings, for a telephone, on which a row of many columns becomes a paragraph."""
+    labels = [escape(unescape(re.sub(r"<[^>]*>", "", text)).strip()) for text in HEADING.findall(table[0])]
+    if len(labels) <= FEW_COLUMNS:
+        return table[0]
+
+    def row(found: re.Match[str]) -> str:
+        place = 0
+
+        def cell(start: re.Match[str]) -> str:
+            nonlocal place
+            label, place = labels[place], place + int(start[1] or 1)
+            return f'{start[0]} data-label="{label}"' if label else start[0]
+
+        return CELL.sub(cell, found[0])
+
+    return ROW.sub(
+        row, re.sub(r'<table(?: class="([^"]*)")?', r'<table class="stacked \1"', table[0], count=1)
+    )

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mffit.quantities import CHANNELS, DIRECT
+from mffit.comparison import characteristics
+from mffit.fit import Posterior
+from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import number, stated, times
+from tir import Quantity
 
 JUDGED = {
     "distrusted": "NOT TO BE TRUSTED",
@@ -20,6 +23,18 @@ FOR = {
     "temperature": "simulators that know the tyre's temperature; holds at {T:.1f} degC",
 }
 """Whom each file is for, by its use."""
+
+
+OF_MODEL = (
+    ("Fy", "C_alpha_N_per_rad"),
+    ("Fy", "mu_y"),
+    ("Fx", "K_xk_N"),
+    ("Fx", "mu_x"),
+    ("Fy", "C_gamma_N_per_rad"),
+    ("Mz", "Mz_peak_Nm"),
+)
+"""Characteristics of the model, the first ones first, with the channel that decides them."""
+FOUR = 4
 
 
 class Headline(NamedTuple):
@@ -48,35 +63,39 @@ def verdict(result: BuildResult) -> str:
 
 
 def headlines(result: BuildResult) -> list[Headline]:
-    """The four or five numbers that a user came for."""
-    nominal = result.measured.nominal
-    found = []
+    """The four numbers that a user came for: of the direct method on a disc, then of the model where data decide them."""
+    nominal, found = result.measured.nominal, []
     if result.measured.epsilon_gamma is not None and nominal is not None:
         at = f"at {number(nominal.load, 0)} N; PECP1 in the file: {number(result.measured.pecp1, 4)}"
-        for name, note in (
-            ("epsilon_gamma", at),
-            ("C_phit", "turn slip"),
-            ("C_alpha_straight", "on a straight path"),
-        ):
-            known, value = DIRECT[name], getattr(nominal, name)
-            if value is not None:
-                found.append(
-                    Headline(
-                        f"{known.word[0].upper()}{known.word[1:]} {known.ascii}",
-                        stated(value, known.unit_behind),
-                        note,
-                    )
-                )
-    for name, a in result.fit.channels.items():
-        if a.n and len(found) < 5:
-            ratio = times(result.trust.over_noise.get(name), 1.0)
-            note = f"{a.n} points, R2 {number(a.r2, 5)}" + (
-                f", {ratio} the noise" if ratio != times(None, 1.0) else ""
-            )
-            found.append(
-                Headline(f"Misfit of {name}, rms", f"{number(a.rmse, digits=3)} {CHANNELS[name].unit}", note)
-            )
-    return found
+        of_disc = (("epsilon_gamma", nominal.epsilon_gamma, at), ("C_phit", nominal.C_phit, "turn slip"))
+        found = [_headline(DIRECT[name], value, note) for name, value, note in of_disc if value is not None]
+    tyre = result.tyres[result.fitted]
+    load = float(tyre["FNOMIN"])
+    known = {name: _spread(result, name) for name, a in result.fit.channels.items() if a.n}
+    of_channel = {
+        name: characteristics(tyre, load, turn_slip=result.on_disc, known=spread)
+        for name, spread in known.items()
+    }
+    found += [
+        _headline(CHARACTERISTICS[key], value, f"of the model at {number(load, 0)} N, straight path")
+        for name, key in OF_MODEL
+        if name in of_channel and (value := of_channel[name][key]).u
+    ]
+    return found[:FOUR]
+
+
+def _headline(known: QuantityName, value: Quantity, note: str) -> Headline:
+    return Headline(
+        f"{known.word[0].upper()}{known.word[1:]} {known.ascii}", stated(value, known.unit_behind), note
+    )
+
+
+def _spread(result: BuildResult, channel: str) -> Posterior:
+    """Covariance of the coefficients for a number of one channel, as predictions of it have it."""
+    predictor = result.prediction
+    if predictor is None or channel not in predictor.channels:
+        return result.fit.posterior
+    return Posterior(predictor.names, predictor.channels[channel].covariance)
 
 
 def purposes(result: BuildResult) -> dict[str, str]:

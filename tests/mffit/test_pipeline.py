@@ -20,10 +20,15 @@ from mffit.pipeline.build_output import origin
 from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.measuring import undistorted
 from mffit.pipeline.provenance import fitted_to, rig_of_build
+from mffit.progress import remaining
 from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
 MOMENT = [effect for effect in CATALOG if effect.id in ("loadcell-offset-mz", "residual-torque-camber")]
+
+
+SAID: list[str] = []
+"""Progress of the build."""
 
 
 def campaign(folder, **changes):
@@ -36,7 +41,14 @@ def small(tmp_path_factory):
     """A build of a rig whose load cell is 15 N off, and its folder."""
     folder = tmp_path_factory.mktemp("small")
     campaign(folder, faults={"F0_N": 15.0})
-    return mffit.build(folder / "tyre.toml", folder / "out", with_report=False), folder
+    result = mffit.build(folder / "tyre.toml", folder / "out", with_report=False, progress=SAID.append)
+    return result, folder
+
+
+def test_every_step_of_a_build_has_its_share(small):
+    shares = [remaining(sentence, 0.0)[0] for sentence in SAID]
+    assert len(shares) > 4
+    assert shares == sorted(shares)
 
 
 def test_a_built_file_contains_the_rig_errors_of_its_sweeps(small):

@@ -11,6 +11,7 @@ import types
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 from disc_project import disc_project
 from small_plan import SMALL_PLAN
@@ -19,6 +20,8 @@ import tir
 from mffit import __main__ as script
 from mffit.cli import commands, main
 from mffit.cli.console import progress
+from mffit.constants import SHARES_OF_A_BUILD
+from mffit.progress import FITTING, STEPS, remaining
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 
@@ -79,6 +82,17 @@ def test_progress_is_shown_on_a_terminal_beside_the_result(capsys, monkeypatch, 
             out, err = out + found.out, err + found.err
     assert out == ""
     assert ("reading sweeps" in err) == on_terminal
+
+
+def test_the_time_left_is_that_of_the_usual_shares_and_counts_down():
+    """A build whose steps take their usual shares of 100 s; no promise before the fit has shown how fast it is."""
+    begins = dict(zip(STEPS, np.cumsum([0.0, *SHARES_OF_A_BUILD[:-1]]) * 100.0, strict=True))
+    for step, at in begins.items():
+        done, left = remaining(f"{step} and more", at)
+        assert done == pytest.approx(at / 100.0)
+        assert left == (pytest.approx(100.0 - at) if at > begins[FITTING] else None)
+    assert sum(SHARES_OF_A_BUILD) == pytest.approx(1.0)
+    assert remaining("trying 12 runs one by one", 30.0) == (None, None)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")

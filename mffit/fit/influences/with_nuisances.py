@@ -15,7 +15,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import first_fit, polish, with_known_zeros
 from mffit.fit.problem import FitProblem
 from mffit.linearised import LinearisedFit
-from mffit.progress import Progress
+from mffit.progress import FITTING, FITTING_AGAIN, Progress
 from mffit.rig import Simulation
 
 
@@ -38,7 +38,7 @@ def fit_with_nuisances(
     config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> NuisanceFit:
     """The staged fit, then the influences that it should model, then the joint polish with these."""
-    progress("fitting tyre and rig")
+    progress(FITTING)
     fitted, left = first_fit(problem, start, plan), None
     one_mount = len(np.unique(problem.points.mount)) < 2
     if not config.rig.on_disc and len(problem.points.used_setups) < 2 and one_mount:
@@ -46,7 +46,7 @@ def fit_with_nuisances(
     choice = choose(config, fitted)
 
     if choice.modelled:
-        progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
+        progress(f"{FITTING_AGAIN} {', '.join(nuisance.name for nuisance in choice.modelled)}")
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
         return NuisanceFit(full, full, choice, left)

@@ -273,7 +273,7 @@ def _markup(whole: Image.Image, sheet: Sheet) -> str:
     above, point = _above(sheet), style.SETTINGS["figure.dpi"] / INCH
 
     def image(left: float, top: float, wide: float, high: float) -> str:
-        first, last = round(point * top), round(point * (top + high))
+        first, last = round(point * top), min(round(point * (top + high)), whole.height)
         cut = whole.crop((round(point * left), first, round(point * (left + wide)), last))
         data = base64.b64encode(_png(cut)).decode("ascii")
         return f'<img alt="" style="--w:{wide:.5g}" src="data:image/png;base64,{data}">'

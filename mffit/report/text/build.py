@@ -11,7 +11,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import constants
 from mffit.report.text.direct import MAIN, estimates, setups_table, spin_numbers
 from mffit.report.text.layout import blocks, cut, paragraphs, table, wrapped
-from mffit.report.verdict import purposes, verdict
+from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rounding import number, times
 from tir.errors import counted
@@ -20,12 +20,14 @@ from tir.parameters import BY_NAME
 
 def build_summary(result: BuildResult, written: str = "") -> str:
     """What ``mffit build`` prints: the verdict, the files and whom they are for, the numbers, and what to do next."""
-    files = [f"  {name}: for {text}" for name, text in purposes(result).items()]
+    files = [wrapped(f"{name}: for {text}", "  ", "    ") for name, text in purposes(result).items()]
     parts = [
         wrapped(verdict(result)),
         *(cut(f"NOT TO BE TRUSTED: {sentence}.", 2) for sentence in result.reasons[: constants.MOST_REASONS]),
         "\n".join([f"written to {written}", *files] if written else files),
-        spin_numbers(result.measured, MAIN) if result.measured.epsilon_gamma is not None else "",
+        spin_numbers(result.measured, MAIN)
+        if result.measured.epsilon_gamma is not None
+        else _of_model(result),
         _misfits(result),
         wrapped(f"zeros of the rig: {zeros}") if (zeros := zeros_listed(result.fit.rig)) else "",
         _next(result),
@@ -53,6 +55,13 @@ def few(warnings: Iterable[str]) -> list[str]:
     shown = [cut(sentence, 2, " " * len("warning: ")) for sentence in every[: constants.MOST_REASONS]]
     more = len(every) - len(shown)
     return shown + ([f"{more} more: report.html, --explain or --quiet shows them"] if more > 0 else [])
+
+
+def _of_model(result: BuildResult) -> str:
+    """The numbers that a user came for, a line each."""
+    found = headlines(result)
+    width = max((len(one.name) for one in found), default=0)
+    return "\n".join(f"{one.name:<{width}}  {one.value}" for one in found)
 
 
 def _misfits(result: BuildResult) -> str:

@@ -140,6 +140,7 @@ function showChosen() {
     body.replaceChildren(...shown.map(i => rowOf(element("td", "", placeOf(i)), ...about.map(([, text]) => element("td", "n", text(i))), unchoose(i))));
     if (shown.length < chosen.length) body.append(rowOf(element("td", "", `and ${chosen.length - shown.length} more`)));
   }
+  shared.labelled(byId("chosen-table"));
   byId("chosen-actions").replaceChildren(...chosenActions(), key("Choose none", "ends the choice (Esc in a picture)", () => choose(-1, false)));
 }
 function rowOf(...inside) {
@@ -169,7 +170,7 @@ function step(panel, by, add) {
 // ---- pictures
 function addPanel({x, y}) {
   const figure = element("figure", "panel"), caption = element("figcaption", ""), plot = element("div", "plot");
-  const panel = {x, y, canvas: document.createElement("canvas"), tip: element("div", "tip")};
+  const panel = {x, y, canvas: document.createElement("canvas"), tip: element("div", "tip"), title: element("strong", "printed")};
   const options = {y: [...Object.keys(project.quantities).filter(axisKnown), ...channels.map(name => RESIDUAL + name)], x: Object.keys(project.quantities).filter(axisKnown)};
   for (const axis of ["y", "x"]) {
     const select = document.createElement("select");
@@ -177,7 +178,7 @@ function addPanel({x, y}) {
     for (const name of options[axis]) select.append(new Option(label(name), name, false, name === panel[axis]));
     panel[axis] = select.value;
     select.addEventListener("change", () => { panel[axis] = select.value; panel.box = null; remember(); update(); });
-    caption.append(...(axis === "x" ? ["over ", select] : [select]));
+    caption.append(...(axis === "x" ? [element("span", "on-screen", "over "), select] : [select]));
   }
   const close = key("×", "remove this picture", () => {
     state.panels = state.panels.filter(one => one !== panel);
@@ -185,7 +186,7 @@ function addPanel({x, y}) {
     remember();
   });
   close.classList.add("close");
-  caption.append(close);
+  caption.append(close, panel.title);
   panel.tip.hidden = true;
   panel.canvas.tabIndex = 0;
   panel.canvas.setAttribute("role", "img");
@@ -350,6 +351,12 @@ function begin() {
   });
   byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); });
   addEventListener("resize", update);
+  shared.whenPrinted(() => {
+    if (!project) return;
+    for (const {title, x, y} of state.panels) title.textContent = `${label(y)} over ${label(x)}`;
+    readTheme();
+    frame();
+  });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (project) { readTheme(); update(); } });
   addEventListener("keydown", event => {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !["text", "search"].includes(event.target.type)) { event.preventDefault(); undo(); }

@@ -1,6 +1,6 @@
 // Pictures: any quantity over any other, on canvas, because a picture has thousands of points.
 const RESIDUAL = "residual of ";
-const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22;
+const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22, RATIO_OF_PAPER = 3;
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve"};
 let visible = new Uint8Array(0), theme = {}, palette = [], colourOf = [], curveGroups = {}, chosen = [], pointed = -1;
 let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
@@ -14,7 +14,7 @@ function defaultPanels() {
 function readTheme() {
   const style = getComputedStyle(document.documentElement), of = name => style.getPropertyValue(`--${name}`).trim();
   theme = Object.fromEntries(["paper", "ink", "muted", "grid", "line", "accent"].map(name => [name, of(name)]));
-  theme.dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  theme.dark = !shared.onPaper() && matchMedia("(prefers-color-scheme: dark)").matches;
   theme.colours = [0, 1, 2, 3, 4, 5, 6, 7].map(i => of(`c${i}`));
   theme.font = `11px ${getComputedStyle(document.body).fontFamily}`;
   recolour();
@@ -124,7 +124,7 @@ function label(name) {
 }
 
 function draw(panel) {
-  const canvas = panel.canvas, width = canvas.clientWidth, height = canvas.clientHeight, ratio = devicePixelRatio || 1;
+  const canvas = panel.canvas, width = canvas.clientWidth, height = canvas.clientHeight, ratio = shared.onPaper() ? RATIO_OF_PAPER : devicePixelRatio || 1;
   if (!width) return;
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);

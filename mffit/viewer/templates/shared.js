@@ -30,5 +30,18 @@ const shared = (() => {
     const room = 0.04 * (high - low);
     return [low < 0 ? low - room : low, high > 0 ? high + room : high];
   }
-  return {written, trimmed, symbol, ticks, roomy};
+  // On a telephone a row is a paragraph, in which every number has the heading of its column.
+  function labelled(table) {
+    const headings = [...table.querySelectorAll("thead th")].map(one => one.textContent.trim());
+    for (const line of table.tBodies[0].rows) headings.forEach((text, k) => { if (text && line.cells[k]) line.cells[k].dataset.label = text; });
+  }
+  // On paper pictures have the size, the colours and the sharpness of paper: CSS knows them by the class "paper".
+  const onPaper = () => document.documentElement.classList.contains("paper");
+  function whenPrinted(draw) {
+    for (const event of ["beforeprint", "afterprint"]) addEventListener(event, () => {
+      document.documentElement.classList.toggle("paper", event === "beforeprint");
+      draw();
+    });
+  }
+  return {written, trimmed, symbol, ticks, roomy, labelled, onPaper, whenPrinted};
 })();

@@ -238,6 +238,7 @@
       update();
     });
   }
+  shared.labelled(byId("legend"));
   function table() {
     for (const tyre of tyres) {
       const found = evaluate(tyre, now);
@@ -294,7 +295,7 @@
   byId("key-tested").hidden = !tyres.some(tyre => Object.values(tyre.ranges).some(range => range.tested));
   if (matchMedia("(max-width: 820px)").matches) byId("controls").open = false;
   addEventListener("resize", () => update());
-  addEventListener("beforeprint", all);
+  shared.whenPrinted(all);
   start();
 
   // For the console: mffit.evaluate(0, true, [Fz, alpha, gamma, kappa, phi_t, Vx, pressure]), in SI.

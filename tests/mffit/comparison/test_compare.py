@@ -206,12 +206,17 @@ def test_two_sets_of_data_are_refused(folder):
 
 
 @pytest.mark.parametrize(("first", "second"), [(15, 14), (5, 4), (14, 25)])
-def test_a_file_without_provenance_is_for_turn_slip_if_its_use_mode_ends_in_5(tmp_path, first, second):
+def test_files_without_provenance_are_for_turn_slip_if_their_use_modes_end_in_5_and_that_is_said_first(
+    tmp_path, first, second
+):
     for name, mode in (("a.tir", first), ("b.tir", second)):
-        truth().replace(USE_MODE=mode).write(tmp_path / name)
+        truth().replace(USE_MODE=mode, FNOMIN=1000.0 + 100.0 * mode).write(tmp_path / name)
     on, off = ("a.tir", "b.tir") if first % 10 == 5 else ("b.tir", "a.tir")
-    notes = " ".join(mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir").notes)
-    assert f"{on} is for simulations with turn slip on, {off} for turn slip off" in notes
+    found = mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir")
+    use = f"{on} is evaluated with turn slip on, {off} with turn slip off, each for its own use. "
+    assert wording.headline(found).startswith(f"{use}Nominal conditions differ")
+    alike = mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir", turn_slip=True)
+    assert alike.apart.startswith("Nominal conditions differ")
 
 
 def test_a_folder_without_a_build_is_refused(tmp_path):

@@ -139,7 +139,7 @@ def made_result(**changes: Any) -> BuildResult:
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),
         seconds=1.5,
-        posterior=Posterior((), np.zeros((0, 0))),
+        posterior=Posterior(("PKY1", "PDY1", "PKY6", "QDZ1"), np.diag([0.05, 0.01, 0.005, 0.002]) ** 2),
     )
     return BuildResult(
         config=settings,

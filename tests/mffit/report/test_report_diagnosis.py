@@ -68,7 +68,9 @@ def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path
     assert set(page.tables) == {"curves", "evidence", "gap_maps"}
     assert page.text.count("held out") >= 2
     assert "noise alone" in page.text
-    assert misaligned.headline in page.text
+    verdict, rest = misaligned.headline.split(": ", 1)
+    assert f"{verdict}." in page.text
+    assert rest[1:] in page.text
     assert "alpha_0_deg" not in page.text
     assert page.text.lower().count("sideslip axis misaligned") >= 3  # card, heading, number
     assert misaligned.effects[0].effect.physics in page.text

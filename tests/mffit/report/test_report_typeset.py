@@ -42,3 +42,15 @@ def test_every_symbol_of_a_quantity_is_set():
     for quantity in DIRECT.values():
         if len(quantity.ascii) > 1:
             assert typeset.sentence(f"({quantity.ascii})") == f"({quantity.html})"
+
+
+def test_a_cell_of_many_columns_knows_its_heading():
+    """Also behind one that spans several; a table of few columns stays as it is."""
+    heads = "".join(f"<th>{text}</th>" for text in ("Source", "u<sub>a</sub> &amp; b", "dof", ""))
+    row = '<tr><td>sum</td><td colspan="2"></td><td>3</td></tr><tr><td>one</td><td>5</td><td>6</td><td></td></tr>'
+    found = typeset.page(f'<table class="keep"><thead><tr>{heads}</tr></thead>{row}</table>')
+    assert '<table class="stacked keep">' in found
+    assert '<td colspan="2" data-label="ua &amp; b"></td><td>3</td>' in found
+    assert '<td data-label="ua &amp; b">5</td><td data-label="dof">6</td><td></td>' in found
+    few = "<table><thead><tr><th>File</th><th>for</th></tr></thead><tr><td>a</td><td>b</td></tr></table>"
+    assert typeset.page(few) == few

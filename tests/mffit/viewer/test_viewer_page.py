@@ -10,7 +10,7 @@ import pytest
 import mffit
 import tir
 from mffit.viewer.controls import CONTROLS, OUTPUTS, PANELS
-from tests.browser import console_errors, opened
+from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened, sheets
 from tir.codegen.program import INPUTS, Switches, trace
 
 ROOT = Path(__file__).parents[3]
@@ -189,6 +189,16 @@ def test_nothing_overflows_and_no_labels_overlap(browser, width):
         for b in boxes[i + 1 :]:
             apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
             assert apart or a[4].strip() in b[4] or b[4].strip() in a[4], (a, b)
+
+
+def test_a_printed_page_has_its_pictures_and_no_controls(browser):
+    try:
+        for width, media in ((PHONE, ""), (PAPER, "print")):
+            look(browser, width, media=media)
+            assert complaints(browser) == []
+        assert sheets(browser) <= 3
+    finally:
+        look(browser)
 
 
 def test_every_slider_belongs_to_an_input_and_every_panel_to_an_output():

@@ -24,8 +24,15 @@ import mffit
 from mffit.quantities import SIDEWAYS
 from mffit.viewer import project_page
 from mffit.window.session import Session
-from tests.browser import PHONE, SCREEN, console_errors, look, opened
+from tests.browser import PAPER, PHONE, SCREEN, complaints, console_errors, look, opened, sheets
 
+PAINTED = """(...colour) => {
+  const canvas = document.querySelector('.panel canvas');
+  const bytes = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+  for (let i = 0; i < bytes.length; i += 4) if (colour.every((x, k) => bytes[i + k] === x)) return true;
+  return false;
+}"""
+"""Whether the first picture has a pixel of a colour: that of the first curves in the light scheme, or in the dark one."""
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
 
 
@@ -210,6 +217,23 @@ def test_nothing_overflows(page, width):
     look(page, SCREEN)
 
 
+def test_a_printed_page_has_its_pictures_and_no_controls(page):
+    """A moved coefficient and the key of the colours stay, sliders and filters do not; light also where the screen is dark."""
+    ask(page, "mffit.move('PCY1', 1.5)")
+    try:
+        look(page, SCREEN, dark=True)
+        assert ask(page, f"({PAINTED})(95, 176, 242)")
+        look(page, PAPER, media="print", dark=True)
+        assert complaints(page) == []
+        shown = page.find_element("css selector", "body").text
+        assert all(text in shown for text in ("load", "side force [N] over sideslip", "PCY1"))
+        assert not any(text in shown for text in ("PDY1", "Undo", "sideslip_900"))
+        assert ask(page, f"({PAINTED})(11, 98, 164)")
+        assert sheets(page) <= 2
+    finally:
+        look(page, SCREEN)
+
+
 def processor_time(page: Any) -> float:
     """Time [s] that the page's main thread has computed."""
     found = page.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
@@ -356,6 +380,14 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
         stored = sorted(path.name for path in (tmp_path / "empty").iterdir())
         assert stored == ["camber_900.csv", "sideslip_900.csv"]
         assert ask(browser, "document.querySelector('[name=axes]').value") == "iso"
+        for width, media in ((PHONE, ""), (PAPER, "print")):
+            look(browser, width, media=media)
+            assert complaints(browser) == []
+        shown = browser.find_element("css selector", ".folder").text
+        assert "sideslip_900.csv" in shown
+        assert "rolls backwards" not in shown  # which nobody ticked
+        assert browser.find_element("css selector", "#tyre").is_displayed()
+        look(browser)
         assert console_errors(browser) == []
 
 
