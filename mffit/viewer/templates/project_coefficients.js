@@ -32,6 +32,10 @@ function element(tag, className, text = "") {
   made.textContent = text;
   return made;
 }
+// A text that stays is not set again, which would lay out the page.
+function tell(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
 function key(text, title, action) {
   const made = element("button", "small", text);
   made.type = "button";
@@ -78,7 +82,7 @@ function showRow(row) {
   cell.box.classList.toggle("moved", moved);
   cell.reset.hidden = !moved;
   const held = typeof entry === "number" || entry === "base";
-  cell.tag.textContent = entryText(entry) || (row.at_bound ? "at its bound" : row.status === "fitted" ? "" : row.status);
+  tell(cell.tag, entryText(entry) || (row.at_bound ? "at its bound" : row.status === "fitted" ? "" : row.status));
   cell.tag.hidden = !cell.tag.textContent;
   cell.tag.classList.toggle("held", held);
   const before = project.before && row.name in project.before.values ? project.before.values[row.name] : null;
@@ -86,7 +90,7 @@ function showRow(row) {
   if (before !== null && Math.abs(before - row.value) > 1e-9 * Math.abs(row.value)) parts.push(`before ${trimmed(written(before))}`);
   if (moved) parts.push(`fit ${trimmed(written(row.value))}`);
   if (row.partner) parts.push(`goes with ${row.partner[0]} (correlation ${row.partner[1].toFixed(3)})`);
-  cell.about.textContent = parts.join("; ");
+  tell(cell.about, parts.join("; "));
 }
 function entryText(entry) {
   if (entry === null || entry === undefined) return "";

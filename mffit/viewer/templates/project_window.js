@@ -154,7 +154,7 @@ async function bring() {
     remember();
   }
   shownFit = wantedFit;
-  showProject(data);
+  await showProject(data);
   setLive(live);
 }
 const WORDS = {fit: "Refit", build: "Build", diagnose: "Diagnosis", plan: "Plan", compare: "Comparison"};

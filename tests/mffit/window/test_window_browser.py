@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import signal
@@ -12,6 +11,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -26,6 +26,8 @@ from mffit.viewer import project_page
 from mffit.window.session import Session
 from tests.browser import PHONE, SCREEN, console_errors, look, opened
 
+SINGLE = 1e-5
+"""Agreement [-] of misfits: points are single floats in a page, so a force has seven digits and what is missed of it five."""
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
 
 
@@ -42,6 +44,12 @@ def browser(result, tmp_path_factory) -> Iterator[Any]:
 def page(browser) -> Any:
     browser.get("about:blank")
     browser.get(browser.home)
+    return shown(browser)
+
+
+def shown(browser: Any) -> Any:
+    """The browser once it has unpacked and drawn the points."""
+    until(lambda: ask(browser, "!!(window.mffit && mffit.data() && mffit.data().points.line)"))
     return browser
 
 
@@ -64,8 +72,8 @@ def until(true: Callable[[], Any], seconds: float = 600.0) -> Any:
 def test_the_misfit_is_that_of_the_build(page, result):
     for name in result.fit.channels:
         found = ask(page, "mffit.misfit(arguments[0])", name)
-        assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=1e-9)
-        assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=1e-9)
+        assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=SINGLE)
+        assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=SINGLE)
     assert console_errors(page) == []
     assert ask(page, "performance.getEntriesByType('resource').length") == 0
 
@@ -79,7 +87,7 @@ def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(page, result):
     assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(wanted, rel=1e-3)
     assert wanted > 2.0 * result.fit.channels["Fy"].rmse
     press(page, "#undo")
-    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(result.fit.channels["Fy"].rmse, rel=1e-9)
+    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(result.fit.channels["Fy"].rmse, rel=SINGLE)
 
 
 def test_the_curve_of_the_page_is_that_of_the_file(page, result):
@@ -93,11 +101,11 @@ def test_the_curve_of_the_page_is_that_of_the_file(page, result):
 def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(page, result):
     """Brought to the conditions of the curve, which are the medians of its points."""
     curved = [ask(page, "mffit.onCurve(0, arguments[0])", i) for i in range(len(result.points))]
-    shown = np.array(ask(page, "mffit.shown(0)")[1])[: len(curved)]
+    places = np.array(ask(page, "mffit.shown(0)")[1])[: len(curved)]
     rows = [i for i, y in enumerate(curved) if y is not None]
     assert len(rows) > len(curved) / 2
     missed = result.points.Fy - result.fit.simulation.readings(result.points).Fy
-    assert [shown[i] - curved[i] for i in rows] == pytest.approx([missed[i] for i in rows], abs=1e-6)
+    assert [places[i] - curved[i] for i in rows] == pytest.approx([missed[i] for i in rows], abs=1e-3)
     assert np.ptp(missed) > 1.0
 
 
@@ -111,9 +119,9 @@ def test_a_force_over_another_has_curves_along_the_sideslip(page, result):
     ]
     assert len(rows) > len(result.points) / 2
     curved = [ask(page, "mffit.onCurve(0, arguments[0])", i) for i in rows]
-    shown = np.array(ask(page, "mffit.shown(0)")[1])[rows]
+    places = np.array(ask(page, "mffit.shown(0)")[1])[rows]
     missed = result.points.Mz - result.fit.simulation.readings(result.points).Mz
-    assert shown - curved == pytest.approx(missed[rows], abs=1e-6)
+    assert places - curved == pytest.approx(missed[rows], abs=1e-4)
 
 
 def test_tab_reaches_the_pictures_at_once(page):
@@ -138,6 +146,7 @@ def test_filters_hide_points_and_the_address_keeps_the_view(page):
     assert 0 < fewer < count
     ask(page, "mffit.move('PCY1', 1.5)")
     page.refresh()
+    shown(page)
     assert page.find_element("id", "shown").text.startswith(f"{fewer} of")
     assert ask(page, "mffit.trial()") == {"PCY1": 1.5}
 
@@ -216,24 +225,12 @@ def processor_time(page: Any) -> float:
     return next(one["value"] for one in found if one["name"] == "TaskDuration")
 
 
-def test_a_slider_moves_five_thousand_points_smoothly(page, result):
+def test_a_slider_moves_five_thousand_points_smoothly(page, result, tmp_path):
     """The sample's points repeated; 30 frames a second, in processor time, because other work may share the processor."""
-    data = ask(page, "JSON.stringify(mffit.data())")
-    content = json.loads(data)
-    points, times = content["points"], 5000 // content["points"]["fitted"] + 1
-    n = points["fitted"]
-
-    def repeated(column: Any) -> Any:
-        if isinstance(column, list) and len(column) >= n:
-            return column[:n] * times
-        return (
-            {name: repeated(inner) for name, inner in column.items()} if isinstance(column, dict) else column
-        )
-
-    facets = [{**facet, "of": repeated(facet["of"])} for facet in points["facets"]]
-    content["points"] = {**{k: repeated(v) for k, v in points.items()}, "facets": facets, "fitted": n * times}
-    page.execute_script("mffit.show(arguments[0])", content)
-    assert ask(page, "mffit.data().points.line.length") >= 5000
+    rows = np.arange(5000) % len(result.points)
+    many = replace(result, points=result.points.select(rows, with_table=False))
+    page.get(project_page(many).write(tmp_path / "many.html").as_uri())
+    assert ask(shown(page), "mffit.data().points.count") >= 5000
     ask(page, "mffit.frames('PCY1', 4)")  # after that the browser has compiled them
     page.execute_cdp_cmd("Performance.enable", {"timeDomain": "threadTicks"})
     before = processor_time(page)
@@ -250,14 +247,14 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     path = tmp_path / "hostile.html"
     path.write_text(html, encoding="utf-8")
     page.get(path.as_uri())
-    ask(page, "mffit.choose(2, false)")
+    ask(shown(page), "mffit.choose(2, false)")
     assert page.find_element("css selector", "#warnings li").get_attribute("textContent") == HOSTILE
     assert HOSTILE in page.find_element("id", "chosen-title").text
     assert ask(page, "window.hacked") is None
 
 
 @contextmanager
-def served(shown: Any, token: str, port: int = 0) -> Iterator[str]:
+def served(given: Any, token: str, port: int = 0) -> Iterator[str]:
     """Address of a window whose server runs in this process."""
     uvicorn = pytest.importorskip("uvicorn")
     from mffit.window.app import window_app
@@ -265,7 +262,7 @@ def served(shown: Any, token: str, port: int = 0) -> Iterator[str]:
 
     with _listening(port) as listening:
         port = listening.getsockname()[1]
-        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
+        app = window_app(given, token=token, port=port, closing=lambda: server.should_exit)
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="error", lifespan="off", timeout_graceful_shutdown=1)
         )
@@ -287,7 +284,7 @@ def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, resu
     first = browser.current_window_handle
     with served(Opened(session), "first-token") as address:
         browser.get(address)
-        ask(browser, "mffit.move('PCY1', 1.5)")
+        ask(shown(browser), "mffit.move('PCY1', 1.5)")
     until(lambda: "has ended" in browser.find_element("id", "status").text)
     with served(Opened(session), "second-token", urlsplit(address).port) as again:
         browser.switch_to.new_window("tab")
@@ -348,7 +345,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
     with window(tyre_toml) as (address, process):
         browser.get(address)
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        shown(browser)
         ask(browser, "mffit.move('PEY1', -0.9)")
         press(browser, ".coefficient[data-name=PEY1] .keys button")
         until(lambda: "PEY1" in tyre_toml.read_text(encoding="utf-8"))
@@ -377,7 +374,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         first = browser.current_window_handle
         browser.switch_to.new_window("tab")  # a second window shows what the first one saved
         browser.get(address)
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        shown(browser)
         row = ask(browser, "mffit.data().points.files.indexOf('camber_900.csv')")
         row = ask(browser, "mffit.data().points.file.indexOf(arguments[0])", row)
         ask(browser, "mffit.chooseAll([0, 1, 2].map(k => k + arguments[0]), false)", row)
@@ -393,11 +390,11 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         until(lambda: ask(browser, "mffit.data().before"))
         assert ask(browser, "mffit.trial()") == {}
         assert ask(browser, "mffit.data().before.values.PEY1") != -0.9
-        shown = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in SIDEWAYS}
+        misfits = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in SIDEWAYS}
         until(lambda: "mffit build" in status())
         browser.refresh()
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
-        assert ask(browser, "mffit.misfit('Fy').rmse") == shown["Fy"]
+        shown(browser)
+        assert ask(browser, "mffit.misfit('Fy').rmse") == misfits["Fy"]
         refused = [line for line in console_errors(browser) if "422" not in line]
         assert refused == []
 
@@ -405,7 +402,9 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         assert process.wait(15) == 0
         until(lambda: "has ended" in status())
         built = mffit.build(tyre_toml)
-        assert shown == pytest.approx({name: built.fit.channels[name].rmse for name in SIDEWAYS}, rel=1e-9)
+        assert misfits == pytest.approx(
+            {name: built.fit.channels[name].rmse for name in SIDEWAYS}, rel=SINGLE
+        )
         assert built.fit.tyre["PEY1"] == -0.9
     again = Session(tyre_toml).state()  # what a restarted server knows
     assert again["hand"] == {"PEY1": -0.9, **limits}
