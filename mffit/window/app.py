@@ -11,6 +11,8 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
@@ -153,7 +155,11 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
         Route("/{token}/events", events),
         Route("/{token}/out/{path:path}", result),
     ]
-    application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
+    application = Starlette(
+        routes=routes,
+        exception_handlers={InputError: refused, ClientDisconnect: gone},
+        middleware=[Middleware(GZipMiddleware)],
+    )
     return Guard(application, token=token, port=port)
 
 

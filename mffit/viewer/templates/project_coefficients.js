@@ -5,7 +5,7 @@ function listCoefficients() {
   const first = !home.children.length;
   home.replaceChildren();
   for (const name in cells) delete cells[name];
-  for (const group of [...new Set(rows.map(row => row.group))]) {
+  for (const group of new Set(rows.map(row => row.group))) {
     const members = rows.filter(row => row.group === group), found = members.filter(row => row.found), rest = members.filter(row => !row.found);
     const box = details(home, group, `${group}`, first ? found.length > 0 : open.has(group));
     for (const row of found) box.append(coefficientRow(row));

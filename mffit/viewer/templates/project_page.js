@@ -17,7 +17,7 @@ function move(name, value, final) {
   update();
 }
 function update() {
-  if (pending) return;
+  if (pending || !project) return;
   pending = true;
   requestAnimationFrame(() => { pending = false; frame(); });
 }
@@ -420,7 +420,6 @@ async function begin() {
 
 // For the console and for tests.
 window.mffit = {
-  evaluate: inputs => Object.fromEntries(channels.map(name => [name, models[1][name](...inputs)[name]])),
   misfit: name => { recompute(false); return misfit(name); },  // also before the next frame is drawn
   move: (name, value) => { move(name, value, true); frame(); },
   data: () => project,
@@ -433,17 +432,10 @@ window.mffit = {
   chooseAll,
   show: showProject,
   place: (panel, i) => { const {place: {X, Y}, kept: {px, py}} = state.panels[panel]; return [X(px[i]), Y(py[i])]; },
-  // What the curve of a point in a picture is at its place, in SI; null without a curve.
-  onCurve: (panel, i) => {
-    const {x, y} = state.panels[panel], group = groupsOver(parameterOf(x, y)).find(one => one.members.includes(i));
-    return group ? along(models, group, y)(columns[parameterOf(x, y)][i]) : null;
-  },
-  shown: panel => [[...state.panels[panel].kept.px], [...state.panels[panel].kept.py]],
   box: panel => state.panels[panel].place.box,
-  csv: panel => csvOf(state.panels[panel], label),
   // Milliseconds of each of n frames in which a slider moves: computing and drawing.
   frames: (name, n) => {
-    const times = [], start = coefficient[name].value, [low, high] = coefficient[name].slider;
+    const times = [], [low, high] = coefficient[name].slider;
     for (let k = 0; k < n; k++) {
       const before = performance.now();
       trial[name] = low + (high - low) * (k + 1) / (n + 1);

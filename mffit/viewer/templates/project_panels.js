@@ -104,11 +104,13 @@ function paint(panel, pen, width, height, ratio) {
   }
   const {drawn, of} = panel.count;
   if (drawn < of) said.push(`drawn ${drawn} of ${of}`);
-  haloed(pen, said.join("; "), width - RIGHT - 2, TOP + 9, theme.muted);
+  over(pen, said.join("; "), width - RIGHT - 2, TOP + 9, theme.muted);
 }
-function haloed(pen, text, x, y, colour) {  // readable over curves
-  Object.assign(pen, {fillStyle: colour, strokeStyle: theme.paper, lineWidth: 4, lineJoin: "round", textAlign: "right"});
-  pen.strokeText(text, x, y);
+function over(pen, text, x, y, colour) {  // readable over curves
+  const long = pen.measureText(text).width;
+  Object.assign(pen, {fillStyle: theme.paper, globalAlpha: .8, textAlign: "right"});
+  pen.fillRect(x - long - 2, y - LINE + 3, long + 4, LINE);
+  Object.assign(pen, {fillStyle: colour, globalAlpha: 1});
   pen.fillText(text, x, y);
 }
 function limits(panel, shown, lines) {
@@ -248,7 +250,7 @@ function labels(pen, typical, {X, Y, start, width, height}) {
       const own = [x - long, y - LINE + 2, x, y + 2];
       if (!(y > TOP + LINE && y < height - BOTTOM) || taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
       taken.push(own);
-      haloed(pen, words[level], x, y, palette[level]);
+      over(pen, words[level], x, y, palette[level]);
       break;
     }
   }

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_rigs import flat, simulated
 
 import mffit
 from mffit.points import make_points
@@ -14,13 +13,6 @@ from mffit.quantities import CONDITIONS
 from mffit.viewer.project import project_data
 from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import facets, last_lines
-
-
-@pytest.fixture(scope="module")
-def result(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("small")
-    simulated(flat(loads=(900, 1400)), folder)
-    return mffit.build(folder / "tyre.toml")
 
 
 def points(line, file=0, **fields):
