@@ -2,7 +2,7 @@
 const {written, trimmed, ticks} = shared;
 const RESIDUAL = "residual of ";
 const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, KNOTS = 16;
-const MOST_MOVED = 3000;  // points that a slider moves at once; all follow when it stops
+const MOST_MOVED = 3000;  // points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
 const TYPES = {f4: Float32Array, u1: Uint8Array, i1: Int8Array, u2: Uint16Array, i2: Int16Array, i4: Int32Array};
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true};
 let project = null;
@@ -21,6 +21,7 @@ let left = new Uint8Array(0);  // 1 where a point is left out
 let visible = new Uint8Array(0);
 let trial = {};  // coefficients that differ from the fit
 let curveGroups = {};
+let computed = "", serial = 0;  // for which values the model was computed at the points, and a number for them
 let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
 
 const quantity = name => project.quantities[name];
@@ -67,6 +68,7 @@ function take(data, bytes) {
   beforeModels = data.before ? compiled({...data.values, ...data.before.values}) : null;
   fitOwn = Object.fromEntries(channels.map(name => [name, predicted(fitModels, name, new Float64Array(n), 1)]));
   moved = {};
+  computed = "";
   markLeftOut(data.exclude);
   recompute(false);
 }
@@ -90,6 +92,10 @@ function predicted(by_mount, name, found, step) {
 const isMoved = name => project.channels.find(one => one.name === name).uses.some(used => used in trial);
 // What the present values say of the points; while a slider moves, of some of them.
 function recompute(dragging) {
+  const wanted = JSON.stringify([dragging, trial]);
+  if (wanted === computed) return;
+  computed = wanted;
+  serial++;
   misfits = {};
   const changed = Object.keys(trial).length > 0;
   models = changed ? compiled({...project.values, ...trial}) : fitModels;
@@ -131,8 +137,19 @@ function markLeftOut(entries) {
       if (file[i] === number && ranges.some(([first, last]) => line[i] >= first && line[i] <= last)) left[i] = 1;
     }
   }
+  misfits = {};
   fitMisfits = {};
   version++;
+}
+// Lines of points as [{file, first, last}]; points that follow each other in a file are one range.
+function lineRanges(members) {
+  const {file, line, last} = columns, found = [];
+  for (const i of Int32Array.from(members).sort((a, b) => file[a] - file[b] || line[a] - line[b])) {
+    const name = project.points.files[file[i]], before = found.at(-1);
+    if (before && before.file === name && line[i] <= before.last + 1) before.last = Math.max(before.last, last[i]);
+    else found.push({file: name, first: line[i], last: last[i]});
+  }
+  return found;
 }
 function whyLeftOut(i) {
   const file = project.points.files[columns.file[i]], line = columns.line[i];
@@ -252,10 +269,10 @@ function placed(panel) {
   const name = [panel.x, panel.y, state.reading, version].join();
   if (!panel.kept || panel.kept.name !== name) panel.kept = {name, ...places(panel)};
   const shown = panel.kept;
-  if (shown.residual) {
+  if (shown.residual && shown.serial !== serial) {
     const measured = columns[shown.y], model = own[shown.y], size = quantity(shown.y).si, step = shown.step = stepOf(shown.y);
     for (let i = 0; i < columns.count; i += step) shown.py[i] = (measured[i] - model[i]) / size;
-    shown.order = null;
+    Object.assign(shown, {serial, order: null, extent: null});
   }
   return shown;
 }

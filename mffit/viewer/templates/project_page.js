@@ -378,7 +378,7 @@ function retheme() {
   if (!project) return;
   readTheme();
   showFacets();
-  update();
+  frame();  // at once, as paper does not wait
 }
 let wanted = [];
 async function begin() {

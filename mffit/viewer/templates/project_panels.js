@@ -80,17 +80,14 @@ function paint(panel, pen, width, height, ratio) {
     }
     on.restore();
   };
-  if (shown.residual) still(pen);
-  else {
-    const name = [panel.x, panel.y, width, height, ratio, ...box.x, ...box.y, state.reading, state.bands, models === fitModels, version].join();
-    if (!panel.layer || panel.layer.name !== name) {
-      const layer = Object.assign(document.createElement("canvas"), {width: Math.round(width * ratio), height: Math.round(height * ratio)});
-      still(layer.getContext("2d"));
-      panel.layer = {name, layer};
-    }
-    pen.drawImage(panel.layer.layer, 0, 0, width, height);
-    pen.font = theme.font;
+  const name = [panel.x, panel.y, width, height, ratio, ...box.x, ...box.y, state.reading, state.bands, models === fitModels, version, shown.serial].join();
+  if (!panel.layer || panel.layer.name !== name) {
+    const layer = Object.assign(document.createElement("canvas"), {width: Math.round(width * ratio), height: Math.round(height * ratio)});
+    still(layer.getContext("2d"));
+    panel.layer = {name, layer};
   }
+  pen.drawImage(panel.layer.layer, 0, 0, width, height);
+  pen.font = theme.font;
   pen.save();
   pen.clip(frame);
   for (const {curve, now} of lines) stroke(pen, now, place, palette[columns.of[state.colour][curve.group.members[0]]], lines.length > 30 ? 1 : 2, []);
@@ -115,7 +112,7 @@ function over(pen, text, x, y, colour) {  // readable over curves
 }
 function limits(panel, shown, lines) {
   if (panel.view) return panel.view;
-  let [x0, x1, y0, y1] = shown.residual ? extent(shown) : shown.extent ??= extent(shown);
+  let [x0, x1, y0, y1] = shown.extent ??= extent(shown);
   if (x0 > x1) return {x: [0, 1], y: [-1, 1]};
   for (const {now} of lines) {
     for (let k = 0; k < now.length; k += 2) {
@@ -161,13 +158,13 @@ function axes(pen, {X, Y, box, start, width, height, rows_}) {
   if (box.x[0] <= 0 && box.x[1] >= 0) line(X(0), TOP, X(0), height - BOTTOM, theme.line);
   if (box.y[0] <= 0 && box.y[1] >= 0) line(start, Y(0), width - RIGHT, Y(0), theme.muted);
 }
-// Sets a square for each point, one for those that fall on the same pixel; `panel.at` has the row, from 1, by pixel.
+// Sets a square for each point; of many, one for those that fall on the same pixel. `panel.at` has the row, from 1, by pixel.
 function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
   const size = Math.round((columns.count > 3000 ? 2 : columns.count > 1200 ? 3 : 4) * ratio), half = size >> 1;
   const w = Math.round(width * ratio), h = Math.round(height * ratio), image = new ImageData(w, h), pixels = new Uint32Array(image.data.buffer);
   const across = Math.ceil(width), at = panel.at = {rows: new Int32Array(across * Math.ceil(height)), across}, out = [];
   const {px, py} = shown, of = columns.of[state.colour], inked = chosen.length > MOST_LISTED ? isChosen : null;
-  const right = width - RIGHT + 3, low = height - BOTTOM + 3;
+  const thinned = columns.count > MOST_MOVED, right = width - RIGHT + 3, low = height - BOTTOM + 3;
   let drawn = 0, all = 0;
   for (let i = 0; i < columns.count; i += shown.step) {
     if (!visible[i]) continue;
@@ -175,7 +172,7 @@ function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
     if (!(x >= start - 3 && x <= right && y >= TOP - 3 && y <= low)) continue;
     all += shown.step;
     const cell = Math.trunc(y) * across + Math.trunc(x), ink = inked && inked[i] ? palette.length : of[i];
-    if (at.rows[cell] && ink < palette.length) continue;
+    if (thinned && at.rows[cell] && ink < palette.length) continue;
     at.rows[cell] = i + 1;
     drawn++;
     if (left[i]) { out.push(x, y); continue; }

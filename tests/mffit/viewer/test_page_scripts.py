@@ -192,6 +192,19 @@ def test_the_reading_left_out_is_found_by_its_line(engine, result):
     assert engine("left") == wanted.astype(int).tolist()
 
 
+def test_points_that_follow_each_other_are_left_out_as_one_range(engine, result):
+    points = result.points
+    file = points.files.index("sideslip_900.csv")
+    lines = [2, 3, 4, 7, 8]
+    rows = [int(np.flatnonzero((points.file == file) & (points.line == line))[0]) for line in reversed(lines)]
+    ranges = engine(f"lineRanges({rows})")
+    assert [(one["file"], one["first"], one["last"]) for one in ranges] == [
+        ("sideslip_900.csv", 2, 4),
+        ("sideslip_900.csv", 7, 8),
+    ]
+    assert len(engine("lineRanges(columns.line.keys())")) <= len(points.files) + 1
+
+
 def test_bands_are_those_of_the_prediction(engine, result):
     """Asked anew of the predictor at the points of a curve, where no other point of it is near."""
     curves = engine.panel("alpha", "Fy")["curves"]
@@ -238,8 +251,7 @@ def test_a_linter_finds_nothing(tmp_path):
         pytest.skip("no oxlint on this machine")
     recordings = environment("mffit.window").get_template("recordings.html.j2")
     pages = {
-        "project": project_html("x", None, turn_slip=False, star=False),
-        "window": project_html("x", None, turn_slip=False, star=False, window={}),
+        "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}),
         "show": show(SAMPLE / "true.tir").html,
         "recordings": recordings.render(name="x", css="", endings=[]),
     }
