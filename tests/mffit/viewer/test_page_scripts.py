@@ -241,6 +241,11 @@ def test_a_picture_is_saved_as_its_numbers(engine, result):
     for row in table:
         if row["what"] == "point":
             assert float(row["Fy"]) == pytest.approx(wanted[row["file"], int(row["line"])], rel=1e-5)
+    Fz, _, gamma, _, _, Vx, p = shown["curves"][0]["group"]["fixed"]
+    first = [row for row in table if row["what"] == "curve"][: shown["curves"][0]["steps"] + 1]
+    alpha = np.radians([float(row["alpha"]) for row in first])
+    tyre = result.fit.tyre(Fz, alpha, gamma, Vx=Vx, p=p, turn_slip=result.fit.simulation.turn_slip)
+    assert [float(row["Fy"]) for row in first] == pytest.approx(tyre.Fy, rel=1e-5, abs=1e-3)
     order = [float(row["alpha"]) for row in table if row["file"]]
     assert order == sorted(order)
 
