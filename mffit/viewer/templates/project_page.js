@@ -103,6 +103,7 @@ function gestures(panel, plot) {
   const at = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
   const end = () => { from = to = null; frame.hidden = true; };
   end();
+  canvas.addEventListener("touchstart", event => { if (event.touches.length > 1) event.preventDefault(); }, {passive: false});  // the page stays
   canvas.addEventListener("pointerdown", event => {
     just = false;
     if (event.pointerType === "touch") touches.set(event.pointerId, at(event));

@@ -232,6 +232,18 @@ def test_every_channel_measured_has_a_picture_and_two_are_in_sight(page, result)
     look(page, SCREEN)
 
 
+def test_a_picture_and_its_numbers_are_saved(page, result, tmp_path):
+    page.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
+    for k in (0, 1):
+        page.execute_script(f"document.querySelectorAll('.panel .more button')[{k}].click()")
+    until(lambda: len(list(tmp_path.glob("small_*.*[gv]"))) == 2)
+    files = {path.suffix: path for path in tmp_path.iterdir()}
+    assert files[".png"].read_bytes().startswith(b"\x89PNG")
+    lines = files[".csv"].read_text(encoding="utf-8").splitlines()
+    assert lines[0].endswith("sideslip [deg],side force [N]")
+    assert sum(line.startswith("point,") for line in lines) == len(result.points)
+
+
 LIGHT = """
 const light = colour => {
   const [r, g, b, opaque] = (colour.match(/[\\d.]+/g) || [0, 0, 0]).map(Number);
