@@ -416,7 +416,8 @@ async function begin() {
   addEventListener("keydown", event => {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !["text", "search"].includes(event.target.type)) { event.preventDefault(); undo(); }
   });
-  if (content.project) await showProject(content.project);
+  if (!globalThis.DecompressionStream) byId("about").textContent = "This browser cannot unpack the points; open the page in one of 2023 or later.";
+  else if (content.project) await showProject(content.project);
 }
 
 // For the console and for tests.

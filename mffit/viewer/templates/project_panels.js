@@ -104,10 +104,8 @@ function paint(panel, pen, width, height, ratio) {
   over(pen, said.join("; "), width - RIGHT - 2, TOP + 9, theme.muted);
 }
 function over(pen, text, x, y, colour) {  // readable over curves
-  const long = pen.measureText(text).width;
-  Object.assign(pen, {fillStyle: theme.paper, globalAlpha: .8, textAlign: "right"});
-  pen.fillRect(x - long - 2, y - LINE + 3, long + 4, LINE);
-  Object.assign(pen, {fillStyle: colour, globalAlpha: 1});
+  Object.assign(pen, {fillStyle: colour, strokeStyle: theme.paper, lineWidth: 4, lineJoin: "round", textAlign: "right"});
+  pen.strokeText(text, x, y);
   pen.fillText(text, x, y);
 }
 function limits(panel, shown, lines) {
