@@ -12,6 +12,14 @@ from mffit.results.values import Json
 
 SIZES = ("u1", "i1", "u2", "i2", "i4")
 """Types of whole numbers, the smallest first."""
+SIX_DIGITS = 20
+"""Bits of a number with six digits, as files of rigs have; further ones would only be harder to compress."""
+
+
+def rounded(values: np.ndarray, bits: int) -> np.ndarray:
+    """Numbers with so many bits, the others zero."""
+    mantissa, exponent = np.frexp(values)
+    return np.asarray(np.ldexp(np.round(np.ldexp(mantissa, bits)), exponent - bits))
 
 
 def packed(columns: Mapping[str, np.ndarray]) -> dict[str, Json]:
@@ -19,7 +27,7 @@ def packed(columns: Mapping[str, np.ndarray]) -> dict[str, Json]:
 
     Parameters
     ----------
-    columns : by name; floats become single, whole numbers the smallest type that holds them
+    columns : by name; floats become single with six digits, whole numbers the smallest type that holds them
 
     Returns
     -------
@@ -31,7 +39,8 @@ def packed(columns: Mapping[str, np.ndarray]) -> dict[str, Json]:
     content = b""
     for name, column in columns.items():
         kind = "f4" if column.dtype.kind == "f" else _smallest(column)
-        values = np.ascontiguousarray(column, dtype=f"<{kind}")
+        kept = rounded(column, SIX_DIGITS) if kind == "f4" else column
+        values = np.ascontiguousarray(kept, dtype=f"<{kind}")
         layout.append([name, kind, len(values)])
         content += values.view(np.uint8).reshape(len(values), values.itemsize).T.tobytes()
     return {"layout": layout, "bytes": base64.b64encode(zlib.compress(content)).decode()}

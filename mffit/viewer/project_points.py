@@ -15,13 +15,15 @@ from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
 from mffit.rig import Simulation
 from mffit.viewer import constants
 from mffit.viewer.controls import in_si
-from mffit.viewer.packing import packed
+from mffit.viewer.packing import packed, rounded
 from tir.codegen.program import INPUTS
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
 """Conditions of points that are no input of the model."""
 FACETS = {name: levels.KINDS[MODEL[name].word] for name in INPUTS if MODEL[name].word in levels.KINDS}
 """Inputs of the model whose set-points have levels."""
+BITS_OF_BANDS = 12
+"""Bits of their numbers: finer than a pixel."""
 
 
 def axis_quantities() -> dict[str, QuantityName]:
@@ -90,15 +92,12 @@ def _bands(felt: Points, n: int, fitted: FitResult) -> dict[str, dict[str, np.nd
     found = fitted.prediction.forces(tyre, tyre, felt.select(rows, with_table=False))
     return {
         "band": {"rows": rows},
-        "missed": {name: _coarse(one.best - one.file) for name, one in found.items()},
-        "half": {name: _coarse(COVERAGE_FACTOR_95 * np.sqrt(one.of_run)) for name, one in found.items()},
+        "missed": {name: rounded(one.best - one.file, BITS_OF_BANDS) for name, one in found.items()},
+        "half": {
+            name: rounded(COVERAGE_FACTOR_95 * np.sqrt(one.of_run), BITS_OF_BANDS)
+            for name, one in found.items()
+        },
     }
-
-
-def _coarse(values: np.ndarray) -> np.ndarray:
-    """Numbers with twelve bits: finer than a pixel, and short once compressed."""
-    mantissa, exponent = np.frexp(values)
-    return np.asarray(np.ldexp(np.round(mantissa * 2.0**12) / 2.0**12, exponent))
 
 
 def facets(points: Points) -> tuple[list[dict[str, object]], dict[str, np.ndarray]]:
