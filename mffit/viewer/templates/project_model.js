@@ -2,7 +2,7 @@
 const {written, trimmed, ticks} = shared;
 const RESIDUAL = "residual of ";
 const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, KNOTS = 16;
-const MOST_MOVED = 3000;  // points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
+const MOST_MOVED = 2000;  // points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
 const TYPES = {f4: Float32Array, u1: Uint8Array, i1: Int8Array, u2: Uint16Array, i2: Int16Array, i4: Int32Array};
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true};
 let project = null;
@@ -89,7 +89,7 @@ function predicted(by_mount, name, found, step) {
   }
   return found;
 }
-const isMoved = name => project.channels.find(one => one.name === name).uses.some(used => used in trial);
+const isMoved = name => channels.includes(name) && project.channels.find(one => one.name === name).uses.some(used => used in trial);
 // What the present values say of the points; while a slider moves, of some of them.
 function recompute(dragging) {
   const wanted = JSON.stringify([dragging, trial]);

@@ -55,7 +55,7 @@ function draw(panel) {
 }
 function paint(panel, pen, width, height, ratio) {
   const shown = placed(panel);
-  const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
+  const lines = shown.curves.map(curve => ({curve, now: models === fitModels || !(isMoved(curve.x) || isMoved(curve.y)) ? fixedCurve(fitModels, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
   const typical = typicalOf(lines), box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
   const start = 10 + LETTER * Math.max(...rows_.map(tick => tick.text.length));
   const kx = (width - start - RIGHT) / (box.x[1] - box.x[0]), ky = (TOP + BOTTOM - height) / (box.y[1] - box.y[0]);
