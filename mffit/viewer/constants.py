@@ -20,3 +20,8 @@ MOST_CHIPS = Count(
 LINES_OF_A_SAMPLE = Count(
     3, "-", "Median distance in lines from which points of a file are means of several lines each."
 )
+POINTS_OF_BANDS = Count(
+    1500,
+    "-",
+    "Most points of a page at which bands are computed: fifty curves have thirty each, two for each of their knots.",
+)

@@ -56,7 +56,7 @@ class Page:
         return f"<Page of {', '.join(self.names)}: {len(self.html)} characters; .write(path) saves it>"
 
     def _repr_html_(self) -> str:
-        frame = 'style="width:100%;height:900px;border:0" sandbox="allow-scripts"'
+        frame = 'style="width:100%;height:900px;border:0" sandbox="allow-scripts allow-downloads"'
         return f'<iframe {frame} srcdoc="{html.escape(self.html)}"></iframe>'
 
 

@@ -24,7 +24,8 @@ def project_data(result: BuildResult) -> dict[str, Json]:
     """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite."""
     fitted, points = result.fit, result.points
     simulation = fitted.simulation
-    parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
+    switches = Switches(simulation.turn_slip, simulation.star)
+    parameters = trace(switches, MODELLED).parameters
     rows = coefficient_rows(result, parameters)
     values = {name: float(simulation.values[name]) for name in parameters}
     return document(
@@ -40,6 +41,7 @@ def project_data(result: BuildResult) -> dict[str, Json]:
                     "rmse": rmse,
                     "over_noise": result.trust.over_noise.get(name),
                     "of_fit": name in fitted.channels,
+                    "uses": trace(switches, (name,)).parameters,
                 }
                 for name, rmse in _misfits(result).items()
             ],
@@ -82,7 +84,7 @@ def project_html(
         .render(
             content={"project": data, "window": window},
             name=name,
-            model=javascript(MODELLED, turn_slip=turn_slip, star=star),
+            models={name: javascript((name,), turn_slip=turn_slip, star=star) for name in _computed(data)},
             turn_slip=turn_slip,
             window=window,
             here=here,
@@ -96,6 +98,13 @@ def project_page(result: BuildResult) -> Page:
     name, simulation = result.config.tyre.name, result.fit.simulation
     html = project_html(name, project_data(result), turn_slip=simulation.turn_slip, star=simulation.star)
     return Page(html, (name,))
+
+
+def _computed(data: dict[str, Json] | None) -> list[str]:
+    """The channels that a page with this data computes, each with code of its own, so that a picture pays for no other."""
+    channels = [] if data is None else data["channels"]
+    assert isinstance(channels, list)
+    return [str(channel["name"]) for channel in channels if isinstance(channel, dict)]
 
 
 def _misfits(result: BuildResult) -> dict[str, float]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import FitResult
 from mffit.points import Points, concatenate, levels
 from mffit.points.noise import stating
@@ -14,14 +15,15 @@ from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
 from mffit.rig import Simulation
 from mffit.viewer import constants
 from mffit.viewer.controls import in_si
+from mffit.viewer.packing import packed, rounded
 from tir.codegen.program import INPUTS
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
 """Conditions of points that are no input of the model."""
 FACETS = {name: levels.KINDS[MODEL[name].word] for name in INPUTS if MODEL[name].word in levels.KINDS}
 """Inputs of the model whose set-points have levels."""
-DIGITS = 12
-"""Significant digits of a number in the page: more than any reading has, and half of what a float needs."""
+BITS_OF_BANDS = 12
+"""Bits of their numbers: finer than a pixel."""
 
 
 def axis_quantities() -> dict[str, QuantityName]:
@@ -37,53 +39,91 @@ def delivered(fitted: FitResult) -> Simulation:
 def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, object]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
-    Conditions and readings are in SI; missing readings are null, and channels without a reading are left out. ``read`` has only
-    the columns that differ from what the tyre felt. ``fitted`` is the number of points that the fit has.
+    Conditions and readings are in SI; missing readings are NaN, and channels without a reading are left out. ``shift`` is what
+    the rig read beyond what the tyre felt, of the columns that differ; ``more`` the lines of a point after its first.
+    ``fitted`` is the number of points that the fit has.
     """
     parts = [points] if excluded is None else [points, excluded]
     simulation = delivered(fitted)
     felt = concatenate([simulation.felt(part) for part in parts])
     read = concatenate(parts)
     own, rig = _shown(felt), _shown(read)
-    return {
-        **own,
-        "read": {name: column for name, column in rig.items() if column != own[name]},
+    groups, levels_of = facets(read)
+    named = {
+        "shift": {name: column - own[name] for name, column in rig.items() if _differ(column, own[name])},
         "u": {
-            name: listed(np.where(stating(points.u(name)), points.u(name), np.nan)) for name in read.measured
+            name: np.where(stating(points.u(name)), points.u(name), np.nan)
+            for name in read.measured
+            if stating(points.u(name)).any()
         },
-        "unused": {name: [o.row for o in fitted.outliers if o.channel == name] for name in CHANNELS},
+        "unused": {
+            name: np.array(sorted(o.row for o in fitted.outliers if o.channel == name), dtype=int)
+            for name in read.measured
+        },
+        "of": levels_of,
+        **_bands(felt, len(points), fitted),
+    }
+    found = own | {
+        "mount": read.mount,
+        "file": read.file,
+        "line": read.line,
+        "more": last_lines(read) - read.line,
+    }
+    found |= {f"{kind}.{name}": column for kind, part in named.items() for name, column in part.items()}
+    return {
+        **packed(found),
+        "count": len(read),
         "fitted": len(points),
-        "mount": read.mount.tolist(),
-        "file": read.file.tolist(),
-        "line": read.line.tolist(),
-        "last": last_lines(read).tolist(),
+        "measured": read.measured,
         "files": list(read.files),
-        "facets": facets(read),
+        "facets": groups,
     }
 
 
-def facets(points: Points) -> list[dict[str, object]]:
-    """Groups of points by their set-points: name, words of the groups, and the group (n,) of each point; -1 for none.
+def _bands(felt: Points, n: int, fitted: FitResult) -> dict[str, dict[str, np.ndarray]]:
+    """At some of the first n points, by channel: what the formula misses, and the half width of the 95 % band around both.
+
+    They change smoothly, so that :data:`~mffit.viewer.constants.POINTS_OF_BANDS` points spread over all are enough.
+    """
+    if fitted.prediction is None:
+        return {}
+    rows = np.unique(np.linspace(0, n - 1, min(n, constants.POINTS_OF_BANDS)).astype(int))
+    tyre = Simulation.of(fitted.tyre, turn_slip=fitted.simulation.turn_slip)
+    found = fitted.prediction.forces(tyre, tyre, felt.select(rows, with_table=False))
+    return {
+        "band": {"rows": rows},
+        "missed": {name: rounded(one.best - one.file, BITS_OF_BANDS) for name, one in found.items()},
+        "half": {
+            name: rounded(COVERAGE_FACTOR_95 * np.sqrt(one.of_run), BITS_OF_BANDS)
+            for name, one in found.items()
+        },
+    }
+
+
+def facets(points: Points) -> tuple[list[dict[str, object]], dict[str, np.ndarray]]:
+    """Groups of points by their set-points: name and words of the groups; and by name the group (n,) of each point, -1 for none.
 
     ``inputs`` are those of the model that the groups share; points of a curve over another input are in the same groups.
     ``is_run`` marks the groups that do not separate curves.
     """
     inputs = _arrays(points)
-    found = []
+    found, groups = [], {}
     for name, kind in FACETS.items():
         values = np.abs(inputs[name]) if name == "Vx" else inputs[name]
         meant = levels.labels_of_setting(values, points.sweep, kind)
         of = _ranks(meant) - int(np.any(meant == levels.NO_LEVEL))
         medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
-        found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians], [name]))
+        found.append(_facet(name, MODEL[name].word, [_said(MODEL[name], x) for x in medians], [name]))
+        groups[name] = of
     for name, word, of, words, shared in (
         ("path", "path", _ranks(points.phi_t), [_path(x) for x in np.unique(points.phi_t)], ["phi_t"]),
         ("direction", "rolling", (points.direction > 0).astype(int), ["backward", "forward"], ["Vx"]),
         ("mount", "mount", (points.mount > 0).astype(int), ["flipped", "normal"], []),
         ("sweep", "run", points.sweep, points.sweep_names, []),
     ):
-        found.append(_facet(name, word, of, words, shared))
-    return found
+        found.append(_facet(name, word, words, shared))
+        groups[name] = of
+    return found, groups
 
 
 def last_lines(points: Points) -> np.ndarray:
@@ -101,15 +141,14 @@ def last_lines(points: Points) -> np.ndarray:
     return out
 
 
-def listed(values: np.ndarray) -> list[float | None]:
-    """A column for JSON: numbers with 12 digits, null for what is not finite."""
-    return [float(f"{x:.{DIGITS}g}") if np.isfinite(x) else None for x in values.tolist()]
-
-
-def _shown(points: Points) -> dict[str, list[float | None]]:
+def _shown(points: Points) -> dict[str, np.ndarray]:
     """Conditions and measured channels by name."""
-    readings = {name: points.channel(name) for name in points.measured}
-    return {name: listed(values) for name, values in (_arrays(points) | readings).items()}
+    return _arrays(points) | {name: points.channel(name) for name in points.measured}
+
+
+def _differ(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether a page, which has single floats, tells two columns apart."""
+    return not np.array_equal(one.astype(np.float32), other.astype(np.float32), equal_nan=True)
 
 
 def _arrays(points: Points) -> dict[str, np.ndarray]:
@@ -119,13 +158,10 @@ def _arrays(points: Points) -> dict[str, np.ndarray]:
     return inputs | {name: getattr(points, name) for name in MEASURED_ONLY}
 
 
-def _facet(
-    name: str, word: str, of: np.ndarray, words: Sequence[str], inputs: Sequence[str]
-) -> dict[str, object]:
+def _facet(name: str, word: str, words: Sequence[str], inputs: Sequence[str]) -> dict[str, object]:
     return {
         "name": name,
         "word": word,
-        "of": of.tolist(),
         "labels": list(words),
         "inputs": list(inputs),
         "is_run": name == "sweep",

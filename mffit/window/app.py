@@ -10,6 +10,8 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
@@ -184,7 +186,11 @@ def window_app(
         Route("/{home}/events", events),
         Route("/{home}/out/{path:path}", result),
     ]
-    application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
+    application = Starlette(
+        routes=routes,
+        exception_handlers={InputError: refused, ClientDisconnect: gone},
+        middleware=[Middleware(GZipMiddleware)],
+    )
     return Guard(application, entrance=entrance, port=port)
 
 

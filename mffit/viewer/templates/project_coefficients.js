@@ -5,7 +5,7 @@ function listCoefficients() {
   const first = !home.children.length;
   home.replaceChildren();
   for (const name in cells) delete cells[name];
-  for (const group of [...new Set(rows.map(row => row.group))]) {
+  for (const group of new Set(rows.map(row => row.group))) {
     const members = rows.filter(row => row.group === group), found = members.filter(row => row.found), rest = members.filter(row => !row.found);
     const box = details(home, group, `${group}`, first ? found.length > 0 : open.has(group));
     for (const row of found) box.append(coefficientRow(row));
@@ -31,6 +31,10 @@ function element(tag, className, text = "") {
   made.className = className;
   made.textContent = text;
   return made;
+}
+// A text that stays is not set again, which would lay out the page.
+function tell(node, text) {
+  if (node.textContent !== text) node.textContent = text;
 }
 function key(text, title, action) {
   const made = element("button", "small", text);
@@ -78,7 +82,7 @@ function showRow(row) {
   cell.box.classList.toggle("moved", moved);
   cell.reset.hidden = !moved;
   const held = typeof entry === "number" || entry === "base";
-  cell.tag.textContent = entryText(entry) || (row.at_bound ? "at its bound" : row.status === "fitted" ? "" : row.status);
+  tell(cell.tag, entryText(entry) || (row.at_bound ? "at its bound" : row.status === "fitted" ? "" : row.status));
   cell.tag.hidden = !cell.tag.textContent;
   cell.tag.classList.toggle("held", held);
   const before = project.before && row.name in project.before.values ? project.before.values[row.name] : null;
@@ -86,7 +90,7 @@ function showRow(row) {
   if (before !== null && Math.abs(before - row.value) > 1e-9 * Math.abs(row.value)) parts.push(`before ${trimmed(written(before))}`);
   if (moved) parts.push(`fit ${trimmed(written(row.value))}`);
   if (row.partner) parts.push(`goes with ${row.partner[0]} (correlation ${row.partner[1].toFixed(3)})`);
-  cell.about.textContent = parts.join("; ");
+  tell(cell.about, parts.join("; "));
 }
 function entryText(entry) {
   if (entry === null || entry === undefined) return "";

@@ -1,10 +1,13 @@
 // The page: what happens when something is moved, clicked or typed. The address keeps what is seen.
-let dragging = false, pending = false, moves = [], dragFrom = null;
+const RESTS_AFTER = 250;  // [ms]
+let dragging = false, pending = false, moves = [], dragFrom = null, resting = 0;
 
 function move(name, value, final) {
   if (dragFrom === null) dragFrom = {...trial};
   if (value === coefficient[name].value) delete trial[name]; else trial[name] = value;
   dragging = !final;
+  clearTimeout(resting);
+  if (!final) resting = setTimeout(() => { dragging = false; update(); }, RESTS_AFTER);  // all points follow a slider that is held still
   if (final) {
     moves.push({trial: dragFrom});
     dragFrom = null;
@@ -14,12 +17,12 @@ function move(name, value, final) {
   update();
 }
 function update() {
-  if (pending) return;
+  if (pending || !project) return;
   pending = true;
   requestAnimationFrame(() => { pending = false; frame(); });
 }
 function frame() {
-  recompute();
+  recompute(dragging);
   for (const panel of state.panels) draw(panel);
   showMisfit();
   byId("undo").disabled = !moves.length && !canUndo();
@@ -37,17 +40,20 @@ function undo() {
 }
 function showMisfit() {
   const body = byId("misfit").tBodies[0], unit = name => quantity(name).unit;
+  const noisy = channels.some(name => columns.u[name]);  // only readings that state their noise are compared with it
   byId("misfit-before").hidden = !project.before;
+  byId("misfit-noise").hidden = !noisy;
   while (body.rows.length > channels.length) body.deleteRow(-1);
   channels.forEach((name, k) => {
     const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name), fit = fitMisfits[name] ??= misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
-    line.cells[0].replaceChildren(shared.symbol(quantity(name)), ` [${unit(name)}]`);
-    line.cells[1].textContent = written(now.rmse);
-    line.cells[2].textContent = written(fit.rmse);
+    if (line.dataset.name !== name) line.cells[0].replaceChildren(shared.symbol(quantity(name)), ` [${unit(name)}]`);
+    line.dataset.name = name;
+    const before = project.before && name in project.before.rmse ? written(project.before.rmse[name]) : "";
+    const ratio = Number.isFinite(now.over_noise) ? now.over_noise.toFixed(2) : "–";
+    [`${now.about ? "≈ " : ""}${written(now.rmse)}`, written(fit.rmse), before, ratio].forEach((text, i) => tell(line.cells[i + 1], text));
     line.cells[3].hidden = !project.before;
-    line.cells[3].textContent = project.before && name in project.before.rmse ? written(project.before.rmse[name]) : "";
-    line.cells[4].textContent = Number.isFinite(now.over_noise) ? now.over_noise.toFixed(2) : "–";
+    line.cells[4].hidden = !noisy;
     line.cells[4].title = "root mean square of (model - reading) / u of the readings that state their uncertainty u";
   });
 }
@@ -56,70 +62,99 @@ function showMisfit() {
 function tip(panel, i) {
   panel.tip.hidden = i < 0;
   if (i < 0) return;
-  const points = project.points, places = panel.places;
-  const lines = [[placeOf(i), ""], ...[panel.x, panel.y].map(name => [label(name), trimmed(written(name === panel.x ? places.px[i] : places.py[i]))])];
+  const {px, py} = panel.kept;
+  const lines = [[placeOf(i), ""], ...[[panel.x, px], [panel.y, py]].map(([name, at]) => [label(name), trimmed(written(at[i]))])];
   panel.tip.replaceChildren(...lines.map(([word, text]) => {
     const line = element("div", "");
     line.append(element("span", "", word), element("b", "", text));
     return line;
   }));
-  const right = places.X(places.px[i]) < panel.canvas.clientWidth / 2;
+  const right = panel.place.X(px[i]) < panel.canvas.clientWidth / 2;
   panel.tip.style.left = right ? "auto" : "4px";
   panel.tip.style.right = right ? "4px" : "auto";
 }
 function placeOf(i) {
-  const points = project.points, last = points.last[i];
-  return `${points.files[points.file[i]]}:${points.line[i]}${last > points.line[i] ? `-${last}` : ""}`;
+  const first = columns.line[i], last = columns.last[i];
+  return `${project.points.files[columns.file[i]]}:${first}${last > first ? `-${last}` : ""}`;
 }
 function choose(i, add) {
-  if (i < 0) chosen = add ? chosen : [];
-  else if (add) chosen = chosen.includes(i) ? chosen.filter(k => k !== i) : [...chosen, i];
-  else chosen = [i];
-  showChosen();
-  update();
+  if (i < 0) setChosen(add ? chosen : []);
+  else if (add) setChosen(isChosen[i] ? chosen.filter(k => k !== i) : [...chosen, i]);
+  else setChosen([i]);
 }
 function chooseAll(members, add) {
-  chosen = [...new Set([...(add ? chosen : []), ...members])];
+  setChosen(add ? chosen.concat([...members].filter(i => !isChosen[i])) : [...members]);
+}
+function setChosen(members) {
+  if (Math.max(chosen.length, members.length) > MOST_LISTED) version++;  // inked among the points
+  chosen = members;
+  isChosen = new Uint8Array(columns.count);
+  for (const i of chosen) isChosen[i] = 1;
   showChosen();
   update();
 }
-const pointsIn = panel => [...visible.keys()].filter(i => visible[i] && Number.isFinite(panel.places.px[i]) && Number.isFinite(panel.places.py[i]));
-// The points in a rectangle of a picture, in its pixels.
-function inside(panel, [x0, y0, x1, y1]) {
-  const {X, Y, px, py} = panel.places, between = (x, a, b) => x >= Math.min(a, b) && x <= Math.max(a, b);
-  return pointsIn(panel).filter(i => between(X(px[i]), x0, x1) && between(Y(py[i]), y0, y1));
-}
-// A rectangle is drawn with the mouse at once; with a finger, which otherwise scrolls, while "Select points" is on.
-function rectangles(panel, plot) {
-  const canvas = panel.canvas, frame = plot.appendChild(element("div", "rectangle"));
+// What a drag in a picture does: a rectangle chooses points or becomes the view, or the picture is moved. Without a button of
+// these pressed, that of a mouse chooses points, and a finger moves the page; two fingers zoom.
+const TOOLS = ["select", "zoom", "move"];
+const tool = () => TOOLS.find(name => byId(name).getAttribute("aria-pressed") === "true") || "";
+function gestures(panel, plot) {
+  const canvas = panel.canvas, frame = plot.appendChild(element("div", "rectangle")), touches = new Map();
   let from = null, to = null, just = false;
   const at = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
   const end = () => { from = to = null; frame.hidden = true; };
   end();
+  canvas.addEventListener("touchstart", event => { if (event.touches.length > 1) event.preventDefault(); }, {passive: false});  // the page stays
   canvas.addEventListener("pointerdown", event => {
     just = false;
-    if (event.button === 0 && (event.pointerType === "mouse" || selecting())) from = at(event);
+    if (event.pointerType === "touch") touches.set(event.pointerId, at(event));
+    if (touches.size > 1) return end();
+    if (event.button === 0 && (event.pointerType !== "touch" || tool())) from = at(event);
   });
   canvas.addEventListener("pointermove", event => {
-    if (!from) return;
     const now = at(event);
+    if (touches.size === 2 && touches.has(event.pointerId)) {
+      const [, other] = [...touches].find(([id]) => id !== event.pointerId), old = touches.get(event.pointerId);
+      touches.set(event.pointerId, now);
+      pan(panel, (now[0] - old[0]) / 2, (now[1] - old[1]) / 2);
+      const apart = place => Math.max(Math.hypot(place[0] - other[0], place[1] - other[1]), NEAREST_DRAG);
+      return zoom(panel, apart(old) / apart(now), (now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
+    }
+    if (!from) return;
     if (!to && Math.hypot(now[0] - from[0], now[1] - from[1]) < NEAREST_DRAG) return;
     if (!to) canvas.setPointerCapture(event.pointerId);
+    if (tool() === "move") {
+      const last = to || from;
+      to = now;
+      return pan(panel, now[0] - last[0], now[1] - last[1]);
+    }
     to = now;
     frame.hidden = false;
     Object.assign(frame.style, {left: `${Math.min(from[0], to[0])}px`, top: `${Math.min(from[1], to[1])}px`, width: `${Math.abs(to[0] - from[0])}px`, height: `${Math.abs(to[1] - from[1])}px`});
   });
-  canvas.addEventListener("pointerup", event => {
-    if (to) { just = true; chooseAll(inside(panel, [...from, ...to]), event.shiftKey || selecting()); }
+  const up = event => {
+    touches.delete(event.pointerId);
+    if (to && event.type === "pointerup" && tool() !== "move") {
+      const {ox, oy, kx, ky} = panel.place, sorted = list => list.sort((a, b) => a - b);
+      const x = sorted([from[0], to[0]].map(place => (place - ox) / kx)), y = sorted([from[1], to[1]].map(place => (place - oy) / ky));
+      if (tool() === "zoom") look(panel, {x, y});
+      else chooseAll(within(panel.kept, ...x, ...y), event.shiftKey || tool() === "select");
+    }
+    just = to !== null;
     end();
-  });
-  canvas.addEventListener("pointercancel", end);
+  };
+  canvas.addEventListener("pointerup", up);
+  canvas.addEventListener("pointercancel", up);
   canvas.addEventListener("click", event => {
-    if (just) just = false; else choose(nearest(panel, event), event.shiftKey || selecting());
+    if (just) just = false; else if (tool() !== "zoom") choose(nearest(panel, ...at(event)), event.shiftKey || tool() === "select");
   });
-  return {dragged: () => to !== null, end};
+  canvas.addEventListener("wheel", event => {
+    if (!event.ctrlKey && tool() !== "zoom") return;  // the page scrolls
+    event.preventDefault();
+    zoom(panel, ZOOM ** Math.sign(event.deltaY), ...at(event));
+  }, {passive: false});
+  canvas.addEventListener("dblclick", () => look(panel, null));
+  return {dragged: () => to !== null, end, at};
 }
-const selecting = () => byId("select").getAttribute("aria-pressed") === "true";
 let chosenActions = () => [];
 function showChosen() {
   byId("chosen").hidden = !chosen.length;
@@ -155,15 +190,12 @@ function unchoose(i) {
   return cell;
 }
 function step(panel, by, add) {
-  const order = pointsIn(panel)
-    .sort((a, b) => panel.places.px[a] - panel.places.px[b] || panel.places.py[a] - panel.places.py[b]);
+  const order = inOrder(panel.kept);
   if (!order.length) return;
   const at = order.indexOf(chosen[chosen.length - 1]);
   const next = order[((at < 0 && by < 0 ? 0 : at) + by + order.length) % order.length];
-  if (add && chosen.includes(next)) chosen = chosen.slice(0, -1);  // back over the points that were added
+  if (add && isChosen[next]) setChosen(chosen.slice(0, -1));  // back over the points that were added
   else chooseAll([next], add);
-  showChosen();
-  update();
   tip(panel, next);
 }
 
@@ -177,27 +209,37 @@ function addPanel({x, y}) {
     select.setAttribute("aria-label", axis === "y" ? "Upwards" : "Sideways");
     for (const name of options[axis]) select.append(new Option(label(name), name, false, name === panel[axis]));
     panel[axis] = select.value;
-    select.addEventListener("change", () => { panel[axis] = select.value; panel.box = null; remember(); update(); });
+    select.addEventListener("change", () => { panel[axis] = select.value; panel.box = null; look(panel, null); remember(); });
     caption.append(...(axis === "x" ? [element("span", "on-screen", "over "), select] : [select]));
   }
   const close = key("×", "remove this picture", () => {
     state.panels = state.panels.filter(one => one !== panel);
     figure.remove();
+    seen.unobserve(panel.canvas);
     remember();
   });
+  const more = element("details", "more"), menu = element("div", "");
+  more.append(element("summary", "", "⋯"), menu);
+  more.firstChild.setAttribute("aria-label", "save this picture");
+  for (const [word, save] of [["picture (PNG)", savePicture], ["numbers (CSV)", saveNumbers]]) {
+    menu.append(key(word, `save this ${word}`, () => { more.open = false; save(panel); }));
+  }
+  panel.whole = key("whole", "shows all again (0, or a double click)", () => look(panel, null));
+  panel.whole.hidden = true;
   close.classList.add("close");
-  caption.append(close, panel.title);
+  caption.append(panel.whole, more, close, panel.title);
   panel.tip.hidden = true;
   panel.canvas.tabIndex = 0;
   panel.canvas.setAttribute("role", "img");
-  panel.canvas.setAttribute("aria-label", "points and curves; arrow keys choose a point, with Shift several, Ctrl+A all");
+  panel.canvas.setAttribute("aria-label", "points and curves; arrow keys choose a point, with Shift several, Ctrl+A all; + and - zoom, 0 shows all");
   plot.append(panel.canvas, panel.tip);
   figure.append(caption, plot);
   byId("panels").append(figure);
-  const rectangle = rectangles(panel, plot);
+  const drag = gestures(panel, plot);
+  seen.observe(panel.canvas);
   panel.canvas.addEventListener("pointermove", event => {
-    if (rectangle.dragged()) return tip(panel, -1);
-    const i = nearest(panel, event);
+    if (drag.dragged()) return tip(panel, -1);
+    const i = nearest(panel, ...drag.at(event));
     tip(panel, i);
     if (i !== pointed) { pointed = i; update(); }
   });
@@ -205,23 +247,31 @@ function addPanel({x, y}) {
   panel.canvas.addEventListener("keydown", event => {
     const steps = {ArrowLeft: -1, ArrowRight: 1}[event.key];
     if (steps) { event.preventDefault(); step(panel, steps, event.shiftKey); }
-    else if (event.key === "Escape") { if (!rectangle.dragged()) choose(-1, false); rectangle.end(); tip(panel, -1); }
-    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "a") { event.preventDefault(); chooseAll(pointsIn(panel), false); }
+    else if (event.key === "Escape") { if (!drag.dragged()) choose(-1, false); drag.end(); tip(panel, -1); }
+    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "a") { event.preventDefault(); chooseAll(inOrder(panel.kept), false); }
+    else if (["+", "=", "-"].includes(event.key) && !event.ctrlKey) zoom(panel, event.key === "-" ? ZOOM : 1 / ZOOM, panel.canvas.clientWidth / 2, panel.canvas.clientHeight / 2);
+    else if (event.key === "0" && !event.ctrlKey) look(panel, null);
     else if (event.key === "Delete" && chosen.length) leaveOut();
   });
   state.panels.push(panel);
 }
 let leaveOut = () => {};
-const axisKnown = name => columns[name] && columns[name].some(Number.isFinite) && (columns[name].some(x => x !== columns[name][0]));
+// While a slider moves, only pictures that are on the screen are drawn.
+const seen = new IntersectionObserver(entries => {
+  for (const entry of entries) {
+    const panel = state.panels.find(one => one.canvas === entry.target);
+    if (panel) panel.unseen = !entry.isIntersecting;
+  }
+});
 
 // ---- filters
 function listFacets() {
-  const home = byId("facets");
-  home.replaceChildren();
+  byId("legend").replaceChildren();
+  byId("facets").replaceChildren();
   const wide = project.points.facets.filter(one => one.as_range).map(one => one.name);
   for (const name of wide) delete state.hidden[name];
   for (const one of project.points.facets.filter(facet => facet.labels.length > 1 && !facet.as_range)) {
-    const present = one.labels.filter((_, k) => one.of.includes(k));
+    const home = byId(one.name === state.colour ? "legend" : "facets"), present = one.labels.filter((_, k) => one.of.includes(k));
     if (present.length < 2) continue;
     const line = element("div", "facet");
     line.append(element("span", "word", one.word));
@@ -246,7 +296,7 @@ function listFacets() {
       return field;
     });
     line.append(element("span", "word", quantity(name).word), "from ", ends[0], " to ", ends[1], ` ${quantity(name).unit}`);
-    home.append(line);
+    byId("facets").append(line);
   }
 }
 // A click hides the group; with Shift, or twice, it shows it alone.
@@ -272,7 +322,7 @@ function refilter() {
   update();
 }
 function showFacets() {
-  for (const made of byId("facets").querySelectorAll(".chip[data-facet]")) {
+  for (const made of document.querySelectorAll(".facet .chip[data-facet]")) {
     const {facet: name, label: text} = made.dataset;
     made.setAttribute("aria-pressed", !(state.hidden[name] || []).includes(text));
     made.textContent = text;
@@ -288,7 +338,7 @@ function showFacets() {
 
 // ---- the address
 function remember() {
-  const kept = {panels: state.panels.map(({x, y}) => ({x, y})), hidden: state.hidden, ranges: state.ranges, colour: state.colour, reading: state.reading, trial};
+  const {hidden, ranges, colour, reading, bands} = state, kept = {panels: state.panels.map(({x, y}) => ({x, y})), hidden, ranges, colour, reading, bands, trial};
   history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify(kept))}`);
 }
 function recalled() {
@@ -299,10 +349,11 @@ function recalled() {
   }
 }
 
-function showProject(data) {
-  const places = project && columns.count ? chosen.map(placeOf) : [];
-  take(data);
-  chosen = places.map(place => project.points.line.findIndex((_, i) => placeOf(i) === place)).filter(i => i >= 0);
+async function showProject(data) {
+  if (data.channels.some(channel => !(channel.name in MODELS))) return location.reload();  // with the model of these channels
+  const places = new Set(project ? chosen.map(placeOf) : []);
+  take(data, await inflated(data.points.bytes));
+  setChosen(places.size ? [...columns.line.keys()].filter(i => places.has(placeOf(i))) : []);
   byId("content").hidden = false;
   const names = project.points.facets.filter(one => one.labels.length > 1);
   byId("colour").replaceChildren(...names.map(one => new Option(one.word, one.name, false, one.name === state.colour)));
@@ -313,7 +364,6 @@ function showProject(data) {
   showFacets();
   if (!state.panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
   listCoefficients();
-  showChosen();
   const fit = project.channels.filter(one => one.of_fit).map(one => `${one.name} ${written(one.rmse)} ${quantity(one.name).unit}`).join(", ");
   byId("about").textContent = `${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
   const said = project.warnings, box = byId("warnings");
@@ -323,16 +373,27 @@ function showProject(data) {
   box.querySelector("ul").replaceChildren(...said.map(sentence => element("li", "", sentence)));
   frame();
 }
+async function inflated(text) {
+  const packed = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+  return new Uint8Array(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+}
+function retheme() {
+  if (!project) return;
+  readTheme();
+  showFacets();
+  frame();  // at once, as paper does not wait
+}
 let wanted = [];
-function begin() {
+async function begin() {
   const kept = recalled();
   wanted = Array.isArray(kept.panels) ? kept.panels : [];
   for (const name of ["hidden", "ranges"]) if (kept[name] && typeof kept[name] === "object") state[name] = kept[name];
   if (kept.colour) state.colour = kept.colour;
   if (["curve", "felt", "read"].includes(kept.reading)) state.reading = kept.reading;
   for (const [name, value] of Object.entries(kept.trial || {})) if (Number.isFinite(value)) trial[name] = value;
+  if (typeof kept.bands === "boolean") state.bands = kept.bands;
   byId("reading").value = state.reading;
-  if (matchMedia("(max-width: 820px)").matches) byId("filters").open = false;
+  byId("bands").checked = state.bands;
   byId("find").addEventListener("input", find);
   byId("undo").addEventListener("click", undo);
   byId("reset").addEventListener("click", () => {
@@ -342,32 +403,32 @@ function begin() {
     remember();
     update();
   });
-  byId("colour").addEventListener("change", event => { state.colour = event.target.value; recolour(); showFacets(); remember(); update(); });
+  byId("colour").addEventListener("change", event => { state.colour = event.target.value; recolour(); listFacets(); showFacets(); remember(); update(); });
+  byId("bands").addEventListener("change", event => { state.bands = event.target.checked; remember(); update(); });
   byId("reading").addEventListener("change", event => { state.reading = event.target.value; remember(); update(); });
   byId("to-pictures").addEventListener("click", () => state.panels.length && state.panels[0].canvas.focus());
-  byId("select").addEventListener("click", () => {
-    byId("select").setAttribute("aria-pressed", !selecting());
-    byId("panels").classList.toggle("selecting", selecting());
+  for (const name of TOOLS) byId(name).addEventListener("click", () => {
+    const pressed = tool() === name ? "" : name;
+    for (const other of TOOLS) byId(other).setAttribute("aria-pressed", other === pressed);
+    byId("panels").classList.toggle("dragging", pressed !== "");
   });
   byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); });
   addEventListener("resize", update);
   shared.whenPrinted(() => {
-    if (!project) return;
     for (const {title, x, y} of state.panels) title.textContent = `${label(y)} over ${label(x)}`;
-    readTheme();
-    frame();
+    retheme();
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (project) { readTheme(); update(); } });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", retheme);
   addEventListener("keydown", event => {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !["text", "search"].includes(event.target.type)) { event.preventDefault(); undo(); }
   });
-  if (project) showProject(project);
+  if (!globalThis.DecompressionStream) byId("about").textContent = "This browser cannot unpack the points; open the page in one of 2023 or later.";
+  else if (content.project) await showProject(content.project);
 }
 
 // For the console and for tests.
 window.mffit = {
-  evaluate: inputs => models["1"](...inputs),
-  misfit: name => { recompute(); return misfit(name); },  // also before the next frame is drawn
+  misfit: name => { recompute(false); return misfit(name); },  // also before the next frame is drawn
   move: (name, value) => { move(name, value, true); frame(); },
   data: () => project,
   trial: () => trial,
@@ -378,16 +439,11 @@ window.mffit = {
   choose,
   chooseAll,
   show: showProject,
-  place: (panel, i) => { const p = state.panels[panel].places; return [p.X(p.px[i]), p.Y(p.py[i])]; },
-  // What the curve of a point in a picture is at its place, in SI; null without a curve.
-  onCurve: (panel, i) => {
-    const {x, y} = state.panels[panel], group = groupsOver(parameterOf(x, y)).find(one => one.members.includes(i));
-    return group ? evaluated(models, group, columns[parameterOf(x, y)][i])[y] : null;
-  },
-  shown: panel => { const p = state.panels[panel].places; return [[...p.px], [...p.py]]; },
+  place: (panel, i) => { const {place: {X, Y}, kept: {px, py}} = state.panels[panel]; return [X(px[i]), Y(py[i])]; },
+  box: panel => state.panels[panel].place.box,
   // Milliseconds of each of n frames in which a slider moves: computing and drawing.
   frames: (name, n) => {
-    const times = [], start = coefficient[name].value, [low, high] = coefficient[name].slider;
+    const times = [], [low, high] = coefficient[name].slider;
     for (let k = 0; k < n; k++) {
       const before = performance.now();
       trial[name] = low + (high - low) * (k + 1) / (n + 1);

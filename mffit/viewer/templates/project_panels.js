@@ -1,15 +1,14 @@
-// Pictures: any quantity over any other, on canvas, because a picture has thousands of points.
-const RESIDUAL = "residual of ";
-const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22, RATIO_OF_PAPER = 3;
-const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve"};
-let visible = new Uint8Array(0), theme = {}, palette = [], colourOf = [], curveGroups = {}, chosen = [], pointed = -1;
-let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
+// Pictures: any quantity over any other. Points are set as pixels of one image, because a picture has up to a million of them.
+const NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22, LETTER = 6.6, LINE = 13, RATIO_OF_PAPER = 3;
+const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];  // places of a label along its curve, the best first
+let theme = {}, palette = [], inks = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
+const scratch = document.createElement("canvas");
 
-const facet = name => project.points.facets.find(one => one.name === name);
 function defaultPanels() {
-  const first = project.channels.filter(one => one.of_fit).map(one => one.name).slice(0, 2), levels = name => facet(name).labels.length;
-  const over = name => name === "Fx" || levels("kappa") > levels("alpha") ? "kappa" : "alpha";
-  return [...first.map(y => ({x: over(y), y})), ...first.map(y => ({x: over(y), y: RESIDUAL + y}))];
+  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name), others = project.points.measured.filter(name => !fitted.includes(name));
+  const levels = name => facet(name).labels.length;
+  const over = name => !channels.includes(name) ? "Fz" : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
+  return [...fitted, ...others].map(y => ({x: over(y), y})).concat(fitted.map(y => ({x: over(y), y: RESIDUAL + y})));
 }
 function readTheme() {
   const style = getComputedStyle(document.documentElement), of = name => style.getPropertyValue(`--${name}`).trim();
@@ -22,101 +21,20 @@ function readTheme() {
 function recolour() {
   const by = facet(state.colour) || project.points.facets[0], many = by.labels.length;
   palette = by.labels.map((_, i) => many <= 8 ? theme.colours[i] : `hsl(${250 - 250 * i / (many - 1)} 70% ${theme.dark ? 62 : 42}%)`);
-  colourOf = by.of;
+  inks = pixelsOf([...palette.map(colour => [colour, .72]), [theme.ink, 1]]);
   version++;
 }
-function filter() {
-  const hidden = project.points.facets.map(one => [one, new Set(state.hidden[one.name] || [])]).filter(([, set]) => set.size);
-  const ranges = Object.entries(state.ranges).filter(([name]) => columns[name]);
-  visible = new Uint8Array(columns.count);
-  for (let i = 0; i < columns.count; i++) {
-    visible[i] = hidden.every(([one, set]) => !set.has(one.labels[one.of[i]]))
-      && ranges.every(([name, [low, high]]) => {
-        const x = shownIn(name, columns[name][i]);
-        return Number.isNaN(x) || ((low === null || x >= low) && (high === null || x <= high));
-      }) ? 1 : 0;
-  }
-  curveGroups = {};
-  version++;
-}
-// Points of one curve over x: the same levels of everything else; with the median of their conditions.
-function groupsOver(x) {
-  if (curveGroups[x]) return curveGroups[x];
-  const facets = project.points.facets.filter(one => !one.is_run && !one.inputs.includes(x));
-  const found = new Map(), X = columns[x];
-  for (let i = 0; i < columns.count; i++) {
-    if (!visible[i]) continue;
-    const key = facets.map(one => one.of[i]).join();
-    if (!found.has(key)) found.set(key, []);
-    found.get(key).push(i);
-  }
-  let low = Infinity, high = -Infinity;
-  for (const members of found.values()) for (const i of members) { low = Math.min(low, X[i]); high = Math.max(high, X[i]); }
-  const groups = [];
-  for (const members of found.values()) {
-    const at = members.map(i => X[i]), from = Math.min(...at), to = Math.max(...at);
-    if (!(to - from > NARROWEST * (high - low))) continue;
-    const fixed = project.order.map(name => median(members.map(i => columns[name][i])));
-    groups.push({members, from, to, fixed, place: project.order.indexOf(x), mount: project.points.mount[members[0]]});
-  }
-  return curveGroups[x] = groups;
-}
-function median(list) {
-  const sorted = Float64Array.from(list).sort(), k = sorted.length >> 1;
-  return sorted.length % 2 ? sorted[k] : (sorted[k - 1] + sorted[k]) / 2;
-}
-function evaluated(by_mount, group, x) {
-  const at = group.fixed.slice();
-  at[group.place] = x;
-  return by_mount[group.mount](...at);
-}
-// What a picture shows of every point: places in the units of the page.
-function placed(panel) {
-  const residual = panel.y.startsWith(RESIDUAL), y = residual ? panel.y.slice(RESIDUAL.length) : panel.y;
-  const source = state.reading === "read" ? columns.read : columns;
-  const X = source[panel.x] || columns[panel.x], n = columns.count;
-  const along = channels.includes(y) ? parameterOf(panel.x, y) : null, over = along ? groupsOver(along) : [];
-  const sx = quantity(panel.x).si, sy = quantity(y).si, px = new Float64Array(n), py = new Float64Array(n);
-  for (let i = 0; i < n; i++) {
-    px[i] = X[i] / sx;
-    py[i] = residual ? (columns[y][i] - own[y][i]) / sy : (source[y] || columns[y])[i] / sy;
-  }
-  const curves = [], steps = Math.max(FEWEST_STEPS, Math.min(STEPS, Math.floor(STEPS_OF_A_PICTURE / over.length)));
-  if (!residual && over.length) {
-    for (const group of over) {
-      if (state.reading === "curve") {
-        for (const [name, places, size] of [[panel.x, px, sx], [y, py, sy]]) {
-          if (!channels.includes(name)) continue;
-          const shift = toTheCurve(group, along, name);
-          group.members.forEach((i, k) => { places[i] += shift[k] / size; });
-        }
-      }
-      curves.push({group, x: panel.x, y, sx, sy, from: group.from, to: group.to, steps});
-    }
-  }
-  return {px, py, curves, residual, y};
-}
-// The input that runs along a curve: that of the axis; slip or sideslip where both axes are forces, as in a friction ellipse.
-function parameterOf(x, y) {
-  if (project.order.includes(x)) return x;
-  if (x === y || !channels.includes(x)) return null;
-  return [x, y].includes("Fx") && axisKnown("kappa") ? "kappa" : axisKnown("alpha") ? "alpha" : null;
-}
-// By how much the fitted model differs between a point's conditions and its curve's; sliders do not move the points.
-function toTheCurve(group, x, y) {
-  return (group.shift ??= {})[y] ??= group.members.map(i => evaluated(fitModels, group, columns[x][i])[y] - fitOwn[y][i]);
-}
-function fixedCurve(by_mount, curve) {
-  const name = `${curve.x} ${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
-  return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve, curve.steps);
-}
-function curvePoints(by_mount, curve, steps) {
-  const points = [];
-  for (let k = 0; k <= steps; k++) {
-    const at = curve.from + (curve.to - curve.from) * k / steps, forces = evaluated(by_mount, curve.group, at);
-    points.push([(curve.x in forces ? forces[curve.x] : at) / curve.sx, forces[curve.y] / curve.sy]);
-  }
-  return points;
+// Colours on the paper as pixels.
+function pixelsOf(colours) {
+  const canvas = Object.assign(document.createElement("canvas"), {width: colours.length, height: 1}), pen = canvas.getContext("2d");
+  pen.fillStyle = theme.paper;
+  pen.fillRect(0, 0, colours.length, 1);
+  colours.forEach(([colour, alpha], i) => {
+    pen.fillStyle = colour;
+    pen.globalAlpha = alpha;
+    pen.fillRect(i, 0, 1, 1);
+  });
+  return new Uint32Array(pen.getImageData(0, 0, colours.length, 1).data.buffer);
 }
 function label(name) {
   const residual = name.startsWith(RESIDUAL), known = quantity(residual ? name.slice(RESIDUAL.length) : name);
@@ -124,81 +42,93 @@ function label(name) {
 }
 
 function draw(panel) {
-  const canvas = panel.canvas, width = canvas.clientWidth, height = canvas.clientHeight, ratio = shared.onPaper() ? RATIO_OF_PAPER : devicePixelRatio || 1;
+  if (dragging && panel.unseen) return;
+  if (!dragging) panel.size = [panel.canvas.clientWidth, panel.canvas.clientHeight];  // asking for it lays out the page
+  const canvas = panel.canvas, [width, height] = panel.size, ratio = shared.onPaper() ? RATIO_OF_PAPER : devicePixelRatio || 1;
   if (!width) return;
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
-  const pen = canvas.getContext("2d"), shown = placed(panel);
-  pen.setTransform(1, 0, 0, 1, 0, 0);
-  pen.clearRect(0, 0, canvas.width, canvas.height);
-  const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
-  const box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
-  const start = 10 + 6.6 * Math.max(...rows_.map(tick => tick.text.length));
-  const X = x => start + (x - box.x[0]) / (box.x[1] - box.x[0]) * (width - start - RIGHT);
-  const Y = y => height - BOTTOM - (y - box.y[0]) / (box.y[1] - box.y[0]) * (height - TOP - BOTTOM);
+  const pen = canvas.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  paint(panel, pen, width, height, ratio);
+}
+function paint(panel, pen, width, height, ratio) {
+  const shown = placed(panel);
+  const lines = shown.curves.map(curve => ({curve, now: models === fitModels || !(isMoved(curve.x) || isMoved(curve.y)) ? fixedCurve(fitModels, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
+  const typical = typicalOf(lines), box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
+  const start = 10 + LETTER * Math.max(...rows_.map(tick => tick.text.length));
+  const kx = (width - start - RIGHT) / (box.x[1] - box.x[0]), ky = (TOP + BOTTOM - height) / (box.y[1] - box.y[0]);
+  const place = {box, start, width, height, ratio, rows_, kx, ky, ox: start - box.x[0] * kx, oy: height - BOTTOM - box.y[0] * ky};
+  place.X = x => place.ox + kx * x;
+  place.Y = y => place.oy + ky * y;
+  panel.place = place;
   const frame = new Path2D();
   frame.rect(start - 3, TOP - 3, width - start - RIGHT + 6, height - TOP - BOTTOM + 6);
   // What a slider does not move is drawn once: axes, points and the curves of the fits.
   const still = on => {
     on.setTransform(ratio, 0, 0, ratio, 0, 0);
     on.font = theme.font;
-    axes(on, {X, Y, box, start, width, height, rows_});
+    axes(on, place);
     on.save();
     on.clip(frame);
-    dots(on, shown, X, Y);
+    if (state.bands) for (const line of typical.values()) band(on, line.curve, place);
+    dots(on, panel, shown, place);
     for (const {curve} of lines) {
-      if (models !== fitModels) stroke(on, fixedCurve(fitModels, curve), X, Y, theme.muted, 1, [4, 3]);
-      else if (beforeModels) stroke(on, fixedCurve(beforeModels, curve), X, Y, theme.muted, 1, [1, 3]);
+      if (models !== fitModels) stroke(on, fixedCurve(fitModels, curve), place, theme.muted, 1, [4, 3]);
+      else if (beforeModels) stroke(on, fixedCurve(beforeModels, curve), place, theme.muted, 1, [1, 3]);
     }
     on.restore();
   };
-  if (shown.residual) still(pen);
-  else {
-    const name = [panel.x, panel.y, canvas.width, canvas.height, ratio, ...box.x, ...box.y, state.reading, models === fitModels, version].join();
-    if (!panel.layer || panel.layer.name !== name) {
-      const layer = Object.assign(document.createElement("canvas"), {width: canvas.width, height: canvas.height});
-      still(layer.getContext("2d"));
-      panel.layer = {name, layer};
-    }
-    pen.drawImage(panel.layer.layer, 0, 0);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.font = theme.font;
+  const name = [panel.x, panel.y, width, height, ratio, ...box.x, ...box.y, state.reading, state.bands, models === fitModels, version, shown.serial].join();
+  if (!panel.layer || panel.layer.name !== name) {
+    const layer = Object.assign(document.createElement("canvas"), {width: Math.round(width * ratio), height: Math.round(height * ratio)});
+    still(layer.getContext("2d"));
+    panel.layer = {name, layer};
   }
+  pen.drawImage(panel.layer.layer, 0, 0, width, height);
+  pen.font = theme.font;
   pen.save();
   pen.clip(frame);
-  for (const {curve, now} of lines) stroke(pen, now, X, Y, palette[colourOf[curve.group.members[0]]], 2, []);
-  marks(pen, shown, X, Y);
+  for (const {curve, now} of lines) stroke(pen, now, place, palette[columns.of[state.colour][curve.group.members[0]]], lines.length > 30 ? 1 : 2, []);
+  marks(pen, shown, place);
   pen.restore();
+  labels(pen, typical, place);
+  const said = [];
   if (channels.includes(shown.y)) {
-    const {rmse, over_noise} = misfits[shown.y] ??= misfit(shown.y);
-    const text = `misfit ${written(rmse)} ${quantity(shown.y).unit}${Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : ""}`;
-    Object.assign(pen, {fillStyle: theme.muted, strokeStyle: theme.paper, lineWidth: 4, textAlign: "right"});
-    pen.strokeText(text, width - RIGHT - 2, TOP + 9);  // readable over curves
-    pen.fillText(text, width - RIGHT - 2, TOP + 9);
+    const {rmse, over_noise, about} = misfits[shown.y] ??= misfit(shown.y);
+    said.push(`misfit ${about ? "≈ " : ""}${written(rmse)} ${quantity(shown.y).unit}${Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : ""}`);
   }
-  panel.places = {px: shown.px, py: shown.py, X, Y};
+  const {drawn, of} = panel.count;
+  if (drawn < of) said.push(`drawn ${drawn} of ${of}`);
+  over(pen, said.join("; "), width - RIGHT - 2, TOP + 9, theme.muted);
+}
+function over(pen, text, x, y, colour) {  // readable over curves
+  Object.assign(pen, {fillStyle: colour, strokeStyle: theme.paper, lineWidth: 4, lineJoin: "round", textAlign: "right"});
+  pen.strokeText(text, x, y);
+  pen.fillText(text, x, y);
 }
 function limits(panel, shown, lines) {
-  let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
-  for (let i = 0; i < shown.px.length; i++) {
-    if (!visible[i] || !Number.isFinite(shown.px[i]) || !Number.isFinite(shown.py[i])) continue;
-    if (shown.px[i] < x0) x0 = shown.px[i];
-    if (shown.px[i] > x1) x1 = shown.px[i];
-    if (shown.py[i] < y0) y0 = shown.py[i];
-    if (shown.py[i] > y1) y1 = shown.py[i];
-  }
+  if (panel.view) return panel.view;
+  let [x0, x1, y0, y1] = shown.extent ??= extent(shown);
   if (x0 > x1) return {x: [0, 1], y: [-1, 1]};
-  for (const line of lines) {
-    for (const [x, y] of line.now) {
-      if (Number.isFinite(y)) { y0 = Math.min(y0, y); y1 = Math.max(y1, y); }
-      if (channels.includes(panel.x) && Number.isFinite(x)) { x0 = Math.min(x0, x); x1 = Math.max(x1, x); }
+  for (const {now} of lines) {
+    for (let k = 0; k < now.length; k += 2) {
+      const x = now[k], y = now[k + 1];
+      if (y < y0) y0 = y;
+      if (y > y1) y1 = y;
+      if (x < x0) x0 = x;
+      if (x > x1) x1 = x;
     }
   }
-  if (shown.residual || shown.curves.length) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }
-  const wide = ([low, high]) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)] : [low - 1, high + 1];
-  let box = {x: wide([x0, x1]), y: wide([y0, y1])};
-  if (panel.box && dragging) {  // axes only grow while a slider moves, so that the curve is seen to move
-    const grown = axis => [Math.min(box[axis][0], panel.box[axis][0]), Math.max(box[axis][1], panel.box[axis][1])];
+  if (shown.residual || lines.length) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }
+  const wide = (low, high) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)] : [low - 1, high + 1];
+  let box = {x: wide(x0, x1), y: wide(y0, y1)};
+  if (panel.box && dragging) {  // axes only grow while a slider moves, so that the curve is seen to move, and in steps
+    const grown = axis => {
+      const [low, high] = box[axis], [first, last] = panel.box[axis], step = 0.2 * (last - first);
+      return [low < first ? low - step : first, high > last ? high + step : last];
+    };
     box = {x: grown("x"), y: grown("y")};
   }
   return panel.box = box;
@@ -226,46 +156,103 @@ function axes(pen, {X, Y, box, start, width, height, rows_}) {
   if (box.x[0] <= 0 && box.x[1] >= 0) line(X(0), TOP, X(0), height - BOTTOM, theme.line);
   if (box.y[0] <= 0 && box.y[1] >= 0) line(start, Y(0), width - RIGHT, Y(0), theme.muted);
 }
-function dots(pen, shown, X, Y) {
-  const size = columns.count > 3000 ? 2 : columns.count > 1200 ? 3 : 4, half = size / 2;
-  const byColour = palette.map(() => []), out = [];
-  for (let i = 0; i < columns.count; i++) {
-    if (!visible[i] || Number.isNaN(shown.py[i]) || Number.isNaN(shown.px[i])) continue;
-    if (left[i]) out.push(i);
-    else if (colourOf[i] >= 0) byColour[colourOf[i]].push(i);
+// Sets a square for each point; of many, one for those that fall on the same pixel. `panel.at` has the row, from 1, by pixel.
+function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
+  const size = Math.round((columns.count > 3000 ? 2 : columns.count > 1200 ? 3 : 4) * ratio), half = size >> 1;
+  const w = Math.round(width * ratio), h = Math.round(height * ratio), image = new ImageData(w, h), pixels = new Uint32Array(image.data.buffer);
+  const across = Math.ceil(width), at = panel.at = {rows: new Int32Array(across * Math.ceil(height)), across}, out = [];
+  const {px, py} = shown, of = columns.of[state.colour], inked = chosen.length > MOST_LISTED ? isChosen : null;
+  const thinned = columns.count > MOST_MOVED, right = width - RIGHT + 3, low = height - BOTTOM + 3;
+  let drawn = 0, all = 0;
+  for (let i = 0; i < columns.count; i += shown.step) {
+    if (!visible[i]) continue;
+    const x = ox + kx * px[i], y = oy + ky * py[i];
+    if (!(x >= start - 3 && x <= right && y >= TOP - 3 && y <= low)) continue;
+    all += shown.step;
+    const cell = Math.trunc(y) * across + Math.trunc(x), ink = inked && inked[i] ? palette.length : of[i];
+    if (thinned && at.rows[cell] && ink < palette.length) continue;
+    at.rows[cell] = i + 1;
+    drawn++;
+    if (left[i]) { out.push(x, y); continue; }
+    if (ink < 0) continue;
+    const first = Math.max(0, Math.round(x * ratio) - half), top = Math.max(0, Math.round(y * ratio) - half);
+    for (let b = top; b < Math.min(h, top + size); b++) for (let a = first; a < Math.min(w, first + size); a++) pixels[b * w + a] = inks[ink];
   }
-  pen.globalAlpha = .72;
-  byColour.forEach((members, k) => {  // a rectangle of whole pixels each: a path of thousands takes longer to fill
-    pen.fillStyle = palette[k];
-    for (const i of members) pen.fillRect(Math.round(X(shown.px[i]) - half), Math.round(Y(shown.py[i]) - half), size, size);
-  });
-  pen.globalAlpha = 1;
-  pen.strokeStyle = theme.muted;
-  pen.lineWidth = 1;
-  pen.beginPath();
-  for (const i of out) {
-    const x = X(shown.px[i]), y = Y(shown.py[i]);
-    pen.moveTo(x - 3, y - 3); pen.lineTo(x + 3, y + 3); pen.moveTo(x - 3, y + 3); pen.lineTo(x + 3, y - 3);
+  panel.count = {drawn, of: Math.min(all, columns.count)};
+  if (scratch.width !== w || scratch.height !== h) Object.assign(scratch, {width: w, height: h});
+  scratch.getContext("2d").putImageData(image, 0, 0);
+  on.drawImage(scratch, 0, 0, width, height);
+  on.strokeStyle = theme.muted;
+  on.lineWidth = 1;
+  on.beginPath();
+  for (let k = 0; k < out.length; k += 2) {
+    const x = out[k], y = out[k + 1];
+    on.moveTo(x - 3, y - 3); on.lineTo(x + 3, y + 3); on.moveTo(x - 3, y + 3); on.lineTo(x + 3, y - 3);
   }
-  pen.stroke();
+  on.stroke();
 }
-function stroke(pen, points, X, Y, colour, width, dash) {
+// Where a further run is expected, 95 %, and its middle: the fit with what its formula misses.
+function band(pen, curve, {X, Y}) {
+  const points = bandOf(curve), colour = palette[columns.of[state.colour][curve.group.members[0]]];
+  if (points.length < 2) return;
+  pen.globalAlpha = .13;
+  pen.fillStyle = colour;
+  pen.beginPath();
+  for (const [x, low] of points) pen.lineTo(X(x), Y(low));
+  for (const [x, , , high] of [...points].reverse()) pen.lineTo(X(x), Y(high));
+  pen.fill();
+  pen.globalAlpha = .8;
+  pen.lineWidth = 1;
+  pen.strokeStyle = colour;
+  pen.setLineDash([2, 2]);
+  pen.beginPath();
+  for (const [x, , middle] of points) pen.lineTo(X(x), Y(middle));
+  pen.stroke();
+  pen.setLineDash([]);
+  pen.globalAlpha = 1;
+}
+function stroke(pen, points, {X, Y}, colour, width, dash) {
   pen.strokeStyle = colour;
   pen.lineWidth = width;
   pen.setLineDash(dash);
   pen.beginPath();
   let open = false;
-  for (const [x, y] of points) {
-    if (!Number.isFinite(y)) { open = false; continue; }
-    if (open) pen.lineTo(X(x), Y(y)); else pen.moveTo(X(x), Y(y));
+  for (let k = 0; k < points.length; k += 2) {
+    if (!Number.isFinite(points[k + 1])) { open = false; continue; }
+    if (open) pen.lineTo(X(points[k]), Y(points[k + 1])); else pen.moveTo(X(points[k]), Y(points[k + 1]));
     open = true;
   }
   pen.stroke();
   pen.setLineDash([]);
 }
-// The same points in every picture: those chosen by a click, and the one under the pointer.
-function marks(pen, shown, X, Y) {
-  for (const [members, width] of [[chosen, 2.5], [pointed >= 0 ? [pointed] : [], 1.5]]) {
+// By level of the colour, the curve of most points: it has a band and a label.
+function typicalOf(lines) {
+  const of = columns.of[state.colour], found = new Map();
+  for (const line of lines) {
+    const level = of[line.curve.group.members[0]], other = found.get(level);
+    if (level >= 0 && (!other || other.curve.group.n < line.curve.group.n)) found.set(level, line);
+  }
+  return found;
+}
+// The level of each colour beside its curve, where there is room.
+function labels(pen, typical, {X, Y, start, width, height}) {
+  const words = facet(state.colour).labels, taken = [[width - 230, TOP - 4, width, TOP + LINE]];
+  if (words.length < 2) return;
+  for (const [level, {now}] of typical) {
+    const long = LETTER * words[level].length, last = now.length / 2 - 1;
+    for (const share of LABELS_AT) {
+      const k = 2 * Math.round(share * last), x = Math.min(width - RIGHT - 2, Math.max(start + long + 4, X(now[k]) + (share < .5 ? long : 0))), y = Y(now[k + 1]) - 5;
+      const own = [x - long, y - LINE + 2, x, y + 2];
+      if (!(y > TOP + LINE && y < height - BOTTOM) || taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
+      taken.push(own);
+      over(pen, words[level], x, y, palette[level]);
+      break;
+    }
+  }
+}
+// The same points in every picture: those chosen by a click, and the one under the pointer. Many are inked as pixels instead.
+function marks(pen, shown, {X, Y}) {
+  for (const [members, width] of [[chosen.length > MOST_LISTED ? [] : chosen, 2.5], [pointed >= 0 ? [pointed] : [], 1.5]]) {
     pen.strokeStyle = theme.ink;
     pen.lineWidth = width;
     for (const i of members) {
@@ -276,13 +263,61 @@ function marks(pen, shown, X, Y) {
     }
   }
 }
-function nearest(panel, event) {
-  const at = panel.canvas.getBoundingClientRect(), x = event.clientX - at.left, y = event.clientY - at.top, places = panel.places;
+// The point nearest to a place of the picture; -1 without one.
+function nearest(panel, x, y) {
+  const {rows, across} = panel.at, {X, Y} = panel.place, {px, py} = panel.kept;
   let best = -1, least = NEAR ** 2;
-  for (let i = 0; places && i < columns.count; i++) {
-    if (!visible[i]) continue;
-    const far = (places.X(places.px[i]) - x) ** 2 + (places.Y(places.py[i]) - y) ** 2;
-    if (far < least) [best, least] = [i, far];
+  for (let b = Math.max(0, Math.trunc(y) - NEAR); b <= y + NEAR; b++) {
+    for (let a = Math.max(0, Math.trunc(x) - NEAR); a <= Math.min(across - 1, x + NEAR); a++) {
+      const i = rows[b * across + a] - 1;
+      if (!(i >= 0)) continue;
+      const far = (X(px[i]) - x) ** 2 + (Y(py[i]) - y) ** 2;
+      if (far < least) [best, least] = [i, far];
+    }
   }
   return best;
 }
+
+// ---- zoom, and pictures as files
+const ZOOM = 1.25;
+const boxOf = panel => panel.view || panel.place.box;
+// The view widened by a factor about a place of the picture, or shifted by pixels.
+function zoom(panel, factor, x, y) {
+  const {ox, oy, kx, ky} = panel.place, box = boxOf(panel), about = ([low, high], at) => [at + (low - at) * factor, at + (high - at) * factor];
+  look(panel, {x: about(box.x, (x - ox) / kx), y: about(box.y, (y - oy) / ky)});
+}
+function pan(panel, dx, dy) {
+  const {kx, ky} = panel.place, box = boxOf(panel);
+  look(panel, {x: box.x.map(at => at - dx / kx), y: box.y.map(at => at - dy / ky)});
+}
+function look(panel, view) {
+  panel.view = view;
+  panel.whole.hidden = !view;
+  update();
+}
+function saved(name, content, type) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([content], {type}));
+  link.download = `${project.name} ${name}`.replace(/[^\w.-]+/g, "_");
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+const nameOf = panel => `${panel.y.replace(RESIDUAL, "residual_")}_over_${panel.x}`;
+function savePicture(panel) {
+  const scale = 2, head = 26, foot = 18, {clientWidth: width, clientHeight: height} = panel.canvas;
+  const canvas = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * (height + head + foot)}), pen = canvas.getContext("2d");
+  const inner = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * height}), on = inner.getContext("2d");
+  on.setTransform(scale, 0, 0, scale, 0, 0);
+  paint(panel, on, width, height, scale);
+  pen.fillStyle = theme.paper;
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(inner, 0, scale * head);
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  Object.assign(pen, {font: theme.font.replace("11px", "12px"), fillStyle: theme.ink});
+  pen.fillText(`${label(panel.y)} — ${project.name}`, 8, 17);
+  pen.textAlign = "right";
+  pen.fillText(label(panel.x), width - RIGHT, height + head + foot - 5);
+  canvas.toBlob(blob => saved(`${nameOf(panel)}.png`, blob, "image/png"));
+  update();
+}
+const saveNumbers = panel => saved(`${nameOf(panel)}.csv`, csvOf(panel, label), "text/csv");

@@ -109,19 +109,15 @@ leaveOut = () => {
   dialog.returnValue = "";
   dialog.onclose = () => {
     const why = byId("ask-why").value.trim();
-    if (dialog.returnValue === "yes" && why) edit("leave_out", {readings: readings(members), why});
+    if (dialog.returnValue === "yes" && why) edit("leave_out", {readings: lineRanges(members), why});
   };
   dialog.showModal();
   byId("ask-why").select();
 };
-const readings = members => members.map(i => {
-  const points = project.points;
-  return {file: points.files[points.file[i]], first: points.line[i], last: points.last[i]};
-});
 chosenActions = () => {
   const actions = [];
   if (chosen.some(i => !left[i])) actions.push(key("Leave out", "asks why, and writes it into tyre.toml (Delete)", leaveOut));
-  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml", () => edit("take_back", {readings: readings(chosen.filter(i => left[i]))})));
+  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml", () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))})));
   return actions;
 };
 
@@ -155,7 +151,7 @@ async function bring() {
     remember();
   }
   shownFit = wantedFit;
-  showProject(data);
+  await showProject(data);
   setLive(live);
 }
 const WORDS = {fit: "Refit", build: "Build", diagnose: "Diagnosis", plan: "Plan", compare: "Comparison"};

@@ -1,4 +1,3 @@
-"use strict";
 // What all pages with curves share: numbers as text, symbols, ticks of an axis.
 const shared = (() => {
   const DIGITS = 4;

@@ -1,4 +1,3 @@
-"use strict";
 (() => {
   const {written, trimmed, ticks, roomy} = shared;
   const data = JSON.parse(document.getElementById("data").textContent);

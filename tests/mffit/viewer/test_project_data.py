@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_rigs import flat, simulated
 
 import mffit
 from mffit.points import make_points
@@ -14,13 +13,6 @@ from mffit.quantities import CONDITIONS
 from mffit.viewer.project import project_data
 from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import facets, last_lines
-
-
-@pytest.fixture(scope="module")
-def result(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("small")
-    simulated(flat(loads=(900, 1400)), folder)
-    return mffit.build(folder / "tyre.toml")
 
 
 def points(line, file=0, **fields):
@@ -53,9 +45,10 @@ def test_lines_are_those_of_each_file():
 
 
 def test_points_are_grouped_by_their_set_points():
-    found = {f["name"]: f for f in facets(points([1, 2, 3, 4], direction=[1, 1, -1, 1]))}
+    groups, of = facets(points([1, 2, 3, 4], direction=[1, 1, -1, 1]))
+    found = {f["name"]: f for f in groups}
     assert found["Fz"]["labels"] == ["1000 N"]
-    assert [found["direction"]["labels"][k] for k in found["direction"]["of"]] == [
+    assert [found["direction"]["labels"][k] for k in of["direction"]] == [
         "forward",
         "forward",
         "backward",
@@ -70,12 +63,12 @@ def test_every_condition_with_set_points_is_a_filter():
         0.0, 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0, kappa=np.repeat([-0.1, 0.0, 0.1], 4), line=np.arange(12),
         files=("a",),
     )  # fmt: skip
-    found = {f["name"]: f for f in facets(driven)}
+    found = {f["name"]: f for f in facets(driven)[0]}
     assert found["kappa"]["labels"] == ["-0.1", "0", "0.1"]
     words = {f["word"] for f in found.values()}
     assert {q.word for q in CONDITIONS.values()} - words == {"temperature", "time"}
     swept = make_points(np.linspace(-0.3, 0.3, 200), 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0)
-    assert {f["name"] for f in facets(swept) if f["as_range"]} == {"alpha"}
+    assert {f["name"] for f in facets(swept)[0] if f["as_range"]} == {"alpha"}
 
 
 def test_channels_beside_the_fit_have_the_misfit_of_the_file(result):

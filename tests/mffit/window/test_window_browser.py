@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import signal
@@ -12,6 +11,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
@@ -24,15 +24,10 @@ import mffit
 from mffit.quantities import SIDEWAYS
 from mffit.viewer import project_page
 from mffit.window.session import Session
-from tests.browser import PAPER, PHONE, SCREEN, complaints, console_errors, look, opened, sheets
+from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
-PAINTED = """(...colour) => {
-  const canvas = document.querySelector('.panel canvas');
-  const bytes = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
-  for (let i = 0; i < bytes.length; i += 4) if (colour.every((x, k) => bytes[i + k] === x)) return true;
-  return false;
-}"""
-"""Whether the first picture has a pixel of a colour: that of the first curves in the light scheme, or in the dark one."""
+SIX_DIGITS = 1e-4
+"""Agreement [-] of misfits: points have six digits in a page, and a misfit is a hundredth of a force."""
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
 
 
@@ -49,6 +44,12 @@ def browser(result, tmp_path_factory) -> Iterator[Any]:
 def page(browser) -> Any:
     browser.get("about:blank")
     browser.get(browser.home)
+    return shown(browser)
+
+
+def shown(browser: Any) -> Any:
+    """The browser once it has unpacked and drawn the points."""
+    until(lambda: ask(browser, "!!(window.mffit && mffit.data() && mffit.data().points.line)"))
     return browser
 
 
@@ -68,59 +69,16 @@ def until(true: Callable[[], Any], seconds: float = 600.0) -> Any:
     return found
 
 
-def test_the_misfit_is_that_of_the_build(page, result):
-    for name in result.fit.channels:
-        found = ask(page, "mffit.misfit(arguments[0])", name)
-        assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=1e-9)
-        assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=1e-9)
+def test_a_moved_coefficient_moves_the_misfit_and_undo_brings_it_back(page, result):
+    """The numbers are tested without a browser, in tests/mffit/viewer."""
+    fitted = ask(page, "mffit.misfit('Fy').rmse")
+    assert fitted == pytest.approx(result.fit.channels["Fy"].rmse, rel=SIX_DIGITS)
+    ask(page, "mffit.move('PCY1', 1.5)")
+    assert ask(page, "mffit.misfit('Fy').rmse") > 2.0 * fitted
+    press(page, "#undo")
+    assert ask(page, "mffit.misfit('Fy').rmse") == fitted
     assert console_errors(page) == []
     assert ask(page, "performance.getEntriesByType('resource').length") == 0
-
-
-def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(page, result):
-    """Computed again by the simulation of the fit: this rig, the other coefficient."""
-    ask(page, "mffit.move('PCY1', 1.5)")
-    readings = result.fit.simulation.with_numbers({"PCY1": 1.5}).readings(result.points)
-    wanted = float(np.sqrt(np.mean((readings.Fy - result.points.Fy) ** 2)))
-    # the rig's play, whose side the moment decides, stays as fitted
-    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(wanted, rel=1e-3)
-    assert wanted > 2.0 * result.fit.channels["Fy"].rmse
-    press(page, "#undo")
-    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(result.fit.channels["Fy"].rmse, rel=1e-9)
-
-
-def test_the_curve_of_the_page_is_that_of_the_file(page, result):
-    inputs = [1400.0, 0.05, 0.1, 0.0, 0.0, 10.0, 250e3]
-    Fz, alpha, gamma, *_, p = inputs
-    wanted = result.fit.tyre(Fz, alpha, gamma, Vx=10.0, p=p, turn_slip=result.fit.simulation.turn_slip)
-    found = ask(page, "mffit.evaluate(arguments[0])", inputs)
-    assert [found["Fy"], found["Mz"]] == pytest.approx([wanted.Fy, wanted.Mz], rel=1e-9)
-
-
-def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(page, result):
-    """Brought to the conditions of the curve, which are the medians of its points."""
-    curved = [ask(page, "mffit.onCurve(0, arguments[0])", i) for i in range(len(result.points))]
-    shown = np.array(ask(page, "mffit.shown(0)")[1])[: len(curved)]
-    rows = [i for i, y in enumerate(curved) if y is not None]
-    assert len(rows) > len(curved) / 2
-    missed = result.points.Fy - result.fit.simulation.readings(result.points).Fy
-    assert [shown[i] - curved[i] for i in rows] == pytest.approx([missed[i] for i in rows], abs=1e-6)
-    assert np.ptp(missed) > 1.0
-
-
-def test_a_force_over_another_has_curves_along_the_sideslip(page, result):
-    """The moment lies as far from its curve as the model misses it, at the side force of the curve."""
-    for axis, name in ((0, "Mz"), (1, "Fy")):
-        select = f"document.querySelectorAll('.panel select')[{axis}]"
-        ask(page, f"({select}.value = '{name}', {select}.dispatchEvent(new Event('change')), mffit.redraw())")
-    rows = [
-        i for i in range(len(result.points)) if ask(page, "mffit.onCurve(0, arguments[0])", i) is not None
-    ]
-    assert len(rows) > len(result.points) / 2
-    curved = [ask(page, "mffit.onCurve(0, arguments[0])", i) for i in rows]
-    shown = np.array(ask(page, "mffit.shown(0)")[1])[rows]
-    missed = result.points.Mz - result.fit.simulation.readings(result.points).Mz
-    assert shown - curved == pytest.approx(missed[rows], abs=1e-6)
 
 
 def test_tab_reaches_the_pictures_at_once(page):
@@ -145,6 +103,7 @@ def test_filters_hide_points_and_the_address_keeps_the_view(page):
     assert 0 < fewer < count
     ask(page, "mffit.move('PCY1', 1.5)")
     page.refresh()
+    shown(page)
     assert page.find_element("id", "shown").text.startswith(f"{fewer} of")
     assert ask(page, "mffit.trial()") == {"PCY1": 1.5}
 
@@ -222,16 +181,127 @@ def test_a_printed_page_has_its_pictures_and_no_controls(page):
     ask(page, "mffit.move('PCY1', 1.5)")
     try:
         look(page, SCREEN, dark=True)
-        assert ask(page, f"({PAINTED})(95, 176, 242)")
+        paper = page.find_element("css selector", ".panel canvas")
+        until(lambda: brightness(paper).mean() < 0.3)
         look(page, PAPER, media="print", dark=True)
         assert complaints(page) == []
         shown = page.find_element("css selector", "body").text
         assert all(text in shown for text in ("load", "side force [N] over sideslip", "PCY1"))
         assert not any(text in shown for text in ("PDY1", "Undo", "sideslip_900"))
-        assert ask(page, f"({PAINTED})(11, 98, 164)")
+        assert brightness(paper).mean() > 0.8
         assert sheets(page) <= 2
     finally:
         look(page, SCREEN)
+
+
+def box(page: Any) -> np.ndarray:
+    """What the first picture shows: ends of x, ends of y."""
+    found = ask(page, "(mffit.redraw(), mffit.box(0))")
+    return np.array([found["x"], found["y"]])
+
+
+def test_a_picture_zooms_and_moves(page):
+    """A rectangle becomes the view; a drag moves it by as much as the pointer; keys and a double click show all again."""
+    page.execute_script("document.querySelector('.panel').scrollIntoView({block: 'center'})")
+    whole = box(page)
+    press(page, "#zoom")
+    drag(page, [(100.0, 60.0), (150.0, 90.0), (200.0, 160.0), (200.0, 160.0)])
+    near = box(page)
+    assert np.all(np.ptp(near, axis=1) < 0.6 * np.ptp(whole, axis=1))
+    assert np.all((near[:, 0] > whole[:, 0]) & (near[:, 1] < whole[:, 1]))
+    assert ask(page, "mffit.chosen()") == []
+    press(page, "#move")
+    drag(page, [(100.0, 60.0), (120.0, 60.0), (140.0, 60.0), (140.0, 60.0)])
+    moved = box(page)
+    assert moved[1] == pytest.approx(near[1])
+    assert np.ptp(moved[0]) == pytest.approx(np.ptp(near[0]))
+    assert moved[0, 0] < near[0, 0]
+    canvas = page.find_element("css selector", ".panel canvas")
+    canvas.send_keys("+")
+    assert np.ptp(box(page), axis=1) == pytest.approx(np.ptp(moved, axis=1) / 1.25)
+    canvas.send_keys("0")
+    assert box(page) == pytest.approx(whole)
+    press(page, "#move")
+
+
+def test_two_fingers_zoom(page):
+    page.execute_script("document.querySelector('.panel').scrollIntoView({block: 'center'})")
+    whole = box(page)
+    left, top = ask(
+        page, "(({x, y}) => [x, y])(document.querySelector('.panel canvas').getBoundingClientRect())"
+    )
+    for kind, apart in (("touchStart", 20.0), ("touchMove", 30.0), ("touchMove", 40.0), ("touchEnd", None)):
+        at = [] if apart is None else [(150.0 - apart, 0), (150.0 + apart, 1)]
+        fingers = [{"x": left + x, "y": top + 100.0, "id": k} for x, k in at]
+        page.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+    assert np.ptp(box(page), axis=1) == pytest.approx(np.ptp(whole, axis=1) / 2.0, rel=0.1)
+
+
+def test_every_channel_measured_has_a_picture_and_two_are_in_sight(page, result):
+    look(page, 1280, 900)
+    shown_first = ask(
+        page, "[...document.querySelectorAll('.panel')].map(one => one.querySelector('select').value)"
+    )
+    assert set(result.points.measured) <= set(shown_first)
+    ends = ask(
+        page, "[...document.querySelectorAll('.panel')].map(one => one.getBoundingClientRect().bottom)"
+    )
+    assert sum(end <= 900 for end in ends) >= 2
+    look(page, SCREEN)
+
+
+def test_a_picture_and_its_numbers_are_saved(page, result, tmp_path):
+    page.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
+    for k in (0, 1):
+        page.execute_script(f"document.querySelectorAll('.panel .more button')[{k}].click()")
+    until(lambda: len(list(tmp_path.glob("small_*.*[gv]"))) == 2)
+    files = {path.suffix: path for path in tmp_path.iterdir()}
+    assert files[".png"].read_bytes().startswith(b"\x89PNG")
+    lines = files[".csv"].read_text(encoding="utf-8").splitlines()
+    assert lines[0].endswith("sideslip [deg],side force [N]")
+    assert sum(line.startswith("point,") for line in lines) == len(result.points)
+
+
+LIGHT = """
+const light = colour => {
+  const [r, g, b, opaque] = (colour.match(/[\\d.]+/g) || [0, 0, 0]).map(Number);
+  return (opaque === undefined || opaque > 0.5) && Math.min(r, g, b) > 150;
+};
+return [...document.querySelectorAll('body, body *')]
+  .filter(e => e.offsetParent && light(getComputedStyle(e).backgroundColor)).map(e => e.tagName + '.' + e.className);
+"""
+
+
+def test_nothing_light_is_left_in_the_dark(page):
+    """After the scheme is switched: neither a background nor the colours of canvases and filters."""
+    mark = "getComputedStyle(document.querySelector('.chip i')).backgroundColor"
+    before, paper = ask(page, mark), page.find_element("css selector", ".panel canvas")
+    assert brightness(paper).mean() > 0.8
+    look(page, dark=True)
+    until(lambda: brightness(paper).mean() < 0.3)
+    assert ask(page, mark) != before
+    assert page.execute_script(LIGHT) == []
+    look(page, dark=False)
+
+
+def test_fingers_have_room(page):
+    page.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "pointer", "value": "coarse"}]})
+    look(page, PHONE)
+    page.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": PHONE, "height": 900, "deviceScaleFactor": 1, "mobile": True},
+    )
+    page.refresh()
+    assert ask(shown(page), "matchMedia('(pointer: coarse)').matches")
+    small = ask(
+        page,
+        "[...document.querySelectorAll('button, select, summary, input')].map(e => [e.outerHTML.slice(0, 80),"
+        " e.getBoundingClientRect()]).filter(([, b]) => b.width && (b.height < 24 || b.width < 24)).map(([e]) => e)",
+    )
+    page.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+    look(page, SCREEN)
+    assert small == []
 
 
 def processor_time(page: Any) -> float:
@@ -240,24 +310,12 @@ def processor_time(page: Any) -> float:
     return next(one["value"] for one in found if one["name"] == "TaskDuration")
 
 
-def test_a_slider_moves_five_thousand_points_smoothly(page, result):
+def test_a_slider_moves_five_thousand_points_smoothly(page, result, tmp_path):
     """The sample's points repeated; 30 frames a second, in processor time, because other work may share the processor."""
-    data = ask(page, "JSON.stringify(mffit.data())")
-    content = json.loads(data)
-    points, times = content["points"], 5000 // content["points"]["fitted"] + 1
-    n = points["fitted"]
-
-    def repeated(column: Any) -> Any:
-        if isinstance(column, list) and len(column) >= n:
-            return column[:n] * times
-        return (
-            {name: repeated(inner) for name, inner in column.items()} if isinstance(column, dict) else column
-        )
-
-    facets = [{**facet, "of": repeated(facet["of"])} for facet in points["facets"]]
-    content["points"] = {**{k: repeated(v) for k, v in points.items()}, "facets": facets, "fitted": n * times}
-    page.execute_script("mffit.show(arguments[0])", content)
-    assert ask(page, "mffit.data().points.line.length") >= 5000
+    rows = np.arange(5000) % len(result.points)
+    many = replace(result, points=result.points.select(rows, with_table=False))
+    page.get(project_page(many).write(tmp_path / "many.html").as_uri())
+    assert ask(shown(page), "mffit.data().points.count") >= 5000
     ask(page, "mffit.frames('PCY1', 4)")  # after that the browser has compiled them
     page.execute_cdp_cmd("Performance.enable", {"timeDomain": "threadTicks"})
     before = processor_time(page)
@@ -274,7 +332,7 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     path = tmp_path / "hostile.html"
     path.write_text(html, encoding="utf-8")
     page.get(path.as_uri())
-    ask(page, "mffit.choose(2, false)")
+    ask(shown(page), "mffit.choose(2, false)")
     assert page.find_element("css selector", "#warnings li").get_attribute("textContent") == HOSTILE
     assert HOSTILE in page.find_element("id", "chosen-title").text
     assert ask(page, "window.hacked") is None
@@ -288,7 +346,7 @@ def enter(browser: Any, address: str) -> str:
 
 
 @contextmanager
-def served(shown: Any, port: int = 0) -> Iterator[str]:
+def served(given: Any, port: int = 0) -> Iterator[str]:
     """Address, for one browser, of a window whose server runs in this process."""
     uvicorn = pytest.importorskip("uvicorn")
     from mffit.window.app import window_app
@@ -298,7 +356,7 @@ def served(shown: Any, port: int = 0) -> Iterator[str]:
     with _listening(port) as listening:
         port = listening.getsockname()[1]
         entrance = Entrance()
-        app = window_app(shown, entrance=entrance, port=port, closing=lambda: server.should_exit)
+        app = window_app(given, entrance=entrance, port=port, closing=lambda: server.should_exit)
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="error", lifespan="off", timeout_graceful_shutdown=1)
         )
@@ -338,7 +396,7 @@ def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, resu
     first = browser.current_window_handle
     with served(Opened(session)) as address:
         old = enter(browser, address)
-        ask(browser, "mffit.move('PCY1', 1.5)")
+        ask(shown(browser), "mffit.move('PCY1', 1.5)")
     until(lambda: "has ended" in browser.find_element("id", "status").text)
     with served(Opened(session), urlsplit(address).port) as again:
         browser.switch_to.new_window("tab")
@@ -537,7 +595,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
     with window(tyre_toml) as (once, process):
         address = enter(browser, once)
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        shown(browser)
         ask(browser, "mffit.move('PEY1', -0.9)")
         press(browser, ".coefficient[data-name=PEY1] .keys button")
         until(lambda: "PEY1" in tyre_toml.read_text(encoding="utf-8"))
@@ -566,7 +624,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         first = browser.current_window_handle
         browser.switch_to.new_window("tab")  # a second window shows what the first one saved
         browser.get(address)
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        shown(browser)
         row = ask(browser, "mffit.data().points.files.indexOf('camber_900.csv')")
         row = ask(browser, "mffit.data().points.file.indexOf(arguments[0])", row)
         ask(browser, "mffit.chooseAll([0, 1, 2].map(k => k + arguments[0]), false)", row)
@@ -582,11 +640,11 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         until(lambda: ask(browser, "mffit.data().before"))
         assert ask(browser, "mffit.trial()") == {}
         assert ask(browser, "mffit.data().before.values.PEY1") != -0.9
-        shown = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in SIDEWAYS}
+        misfits = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in SIDEWAYS}
         until(lambda: "mffit build" in status())
         browser.refresh()
-        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
-        assert ask(browser, "mffit.misfit('Fy').rmse") == shown["Fy"]
+        shown(browser)
+        assert ask(browser, "mffit.misfit('Fy').rmse") == misfits["Fy"]
         refused = [line for line in console_errors(browser) if "422" not in line]
         assert refused == []
 
@@ -594,7 +652,9 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         assert process.wait(15) == 0
         until(lambda: "has ended" in status())
         built = mffit.build(tyre_toml)
-        assert shown == pytest.approx({name: built.fit.channels[name].rmse for name in SIDEWAYS}, rel=1e-9)
+        assert misfits == pytest.approx(
+            {name: built.fit.channels[name].rmse for name in SIDEWAYS}, rel=SIX_DIGITS
+        )
         assert built.fit.tyre["PEY1"] == -0.9
     again = Session(tyre_toml).state()  # what a restarted server knows
     assert again["hand"] == {"PEY1": -0.9, **limits}

@@ -49,6 +49,13 @@ def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
     return post(client, "edit", **{"do": do, "seen": session.file.digest, "with": given})
 
 
+def test_pages_and_data_travel_compressed(client):
+    for address in ("", "project"):
+        answer = client.get(f"/{TOKEN}/{address}")
+        assert answer.headers["content-encoding"] == "gzip"
+        assert int(answer.headers["content-length"]) < 0.8 * len(answer.content)
+
+
 @pytest.mark.parametrize(
     ("path", "headers"),
     [

@@ -1,0 +1,268 @@
+"""The scripts of the pages: their numbers in an engine without a browser, against the build in Python; and a linter."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+import sys
+import zlib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from small_rigs import SAMPLE
+
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.points import concatenate
+from mffit.rig import Simulation
+from mffit.templates import environment
+from mffit.viewer import project_data, project_html, show
+from mffit.viewer.packing import packed
+from mffit.viewer.project_points import delivered
+
+SIX_DIGITS = 1e-4
+"""Agreement [-] of misfits: points have six digits in a page, and a misfit is a hundredth of a force."""
+RULES = {
+    "env": {"browser": True, "es2024": True},
+    "categories": {"correctness": "error"},
+    "rules": {"no-undef": "error", "no-unused-vars": "error", "eqeqeq": "error", "oxc/erasing-op": "off"},
+}
+"""``0.0 * PEY5`` is what the generated code of the equations has where an input is zero."""
+
+
+class Engine:
+    """The page's model with its state, without a page."""
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.context = pytest.importorskip("quickjs").Context()
+        folder = files("mffit.viewer").joinpath("templates")
+        html = project_html("small", data, turn_slip=data["turn_slip"], star=data["star"])
+        models = html[html.index("const MODELS") : html.index("const content =")]
+        parts = [models, *(folder.joinpath(name).read_text() for name in ("shared.js", "project_model.js"))]
+        self.context.eval("\n".join(parts))
+        content = list(zlib.decompress(base64.b64decode(data["points"]["bytes"])))
+        self(f"take({json.dumps(data)}, Uint8Array.from({content}))")
+        self("filter()")
+
+    def __call__(self, script: str) -> Any:
+        """The value of an expression, by way of JSON; NaN is None."""
+        plain = "(key, x) => ArrayBuffer.isView(x) ? [...x] : x === undefined ? null : x"
+        return json.loads(self.context.eval(f"JSON.stringify(({script}) ?? null, {plain})"))
+
+    def try_out(self, name: str, value: float, dragging: bool = False) -> None:
+        self(f"(trial = {{{name}: {value}}}, recompute({json.dumps(dragging)}))")
+
+    def panel(self, x: str, y: str) -> dict[str, Any]:
+        return self(f"(globalThis.panel = {{x: '{x}', y: '{y}'}}, placed(panel))")
+
+
+@pytest.fixture(scope="module")
+def data(result):
+    return project_data(result)
+
+
+@pytest.fixture
+def engine(data):
+    return Engine(data)
+
+
+def test_columns_come_back_as_they_were(engine):
+    rng = np.random.default_rng(0)
+    columns = {
+        "a": rng.normal(0.0, 1e3, 7),
+        "b": np.array([np.nan, -0.0, np.inf]),
+        "c": np.array([-1, 3]),
+        "d": np.array([70_000, 2]),
+        "e": np.array([], dtype=int),
+    }
+    found = packed(columns)
+    assert [kind for _, kind, _ in found["layout"]] == ["f4", "f4", "i1", "i4", "u1"]
+    content = list(zlib.decompress(base64.b64decode(found["bytes"])))
+    given = engine(f"unpacked(Uint8Array.from({content}), {json.dumps(found['layout'])})")
+    assert given["a"] == pytest.approx(columns["a"], rel=1e-6)
+    assert given["b"] == [None, 0, None]
+    assert given["c"] == [-1, 3]
+    assert given["d"] == [70_000, 2]
+    assert given["e"] == []
+
+
+def test_the_misfit_is_that_of_the_build(engine, result):
+    for name in result.fit.channels:
+        found = engine(f"misfit('{name}')")
+        assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=SIX_DIGITS)
+        assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=SIX_DIGITS)
+
+
+def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(engine, result):
+    """Computed again by the simulation of the fit: this rig, the other coefficient. Other channels stay as they are."""
+    rolling = engine("misfit('My')")
+    engine.try_out("PCY1", 1.5)
+    readings = result.fit.simulation.with_numbers({"PCY1": 1.5}).readings(result.points)
+    wanted = float(np.sqrt(np.mean((readings.Fy - result.points.Fy) ** 2)))
+    # the rig's play, whose side the moment decides, stays as fitted
+    assert engine("misfit('Fy').rmse") == pytest.approx(wanted, rel=1e-3)
+    assert wanted > 2.0 * result.fit.channels["Fy"].rmse
+    assert engine("own.My === fitOwn.My")
+    assert engine("misfit('My')") == rolling
+
+
+def test_a_moving_slider_asks_for_some_points_only_and_says_so(engine, result):
+    engine.try_out("PCY1", 1.5)
+    whole = engine("misfit('Fy')")
+    n = len(result.points)
+    engine(f"(columns.count, every = Math.ceil({n} / 20), predicted(models, 'Fy', moved.Fy.fill(0), every))")
+    rows = np.flatnonzero(engine("moved.Fy"))
+    assert 10 < len(rows) <= 20
+    some = engine("(misfits = {}, misfit('Fy'))")
+    assert some["about"]
+    assert not whole["about"]
+    assert some["rmse"] == pytest.approx(whole["rmse"], rel=0.5)
+
+
+def test_the_curve_of_the_page_is_that_of_the_file(engine, result):
+    Fz, alpha, gamma, p = 1400.0, 0.05, 0.1, 250e3
+    wanted = result.fit.tyre(Fz, alpha, gamma, Vx=10.0, p=p, turn_slip=result.fit.simulation.turn_slip)
+    found = [
+        engine(f"models[1].{name}({Fz}, {alpha}, {gamma}, 0, 0, 10, {p}).{name}") for name in ("Fy", "Mz")
+    ]
+    assert found == pytest.approx([wanted.Fy, wanted.Mz], rel=1e-9)
+
+
+@pytest.mark.parametrize(("x", "y"), [("alpha", "Fy"), ("Fy", "Mz")])
+def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(engine, result, x, y):
+    """Brought to the conditions of the curve, the medians of its points; along the sideslip where both axes are forces."""
+    shown = np.array(engine.panel(x, y)["py"], dtype=float)
+    curved = engine(
+        f"groupsOver('alpha').flatMap(group => {{ const model = along(models, group, '{y}');"
+        " return [...group.members].map(i => [i, model(columns.alpha[i])]); })"
+    )
+    curved = [(i, on) for i, on in curved if i < len(result.points)]
+    assert len(curved) > len(result.points) / 2
+    rows, on = (np.array(column) for column in zip(*curved, strict=True))
+    missed = (result.points.channel(y) - result.fit.simulation.readings(result.points)[y])[rows]
+    assert shown[rows] - on == pytest.approx(missed, abs=1e-3)
+    assert np.ptp(missed) > 1.0
+
+
+def test_residuals_are_readings_less_model(engine, result):
+    shown = np.array(engine.panel("alpha", "residual of Fy")["py"], dtype=float)[: len(result.points)]
+    assert shown == pytest.approx(
+        result.points.Fy - result.fit.simulation.readings(result.points).Fy, abs=1e-3
+    )
+
+
+def test_curves_are_points_that_share_all_other_settings(engine, result):
+    """The plan's: sideslip sweeps upright at two loads, and the sideslips at two cambers of the coupled sweep."""
+    found = engine("groupsOver('alpha').map(group => [group.fixed, group.members, group.from, group.to])")
+    settings = {(round(fixed[0], -2), round(np.degrees(fixed[2]))) for fixed, *_ in found}
+    assert settings == {(900, 0), (1400, 0), (1400, -20), (1400, 20)}
+    whole = concatenate([result.points, result.excluded])
+    for fixed, members, low, high in found:
+        assert whole.Fz[members] == pytest.approx(fixed[0], rel=0.1)
+        assert [low, high] == pytest.approx(
+            [whole.alpha[members].min(), whole.alpha[members].max()], abs=2e-3
+        )
+    everywhere = [i for _, members, *_ in found for i in members]
+    assert len(everywhere) == len(set(everywhere))
+
+
+def test_what_a_level_hides_is_what_has_it(engine, result):
+    engine("(state.hidden = {Fz: [facet('Fz').labels[0]]}, filter())")
+    whole = concatenate([result.points, result.excluded])
+    assert engine("visible") == (whole.Fz > 1150.0).astype(int).tolist()
+    engine("(state.hidden = {}, state.ranges = {alpha: [null, -1]}, filter())")
+    felt = np.degrees(engine("columns.alpha"))
+    assert engine("visible") == (felt <= -1.0).astype(int).tolist()
+
+
+def test_the_reading_left_out_is_found_by_its_line(engine, result):
+    rows = np.flatnonzero(engine("left"))
+    assert rows.tolist() == [len(result.points)]
+    assert engine(f"whyLeftOut({rows[0]})") == "belt tracking"
+    engine("markLeftOut([{file: 'camber_900.csv', lines: '3-5, 8'}])")
+    whole = concatenate([result.points, result.excluded])
+    wanted = (whole.file == whole.files.index("camber_900.csv")) & np.isin(whole.line, [3, 4, 5, 8])
+    assert engine("left") == wanted.astype(int).tolist()
+
+
+def test_points_that_follow_each_other_are_left_out_as_one_range(engine, result):
+    points = result.points
+    file = points.files.index("sideslip_900.csv")
+    lines = [2, 3, 4, 7, 8]
+    rows = [int(np.flatnonzero((points.file == file) & (points.line == line))[0]) for line in reversed(lines)]
+    ranges = engine(f"lineRanges({rows})")
+    assert [(one["file"], one["first"], one["last"]) for one in ranges] == [
+        ("sideslip_900.csv", 2, 4),
+        ("sideslip_900.csv", 7, 8),
+    ]
+    assert len(engine("lineRanges(columns.line.keys())")) <= len(points.files) + 1
+
+
+def test_bands_are_those_of_the_prediction(engine, result):
+    """Asked anew of the predictor at the points of a curve, where no other point of it is near."""
+    curves = engine.panel("alpha", "Fy")["curves"]
+    tyre = Simulation.of(result.fit.tyre, turn_slip=result.fit.simulation.turn_slip)
+    felt = delivered(result.fit).felt(result.points)
+    known = result.fit.prediction.forces(tyre, tyre, felt)["Fy"]
+    half = COVERAGE_FACTOR_95 * np.sqrt(known.of_run)
+    compared = 0
+    for k, curve in enumerate(curves):
+        members = np.array([i for i in curve["group"]["members"] if i < len(felt)])
+        for x, low, middle, high in engine(f"bandOf(panel.kept.curves[{k}])"):
+            assert middle == pytest.approx((high + low) / 2.0)
+            near = members[np.abs(np.degrees(felt.alpha[members]) - x) < 1.5]
+            on = engine(f"along(fitModels, groupsOver('alpha')[{k}], 'Fy')({np.radians(x)})")
+            if len(near) != 1:
+                continue
+            assert (high - low) / 2.0 == pytest.approx(half[near[0]], rel=1e-3)
+            assert middle - on == pytest.approx((known.best - known.file)[near[0]], abs=0.01)
+            compared += 1
+    assert compared >= 4
+
+
+def test_a_picture_is_saved_as_its_numbers(engine, result):
+    shown = engine.panel("alpha", "Fy")
+    table = list(csv.DictReader(io.StringIO(engine("csvOf(panel, name => name)"))))
+    kinds = [row["what"] for row in table]
+    assert kinds.count("point") == len(result.points)
+    assert kinds.count("left out") == 1
+    assert kinds.count("curve") == sum(curve["steps"] + 1 for curve in shown["curves"])
+    wanted = {
+        (result.points.files[f], line): y
+        for f, line, y in zip(result.points.file, result.points.line, shown["py"], strict=False)
+    }
+    for row in table:
+        if row["what"] == "point":
+            assert float(row["Fy"]) == pytest.approx(wanted[row["file"], int(row["line"])], rel=1e-5)
+    Fz, _, gamma, _, _, Vx, p = shown["curves"][0]["group"]["fixed"]
+    first = [row for row in table if row["what"] == "curve"][: shown["curves"][0]["steps"] + 1]
+    alpha = np.radians([float(row["alpha"]) for row in first])
+    tyre = result.fit.tyre(Fz, alpha, gamma, Vx=Vx, p=p, turn_slip=result.fit.simulation.turn_slip)
+    assert [float(row["Fy"]) for row in first] == pytest.approx(tyre.Fy, rel=1e-5, abs=1e-3)
+    order = [float(row["alpha"]) for row in table if row["file"]]
+    assert order == sorted(order)
+
+
+def test_a_linter_finds_nothing(tmp_path):
+    lint = shutil.which("oxlint", path=str(Path(sys.executable).parent)) or shutil.which("oxlint")
+    if lint is None:
+        pytest.skip("no oxlint on this machine")
+    recordings = environment("mffit.window").get_template("recordings.html.j2")
+    pages = {
+        "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}),
+        "show": show(SAMPLE / "true.tir").html,
+        "recordings": recordings.render(name="x", css="", endings=[]),
+    }
+    for name, html in pages.items():
+        scripts = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
+        (tmp_path / f"{name}.js").write_text("\n".join(scripts), encoding="utf-8")
+    (tmp_path / "rules.json").write_text(json.dumps(RULES), encoding="utf-8")
+    found = subprocess.run([lint, "-c", "rules.json", "."], cwd=tmp_path, capture_output=True, text=True)
+    assert found.returncode == 0, found.stdout
