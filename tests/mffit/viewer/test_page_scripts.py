@@ -254,11 +254,12 @@ def test_a_linter_finds_nothing(tmp_path):
     lint = shutil.which("oxlint", path=str(Path(sys.executable).parent)) or shutil.which("oxlint")
     if lint is None:
         pytest.skip("no oxlint on this machine")
-    recordings = environment("mffit.window").get_template("recordings.html.j2")
+    here = {"folder": "x", "endings": []}
+    recordings = environment("mffit.viewer").get_template("recordings.html.j2")
     pages = {
-        "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}),
+        "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}, here=here),
         "show": show(SAMPLE / "true.tir").html,
-        "recordings": recordings.render(name="x", css="", endings=[]),
+        "recordings": recordings.render(name="x", to="", here=here),
     }
     for name, html in pages.items():
         scripts = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)

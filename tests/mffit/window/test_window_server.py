@@ -51,7 +51,7 @@ def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
 
 def test_pages_and_data_travel_compressed(client):
     for address in ("", "project"):
-        answer = client.get(f"/{TOKEN}/{address}")
+        answer = client.get(f"{client.home}{address}")
         assert answer.headers["content-encoding"] == "gzip"
         assert int(answer.headers["content-length"]) < 0.8 * len(answer.content)
 
