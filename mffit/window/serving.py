@@ -39,17 +39,11 @@ def open_path(
     Raises
     ------
     InputError
-        The extra ``window`` is not installed, the port is in use, or the files cannot be read.
+        The port is in use, or the files cannot be read.
     """
-    try:
-        import uvicorn
+    import uvicorn
 
-        from mffit.window.app import Opened, window_app
-    except ImportError as error:
-        raise InputError(
-            f'the window needs {error.name}, which is not installed; run pip install "mffit[window]", or use '
-            "`mffit show tyre.toml`, which needs no server"
-        ) from None
+    from mffit.window.app import Opened, window_app
     from mffit.window.guard import Entrance
     from mffit.window.reading import ReadingProcess
     from mffit.window.recordings_folder import PROJECT, RecordingsFolder

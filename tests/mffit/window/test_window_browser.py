@@ -348,7 +348,8 @@ def enter(browser: Any, address: str) -> str:
 @contextmanager
 def served(given: Any, port: int = 0) -> Iterator[str]:
     """Address, for one browser, of a window whose server runs in this process."""
-    uvicorn = pytest.importorskip("uvicorn")
+    import uvicorn
+
     from mffit.window.app import window_app
     from mffit.window.guard import Entrance
     from mffit.window.serving import _listening
@@ -452,7 +453,6 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
 @contextmanager
 def window(tyre_toml: Path) -> Iterator[tuple[str, subprocess.Popen]]:
     """Address and process of `mffit open`."""
-    pytest.importorskip("uvicorn")
     command = [sys.executable, "-m", "mffit", "open", str(tyre_toml), "--no-browser"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:

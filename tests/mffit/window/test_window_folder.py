@@ -19,8 +19,6 @@ from mffit import config, points
 from mffit.errors import InputError
 from mffit.pipeline import init_from
 from mffit.recordings import DiscPath, Stated
-
-pytest.importorskip("starlette")
 from mffit.window.app import Opened
 from mffit.window.edits import add_recordings
 from mffit.window.reading import ReadingProcess

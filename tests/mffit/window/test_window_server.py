@@ -20,10 +20,8 @@ from inside import client_of
 
 from mffit.errors import InputError
 from mffit.viewer import project_data
-from mffit.window.runs import _work, out_of
-
-pytest.importorskip("starlette")
 from mffit.window.app import Opened, within
+from mffit.window.runs import _work, out_of
 from mffit.window.session import Session
 
 
@@ -131,7 +129,6 @@ def test_a_link_from_elsewhere_opens_the_page(client):
 
 def test_no_process_shows_how_to_get_in(tyre_toml, tmp_path):
     """A stand-in for the browser notes with what it is started; the address is in a file that only this user reads."""
-    pytest.importorskip("uvicorn")
     noted, home = tmp_path / "noted", tmp_path / "home"
     browser = tmp_path / "browser"
     browser.write_text(f'#!/bin/sh\necho "$@" > {noted}\n')
@@ -342,16 +339,3 @@ def test_a_folder_that_is_not_there_is_said(tmp_path):
 
     with pytest.raises(InputError, match="cannot be read"):
         open_path([tmp_path / "none"], opened=print)
-
-
-@pytest.mark.parametrize("lacking", ["uvicorn", "starlette.applications", "tomlkit"])
-def test_without_the_extra_the_sentence_says_what_to_install(tyre_toml, monkeypatch, lacking):
-    from mffit.window import open_path
-
-    for name in [name for name in sys.modules if name.startswith("mffit.window.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, lacking, None)
-    if lacking == "tomlkit":
-        monkeypatch.setitem(sys.modules, "tomlkit.items", None)
-    with pytest.raises(InputError, match=r'pip install "mffit\[window\]"'):
-        open_path([tyre_toml], opened=print)
