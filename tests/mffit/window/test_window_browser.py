@@ -178,7 +178,7 @@ def test_nothing_overflows(page, width):
 
 def test_a_printed_page_has_its_pictures_and_no_controls(page):
     """A moved coefficient and the key of the colours stay, sliders and filters do not; light also where the screen is dark."""
-    ask(page, "mffit.move('PCY1', 1.5)")
+    ask(page, "(mffit.move('PCY1', 1.5), mffit.chooseAll([0, 1], false))")
     try:
         look(page, SCREEN, dark=True)
         paper = page.find_element("css selector", ".panel canvas")
@@ -191,6 +191,7 @@ def test_a_printed_page_has_its_pictures_and_no_controls(page):
         assert brightness(paper).mean() > 0.8
         assert sheets(page) <= 2
     finally:
+        ask(page, "mffit.chooseAll([], false)")
         look(page, SCREEN)
 
 
