@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from mffit.constants import SLIP_BEYOND_THE_PEAK
 from mffit.fit import Posterior
 from mffit.fit.posterior import spread_through
+from mffit.prediction import Predictor
 from mffit.quantities import CHARACTERISTICS
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
@@ -20,6 +22,17 @@ from tir.outputs import outputs_of
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
 STEP = 1e-3
 """To either side of zero, for slopes [rad, -, 1/m]."""
+DECIDED_BY = {
+    "C_alpha_N_per_rad": "Fy",
+    "mu_y": "Fy",
+    "K_xk_N": "Fx",
+    "mu_x": "Fx",
+    "C_gamma_N_per_rad": "Fy",
+    "Mz_peak_Nm": "Mz",
+    "C_Mz_alpha_Nm_per_rad": "Mz",
+    "trail_m": "Mz",
+}
+"""The channel whose readings decide a number, the numbers that engineers ask for first being first."""
 
 
 def characteristics(
@@ -31,6 +44,7 @@ def characteristics(
     reach: float | None = None,
     slip_reach: float | None = None,
     known: Posterior | None = None,
+    predictor: Predictor | None = None,
 ) -> dict[str, Quantity]:
     """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
 
@@ -43,18 +57,26 @@ def characteristics(
     reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
     slip_reach : longitudinal slip up to which the peak of Fx is sought; default the file's KPUMAX, at most 0.3
     known : covariance of coefficients; without it, or if a number depends on none of them, its uncertainty is 0
+    predictor : whose covariance counts for the numbers of its channels, see :data:`DECIDED_BY`: where a coefficient takes over
+        what the formula misses, the force stays as it is
     """
-    rows = [] if known is None else [i for i, name in enumerate(known.names) if name in tyre.values]
-    names = [] if known is None else [known.names[i] for i in rows]
+    every = {}
+    if predictor is not None:
+        every = {name: Posterior(predictor.names, one.covariance) for name, one in predictor.channels.items()}
+    posteriors = [one for one in (known, *every.values()) if one is not None]
+    names = [name for name in dict.fromkeys(chain(*(one.names for one in posteriors))) if name in tyre.values]
     found, slopes = with_slopes(
         tyre, load, names, turn_slip=turn_slip, pressure=pressure, reach=reach, slip_reach=slip_reach
     )
-    covariance = np.zeros((0, 0)) if known is None else known.covariance[np.ix_(rows, rows)]
-    u = spread_through(slopes, covariance).tolist()
-    return {
-        key: Quantity(x, spread, CHARACTERISTICS[key].unit)
-        for (key, x), spread in zip(found.items(), u, strict=True)
-    }
+    of_name = dict(zip(names, slopes.T, strict=True))
+    numbers = {}
+    for i, (key, x) in enumerate(found.items()):
+        one, u = every.get(DECIDED_BY.get(key, ""), known), 0.0
+        if one is not None:
+            slope = [of_name[name][i] if name in of_name else 0.0 for name in one.names]
+            u = float(spread_through(np.array([slope]), one.covariance)[0])
+        numbers[key] = Quantity(x, u, CHARACTERISTICS[key].unit)
+    return numbers
 
 
 def with_slopes(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -88,19 +89,29 @@ def _numbers(
     """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to the ends ``reach``."""
     found, moved = [], []
     for k, side in enumerate((first, second)):
-        at = {"pressure": pressure, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
-        found.append(characteristics(side.tyre, load, turn_slip=side.turn_slip, known=side.known, **at))
+        at: Any = {"pressure": pressure, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
+        predictor = None if side.foretold is None else side.foretold[0]
+        found.append(
+            characteristics(
+                side.tyre, load, turn_slip=side.turn_slip, known=side.known, predictor=predictor, **at
+            )
+        )
         moved.append(_moved(side, load, at, [pair[k] for pair in shared.values()]))
     a, b = found
     for key in a:
         if key in b:
+            # To first order: what errors of the rig do to a number may come out above its uncertainty.
+            u = [
+                max(x.u, float(np.hypot.reduce(by, initial=0.0)))
+                for x, by in ((a[key], moved[0][key]), (b[key], moved[1][key]))
+            ]
             yield Difference(
                 key=key,
                 load=load,
                 first=a[key].value,
                 second=b[key].value,
-                u_first=a[key].u or None,
-                u_second=b[key].u or None,
+                u_first=u[0] or None,
+                u_second=u[1] or None,
                 covariance=float(moved[0][key] @ moved[1][key]),
             )
 

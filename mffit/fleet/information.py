@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from mffit.fit.fitted import Fitted
 from mffit.fit.priors import scatter
-from mffit.rig_errors import error_of
+from mffit.rig_errors import BESIDE, error_of
 
 SPIN = ("PECP1", "PECP2")
 """Coefficients that the points inform even if the build holds them at the result of the direct method."""
@@ -39,11 +39,30 @@ class Information:
         """Positions of the rig errors, or of the tyre's own numbers."""
         return [i for i, name in enumerate(self.names) if (error_of(name) is not None) == rig]
 
+    def without(self, names: Collection[str]) -> Information:
+        """What the points tell of the other numbers, these being unknown but for their priors."""
+        out = [i for i, name in enumerate(self.names) if name in names]
+        kept = [i for i, name in enumerate(self.names) if name not in names]
+        prior = self.spread[out] ** -2.0
+        across = self.matrix[np.ix_(kept, out)]
+        shift = np.linalg.solve(self.matrix[np.ix_(out, out)] + np.diag(prior), across.T).T
+        return replace(
+            self,
+            names=tuple(self.names[i] for i in kept),
+            values=self.values[kept],
+            matrix=self.matrix[np.ix_(kept, kept)] - shift @ across.T,
+            vector=self.vector[kept] - shift @ (self.vector[out] + prior * self.expected[out]),
+            expected=self.expected[kept],
+            spread=self.spread[kept],
+            moved_by={name: move[kept] for name, move in self.moved_by.items()},
+        )
+
 
 def information(fitted: Fitted) -> Information | None:
     """The information of a fit; None if nothing was free.
 
-    Numbers at a bound or a physical limit are left out: the likelihood is not quadratic there.
+    Numbers at a bound or a physical limit are left out: the likelihood is not quadratic there. Those of the tyre that are no
+    coefficients are unknown anew in every build.
     """
     prior = {n.name: (n.expected, n.spread) for n in fitted.numbers}
     values = fitted.simulation.values
@@ -64,7 +83,7 @@ def information(fitted: Fitted) -> Information | None:
     here = problem.free(names).linear(at)
     matrix = here.slope.T @ here.slope
     centre, spread = zip(*(prior[name] for name in names), strict=True)
-    return Information(
+    found = Information(
         names=tuple(names),
         values=at,
         matrix=matrix,
@@ -73,6 +92,7 @@ def information(fitted: Fitted) -> Information | None:
         spread=np.array(spread),
         moved_by=_moved_by(fitted, names),
     )
+    return found.without([error.name for error in BESIDE])
 
 
 def _moved_by(fitted: Fitted, names: Sequence[str]) -> dict[str, np.ndarray]:

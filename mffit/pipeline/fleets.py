@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
 from mffit.results import as_json
 from mffit.rig_errors import OF_RUN
+from mffit.viewer.named import tell_apart
 from tir import Quantity, Tyre
 
 WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
@@ -50,7 +52,7 @@ def fleet(
     if out is not None:
         refuse_early(Path(out), WRITTEN)
     progress("reading the builds")
-    specimens = [combining.read(place) for place in places]
+    specimens = _with_names_apart([combining.read(place) for place in places])
     rig_of = _rig_indices(specimens)
     with threadpool_limits(1):
         progress(f"estimating {len(specimens)} tyres together")
@@ -69,6 +71,16 @@ def fleet(
         progress("writing the page")
         write_fleet(found, Path(out))
     return found
+
+
+def _with_names_apart(specimens: list[Specimen]) -> list[Specimen]:
+    """The specimens; those with one name are called by their folders."""
+    count = Counter(s.name for s in specimens)
+    folders = tell_apart([s.folder.resolve() for s in specimens])
+    return [
+        replace(s, name=folder) if count[s.name] > 1 else s
+        for s, folder in zip(specimens, folders, strict=True)
+    ]
 
 
 def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:

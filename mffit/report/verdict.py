@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mffit.comparison import characteristics
-from mffit.fit import Posterior
+from mffit.comparison import DECIDED_BY, characteristics
 from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import number, stated, times
@@ -25,15 +24,6 @@ FOR = {
 """Whom each file is for, by its use."""
 
 
-OF_MODEL = (
-    ("Fy", "C_alpha_N_per_rad"),
-    ("Fy", "mu_y"),
-    ("Fx", "K_xk_N"),
-    ("Fx", "mu_x"),
-    ("Fy", "C_gamma_N_per_rad"),
-    ("Mz", "Mz_peak_Nm"),
-)
-"""Characteristics of the model, the first ones first, with the channel that decides them."""
 FOUR = 4
 
 
@@ -71,15 +61,18 @@ def headlines(result: BuildResult) -> list[Headline]:
         found = [_headline(DIRECT[name], value, note) for name, value, note in of_disc if value is not None]
     tyre = result.tyres[result.fitted]
     load = float(tyre["FNOMIN"])
-    known = {name: _spread(result, name) for name, a in result.fit.channels.items() if a.n}
-    of_channel = {
-        name: characteristics(tyre, load, turn_slip=result.on_disc, known=spread)
-        for name, spread in known.items()
-    }
+    of_model = characteristics(
+        tyre,
+        load,
+        turn_slip=result.on_disc,
+        known=result.fit.posterior,
+        predictor=result.prediction,
+    )
+    fitted = {name for name, a in result.fit.channels.items() if a.n}
     found += [
-        _headline(CHARACTERISTICS[key], value, f"of the model at {number(load, 0)} N, straight path")
-        for name, key in OF_MODEL
-        if name in of_channel and (value := of_channel[name][key]).u
+        _headline(CHARACTERISTICS[key], of_model[key], f"of the model at {number(load, 0)} N, straight path")
+        for key, name in DECIDED_BY.items()
+        if name in fitted and of_model[key].u
     ]
     return found[:FOUR]
 
@@ -88,14 +81,6 @@ def _headline(known: QuantityName, value: Quantity, note: str) -> Headline:
     return Headline(
         f"{known.word[0].upper()}{known.word[1:]} {known.ascii}", stated(value, known.unit_behind), note
     )
-
-
-def _spread(result: BuildResult, channel: str) -> Posterior:
-    """Covariance of the coefficients for a number of one channel, as predictions of it have it."""
-    predictor = result.prediction
-    if predictor is None or channel not in predictor.channels:
-        return result.fit.posterior
-    return Posterior(predictor.names, predictor.channels[channel].covariance)
 
 
 def purposes(result: BuildResult) -> dict[str, str]:

@@ -399,6 +399,16 @@ def test_a_folder_that_is_not_a_build_is_named(folders, tmp_path, spoil, said):
     assert str(tmp_path / "spoilt") in str(refused.value)
 
 
+def test_tyres_of_one_name_are_called_by_their_folders(folders, tmp_path):
+    shutil.copytree(folders[1], tmp_path / "again")
+    found = pipeline.fleet([folders[0], folders[1], tmp_path / "again"])
+    assert [row.specimen.name for row in found.rows] == [
+        found.rows[0].specimen.name,
+        folders[1].name,
+        "again",
+    ]
+
+
 def test_a_fleet_needs_two_tyres(folders):
     with pytest.raises(InputError, match="two or more built tyres"):
         pipeline.fleet([folders[0]])

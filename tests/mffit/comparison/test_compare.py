@@ -8,6 +8,7 @@ import shutil
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -86,6 +87,17 @@ def test_uncertainties_of_numbers_are_those_of_small_changes():
         for key, number in found.items():
             wanted = abs(high[key].value - low[key].value) / 0.02
             assert number.u == pytest.approx(wanted, rel=0.02, abs=1e-6 * abs(number.value)), (name, key)
+
+
+def test_what_predictions_know_of_a_channel_counts_for_its_numbers():
+    """Coefficients that only share out what the formula misses are wide each, where the force is known."""
+    wide = Posterior(("PKY1", "QDZ1"), np.diag([9.0, 0.01]) ** 2)
+    of_force = SimpleNamespace(names=("PKY1",), channels={"Fy": SimpleNamespace(covariance=np.eye(1) * 0.09)})
+    alone, with_force = (
+        characteristics(truth(), 1400.0, turn_slip=False, known=wide, predictor=by) for by in (None, of_force)
+    )
+    assert alone["C_alpha_N_per_rad"].u / with_force["C_alpha_N_per_rad"].u == pytest.approx(30.0)
+    assert alone["Mz_peak_Nm"] == with_force["Mz_peak_Nm"]
 
 
 def test_a_changed_coefficient_shows_where_it_acts(stiffer):

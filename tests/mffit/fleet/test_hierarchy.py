@@ -98,6 +98,23 @@ def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
     assert estimate([one]).population == {}
 
 
+@pytest.mark.parametrize("unknown", [("F0_N",), ("PECP1", "gamma_0_deg"), ("PECP1",), ()])
+def test_without_some_numbers_the_others_are_as_well_known_as_beside_them(unknown):
+    """With and without a prior of their own, each by the whole covariance."""
+    (one,), _, _ = fleet(2, 1)
+    prior = SPREAD**-2.0
+    covariance = np.linalg.inv(one.matrix + np.diag(prior))
+    mean = covariance @ (one.vector + EXPECTED * prior)
+    found = one.without(unknown)
+    kept = [i for i, name in enumerate(one.names) if name in found.names]
+    assert len(kept) == 5 - len(unknown)
+    own = np.linalg.inv(found.matrix + np.diag(found.spread**-2.0))
+    np.testing.assert_allclose(own, covariance[np.ix_(kept, kept)], rtol=1e-8)
+    np.testing.assert_allclose(
+        own @ (found.vector + found.expected * found.spread**-2.0), mean[kept], rtol=1e-8
+    )
+
+
 @pytest.mark.parametrize(("expected", "spread"), [(0.0, 1.0), (0.4, 1.0), (-3.0, 3.0)])
 def test_a_number_without_bounds_or_prior_is_known_to_its_own_size(expected, spread):
     """And to 1 at least: a centre of 0 says nothing about the size."""
