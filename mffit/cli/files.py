@@ -66,8 +66,11 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 
 
 @click.command()
-@click.argument("old", type=PATH, metavar="OLD.tir")
+@click.argument("file", type=PATH, metavar="FILE.tir")
 @out_option("File to write.", is_file=True, required=True)
+@click.option(
+    "--to", type=click.Choice(["mf52", "pac2002"]), help="Convert a file of MF 6.2 to an older formula."
+)
 @unloaded_radius
 @click.option(
     "--fittyp",
@@ -75,10 +78,12 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
     help="Version of the file, if its own FITTYP is wrong or missing.",
 )
 @voiced
-def convert(old: Path, out: Path, unloaded_radius: float | None, fittyp: str | None, voice: Voice) -> None:
-    """Convert a property file of MF 5.2 or PAC2002 to MF 6.2.
+def convert(
+    file: Path, out: Path, to: str | None, unloaded_radius: float | None, fittyp: str | None, voice: Voice
+) -> None:
+    """Convert a property file of MF 5.2 or PAC2002 to MF 6.2, or with --to one of MF 6.2 back.
 
-    Fits the terms of camber to the forces of the old file, and states the misfit.
+    Fits what means something else in the other formula to the forces of the file, and states the misfit.
     """
     from mffit import conversion
     from mffit.conversion import wording
@@ -86,12 +91,16 @@ def convert(old: Path, out: Path, unloaded_radius: float | None, fittyp: str | N
     from mffit.results import as_json
 
     given = {} if unloaded_radius is None else {"UNLOADED_RADIUS": unloaded_radius}
-    found = conversion.convert(old, given, fittyp=None if fittyp is None else int(fittyp))
+    found: conversion.Conversion | conversion.OldConversion
+    if to is not None:
+        found = conversion.to_old(file, to, given)
+    else:
+        found = conversion.convert(file, given, fittyp=None if fittyp is None else int(fittyp))
     conversion.write(found, out)
-    voice.warn(problem.sentence for problem in found.old.problems)
+    voice.warn(problem.sentence for problem in found.problems)
     voice.say(text.conversion_summary(found))
     voice.say(f"written to {out}")
-    voice.give({"file": found.old.path, "written": out, **as_json.document(found)})
+    voice.give({"file": found.path, "written": out, **as_json.document(found)})
     if wording.reasons(found):
         raise SystemExit(NOT_TRUSTED)
 

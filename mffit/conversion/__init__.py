@@ -1,7 +1,8 @@
-"""Property files of MF 5.2 and PAC2002 as files of MF 6.2: a new fit to the old forces, with its misfit stated."""
+"""Property files of MF 5.2 and PAC2002 as files of MF 6.2, and back: a new fit to the other's forces, with its misfit stated."""
 
+from mffit.conversion.backwards import KINDS, to_old
 from mffit.conversion.convert import convert, write
 from mffit.conversion.old_files import is_old, read_old
-from mffit.conversion.result import Conversion
+from mffit.conversion.result import Conversion, OldConversion
 
-__all__ = ["Conversion", "convert", "is_old", "read_old", "write"]
+__all__ = ["KINDS", "Conversion", "OldConversion", "convert", "is_old", "read_old", "to_old", "write"]

@@ -13,12 +13,13 @@ from mffit.conversion import constants, mf52, wording
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
 from mffit.conversion.old_files import OldFile, read_old
 from mffit.conversion.refit import held, refit
-from mffit.conversion.result import Conversion, RegionMisfit
+from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
 from mffit.errors import InputError
 from tir import Tyre
 from tir.equations import lateral, normalise, stiffness
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
+from tir.writing import replace_file
 
 CHANNELS_COMPARED = ("Fx", "Fy", "Mx", "Mz")
 ORIGIN = "converted from"
@@ -65,11 +66,14 @@ def convert(
     found = refit(start, at, goal, reach)
     values = {**start, **found, **_ranges(old, reach)}
     tyre = Tyre.from_values(values)
-    misfit = tuple(_misfits(tyre, at, goal))
+    new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
+    misfit = tuple(misfits(new, at, goal))
     how = f"by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
     provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
-    return Conversion(tyre, old, reach, misfit, tuple(found), held(p, reach))
+    return Conversion(
+        tyre=tyre, old=old, reach=reach, misfit=misfit, fitted=tuple(found), held=held(p, reach)
+    )
 
 
 def _camber_stiffness(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
@@ -127,9 +131,8 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
     return out
 
 
-def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:
+def misfits(new: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:
     """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
-    new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
     slipping = at.kappa != 0.0
     out = []
     for channel in CHANNELS_COMPARED:
@@ -154,7 +157,7 @@ def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list
     return out
 
 
-def write(found: Conversion, out: str | Path) -> None:
+def write(found: Conversion | OldConversion, out: str | Path) -> None:
     """Write the converted file; a file that is not a converted one is left alone.
 
     Raises
@@ -169,6 +172,6 @@ def write(found: Conversion, out: str | Path) -> None:
         if out.exists() and MARK not in out.read_bytes():
             raise InputError("exists already and was not made by mffit convert; give another name", file=out)
         out.parent.mkdir(parents=True, exist_ok=True)
-        found.tyre.write(out)
+        replace_file(out, found.text.encode("ascii"))
     except OSError as error:
         raise InputError(f"cannot be written ({error.strerror}); give another name", file=out) from None

@@ -47,6 +47,11 @@ class Conditions(NamedTuple):
         np.maximum.at(most, group.ravel(), np.abs(force))
         return most[group.ravel()]
 
+    def u(self, force: np.ndarray) -> np.ndarray:
+        """Uncertainty of each force (n,) for a fit: a good share of the largest alike, by the weight of the condition."""
+        unit = float(constants.GOOD_SHARE) * self.largest_alike(force)
+        return np.asarray(unit / np.sqrt(self.weight / self.weight.sum()))
+
 
 def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
     """The ranges of an old file within those of cars; the latter where the file states none."""

@@ -96,11 +96,13 @@ def read_old(
         keys = [key.partition(".")[2] for key in unused]
         problems.append(Problem("warning", f"keys that are not used: {some(keys)}"))
     present = frozenset(values)
-    defaults = {name: _default(name) for name in BY_NAME} | {name: row.default for name, row in OWN.items()}
+    defaults = {name: old_default(name) for name in BY_NAME} | {
+        name: row.default for name, row in OWN.items()
+    }
     return OldFile(kind, MappingProxyType({**defaults, **values}), present, tuple(problems), document)
 
 
-def _default(name: str) -> Any:
+def old_default(name: str) -> Any:
     """Value of a missing key: coefficients 0, except where the formulae of 6.2 need another value to be those of 5.2."""
     row = BY_NAME[name]
     if name in OF_62:

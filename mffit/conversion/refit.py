@@ -128,14 +128,12 @@ class _ChannelFit(NamedTuple):
 def _of_channel(
     fit: _ChannelFit, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
 ) -> Mapping[str, float]:
-    unit = float(constants.GOOD_SHARE) * at.largest_alike(goal)
-    u = unit / np.sqrt(at.weight / at.weight.sum())
     inputs = at._asdict()
 
     def force(numbers: Mapping[str, Any]) -> Any:
         return outputs_of((fit.channel,), SimpleNamespace(**{**values, **numbers}), inputs)[0]
 
-    problem = of_model(force, fit.names, goal, u)
+    problem = of_model(force, fit.names, goal, at.u(goal))
     if fit.limited:
         problem = _held_to_one(problem, fit, values)
     numbers = [FreeNumber(name, float(values[name]), *UNBOUNDED) for name in fit.names]

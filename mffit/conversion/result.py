@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 from mffit.brief import Brief
 from mffit.conversion import constants
 from mffit.conversion.grid import Reach
 from mffit.conversion.old_files import OldFile
-from tir import Tyre
+from tir import Problem, Tyre
 
 MOMENTS = ("Mx", "Mz")
+ROUNDING = 1e-9
+"""Misfit over the largest force of the same load that is rounding."""
 
 
 class RegionMisfit(NamedTuple):
@@ -36,20 +39,15 @@ class RegionMisfit(NamedTuple):
         return self.largest / self.greatest_force
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Conversion(Brief):
-    """A converted file and how near it comes to the old one."""
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
+class _Converted(Brief):
+    """How near a converted file comes to the other one."""
 
-    tyre: Tyre  #: MF 6.2, every coefficient marked as converted
-    old: OldFile
     reach: Reach
     misfit: tuple[RegionMisfit, ...]
     fitted: tuple[
         str, ...
     ]  #: names of the coefficients that were fitted; the others mean the same in both formulae
-    held: Mapping[
-        str, float
-    ]  #: curvature factors that the old formula holds to 1 in this file, and what they would be
 
     @property
     def poor(self) -> tuple[RegionMisfit, ...]:
@@ -60,3 +58,44 @@ class Conversion(Brief):
             if row.small_camber
             and (row.rms_share if row.channel in MOMENTS else row.share) > constants.GOOD_SHARE
         )
+
+
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
+class OldConversion(_Converted):
+    """A file of an older formula, and how near it comes to that of MF 6.2."""
+
+    source: Tyre  #: of MF 6.2
+    path: Path  #: its file
+    kind: str  #: of the older formula, in words
+    text: str  #: the converted file
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What the file of MF 6.2 has of note."""
+        return self.source.problems
+
+
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
+class Conversion(_Converted):
+    """A converted file and how near it comes to the old one."""
+
+    tyre: Tyre  #: MF 6.2, every coefficient marked as converted
+    old: OldFile
+    held: Mapping[
+        str, float
+    ]  #: curvature factors that the old formula holds to 1 in this file, and what they would be
+
+    @property
+    def path(self) -> Path:
+        """The old file."""
+        return self.old.path
+
+    @property
+    def text(self) -> str:
+        """The converted file."""
+        return self.tyre.text()
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What the old file has of note."""
+        return self.old.problems

@@ -7,19 +7,29 @@ from collections.abc import Iterable
 
 from mffit.conversion import constants
 from mffit.conversion.refit import FACTORS
-from mffit.conversion.result import Conversion, RegionMisfit
+from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
 from mffit.quantities import MODEL
 
 
-def headline(found: Conversion) -> str:
+def headline(found: Conversion | OldConversion) -> str:
     """What was made of what, and over which ranges."""
     reach = found.reach
+    over = (
+        f"over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to {math.degrees(reach.alpha):.3g} deg, camber to "
+        f"{math.degrees(reach.gamma):.3g} deg, longitudinal slip to {reach.kappa:g}"
+    )
+    if isinstance(found, OldConversion):
+        kept = f"those of {', '.join(found.fitted)}; " if found.fitted else ""
+        pressure = float(found.source["INFLPRES"]) / 1000.0
+        return (
+            f"{found.path.name} (MF 6.2) as {found.kind} at {pressure:g} kPa, {over}. {len(found.fitted)} coefficients "
+            f"were fitted to its forces, {kept}all others mean the same in "
+            "both formulae. The older formula knows neither pressure nor turn slip."
+        )
     return (
-        f"{found.old.path.name} ({found.old.kind}) as MF 6.2, over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to "
-        f"{math.degrees(reach.alpha):.3g} deg, camber to {math.degrees(reach.gamma):.3g} deg, longitudinal slip to "
-        f"{reach.kappa:g}. "
-        f"{len(found.fitted)} coefficients were fitted to the old forces, those of {refitted(found.fitted)}; all others mean the "
-        f"same in both formulae.{curvature(found)}"
+        f"{found.path.name} ({found.old.kind}) as MF 6.2, {over}. {len(found.fitted)} coefficients were fitted to "
+        f"the old forces, those of {refitted(found.fitted)}; all others mean "
+        f"the same in both formulae.{curvature(found)}"
     )
 
 
@@ -62,7 +72,7 @@ def size(row: RegionMisfit) -> str:
     return f"{row.largest:.3g} of {row.greatest_force:.3g} {unit} ({row.share:.1%}) at {row.load:.0f} N"
 
 
-def reasons(found: Conversion) -> list[str]:
+def reasons(found: Conversion | OldConversion) -> list[str]:
     """Why the converted file is not to be trusted; empty if its misfit is small."""
     out = []
     for row in found.poor:

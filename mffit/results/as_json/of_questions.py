@@ -7,7 +7,7 @@ import math
 from mffit.comparison import Comparison, Difference
 from mffit.comparison import wording as compared
 from mffit.comparison.record import CurveGap
-from mffit.conversion import Conversion
+from mffit.conversion import Conversion, OldConversion
 from mffit.conversion import wording as converted
 from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.limits import Limit
@@ -124,6 +124,12 @@ keys(BadRun, "file=recording lines why")
 keys(
     Conversion,
     "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
+    trusted=lambda found: not converted.reasons(found),
+    reasons=converted.reasons,
+)
+keys(
+    OldConversion,
+    "kind trusted reasons ranges=reach fitted misfit",
     trusted=lambda found: not converted.reasons(found),
     reasons=converted.reasons,
 )

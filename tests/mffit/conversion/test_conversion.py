@@ -13,7 +13,7 @@ import pytest
 import tir
 from mffit import config as configuration
 from mffit.cli import main
-from mffit.conversion import convert, is_old, mf52, read_old
+from mffit.conversion import convert, is_old, mf52, read_old, to_old
 from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.fit.known import known_before_fit
@@ -414,3 +414,61 @@ def test_writing_over_another_file_is_refused(converted, tmp_path):
             write(converted, place)
     found = read_old(OLD, {"UNLOADED_RADIUS": 0.4}).problems
     assert any("the given 0.4 is not used" in problem.sentence for problem in found)
+
+
+SAMPLE = ROOT / "samples" / "front-120-70" / "true.tir"
+
+
+def forces_of(old, *where):
+    return mf52.forces(mf52.in_terms_of_62(read_old(old).values), *where)
+
+
+@pytest.mark.parametrize("kind", ["mf52", "pac2002"])
+def test_a_file_goes_there_and_back(converted, tmp_path, kind):
+    """The old file's forces, at conditions between those of the fit, from a file that never saw it."""
+    converted.tyre.write(tmp_path / "new.tir")
+    main(["convert", f"{tmp_path}/new.tir", "--to", kind, "--out", f"{tmp_path}/old.tir", "--quiet"])
+    rng = np.random.default_rng(5)
+    where = (
+        rng.uniform(500, 7900, 2000),
+        rng.uniform(-0.3, 0.3, 2000),
+        np.radians(rng.uniform(-5.0, 5.0, 2000)),
+    )
+    first, again = forces_of(OLD, *where), forces_of(tmp_path / "old.tir", *where)
+    for name in ("Fx", "Fy", "Mx"):
+        off = np.abs(getattr(again, name) - getattr(first, name)) / np.max(np.abs(getattr(first, name)))
+        assert np.max(off) < 0.02, name
+    assert is_old(tmp_path / "old.tir")
+
+
+def test_a_motorcycle_tyre_in_the_older_formula(tmp_path):
+    """Upright to 1 % of the largest side force of each load, to 5 deg of camber to 2 % in rms; relaxation lengths to 6 %."""
+    found = to_old(SAMPLE, "mf52")
+    (tmp_path / "old.tir").write_text(found.text, encoding="ascii")
+    tyre = tir.read(SAMPLE)
+    alpha = np.linspace(-0.24, 0.24, 41)
+    for load in (700.0, 1400.0, 2800.0):
+        most = np.max(np.abs(tyre(load, alpha).Fy))
+        for camber, limit in ((0.0, 0.01), (math.radians(4.0), 0.02), (math.radians(-4.0), 0.02)):
+            off = forces_of(tmp_path / "old.tir", load, alpha, camber).Fy - tyre(load, alpha, camber).Fy
+            assert np.sqrt(np.mean(off**2)) < limit * most, (load, camber)
+    values = read_old(tmp_path / "old.tir").values
+    Fz = np.array([700.0, 1400.0, 2800.0])
+    sigma = mf52.relaxation_lengths(mf52.in_terms_of_62(values), Fz)
+    np.testing.assert_allclose(sigma[0], tyre.state(Fz).sigma_x, rtol=0.06)
+    np.testing.assert_allclose(sigma[1], tyre.state(Fz).sigma_y, rtol=0.06)
+    assert not {"Fx", "Fy"} & {row.channel for row in found.poor if row.rms_share > 0.02}
+
+
+def test_the_older_file_holds_at_the_pressure_of_the_newer(tmp_path):
+    tyre = tir.read(SAMPLE).replace(INFLPRES=200e3, PPY1=0.5, PPY2=0.9, PPX1=-0.4, QSY8=0.7)
+    tyre.write(tmp_path / "soft.tir")
+    (tmp_path / "old.tir").write_text(to_old(tmp_path / "soft.tir", "pac2002").text, encoding="ascii")
+    old = forces_of(tmp_path / "old.tir", 1400.0, 0.05, 0.0, 0.02)
+    soft, nominal = tyre(1400.0, 0.05, kappa=0.02), tyre(1400.0, 0.05, kappa=0.02, p=tyre["NOMPRES"])
+    assert abs(nominal.Fy / soft.Fy - 1.0) > 0.02
+    for name in ("Fx", "Fy"):
+        assert getattr(old, name) == pytest.approx(getattr(soft, name), abs=0.02 * 1400.0)
+    assert read_old(tmp_path / "old.tir").values["QSY1"] == pytest.approx(
+        tyre["QSY1"] * (200e3 / tyre["NOMPRES"]) ** 0.7
+    )

@@ -1,0 +1,201 @@
+"""``mffit convert --to``: a file of MF 6.2 as one of MF 5.2 or PAC2002, by a fit of the old formula to its forces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+import tir
+from mffit.conversion import mf52, wording
+from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, misfits
+from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
+from mffit.conversion.old_files import OWN, old_default
+from mffit.conversion.refit import UNBOUNDED
+from mffit.conversion.result import ROUNDING, OldConversion
+from mffit.least_squares import FreeNumber, of_model, solve
+from tir import Tyre
+from tir.document import folded
+from tir.outputs import outputs_of
+from tir.parameters import BY_NAME
+from tir.units import SI
+from tir.writing import comment_text, entry, value_text
+
+HEADERS: Mapping[str, Mapping[str, object]] = {
+    "mf52": {"PROPERTY_FILE_FORMAT": "MF-TYRE", "TYPE": "CAR", "FITTYP": 6, "USE_MODE": 14},
+    "pac2002": {"PROPERTY_FILE_FORMAT": "PAC2002", "USE_MODE": 14},
+}
+"""[MODEL] of the old files by their kind: the version, and combined forces with relaxation."""
+FILE = {"FILE_TYPE": "tir", "FILE_VERSION": 3.0, "FILE_FORMAT": "ASCII"}
+KINDS = {"mf52": "MF-Tyre 5.2", "pac2002": "PAC2002"}
+KEYS: Mapping[str, str] = {
+    "MODEL": "LONGVL VXLOW TYRESIDE",
+    "DIMENSION": "UNLOADED_RADIUS WIDTH ASPECT_RATIO RIM_RADIUS RIM_WIDTH",
+    "VERTICAL": "VERTICAL_STIFFNESS VERTICAL_DAMPING BREFF DREFF FREFF FNOMIN",
+    "LONG_SLIP_RANGE": "KPUMIN KPUMAX",
+    "SLIP_ANGLE_RANGE": "ALPMIN ALPMAX",
+    "INCLINATION_ANGLE_RANGE": "CAMMIN CAMMAX",
+    "VERTICAL_FORCE_RANGE": "FZMIN FZMAX",
+    "SCALING_COEFFICIENTS": "LFZO LCX LMUX LEX LKX LHX LVX LGAX LCY LMUY LEY LKY LHY LVY LGAY LTR LRES LGAZ LXAL LYKA LVYKA LS "
+    "LSGKP LSGAL LMX LVMX LMY",
+    "LONGITUDINAL_COEFFICIENTS": "PCX1 PDX1 PDX2 PDX3 PEX1 PEX2 PEX3 PEX4 PKX1 PKX2 PKX3 PHX1 PHX2 PVX1 PVX2 RBX1 RBX2 RCX1 REX1 "
+    "REX2 RHX1 PTX1 PTX2 PTX3",
+    "OVERTURNING_COEFFICIENTS": "QSX1 QSX2 QSX3",
+    "LATERAL_COEFFICIENTS": "PCY1 PDY1 PDY2 PDY3 PEY1 PEY2 PEY3 PEY4 PKY1 PKY2 PKY3 PHY1 PHY2 PHY3 PVY1 PVY2 PVY3 PVY4 RBY1 RBY2 "
+    "RBY3 RCY1 REY1 REY2 RHY1 RHY2 RVY1 RVY2 RVY3 RVY4 RVY5 RVY6 PTY1 PTY2",
+    "ROLLING_COEFFICIENTS": "QSY1 QSY2 QSY3 QSY4",
+    "ALIGNING_COEFFICIENTS": "QBZ1 QBZ2 QBZ3 QBZ4 QBZ5 QBZ9 QBZ10 QCZ1 QDZ1 QDZ2 QDZ3 QDZ4 QDZ6 QDZ7 QDZ8 QDZ9 QEZ1 QEZ2 QEZ3 "
+    "QEZ4 QEZ5 QHZ1 QHZ2 QHZ3 QHZ4 SSZ1 SSZ2 SSZ3 SSZ4",
+}
+"""Keys of an old file in the order of the MF-Tyre 5.2 manual, by section."""
+OF_CHANNEL = {
+    "Fx": ("LONGITUDINAL_COEFFICIENTS", "PT"),
+    "Fy": ("LATERAL_COEFFICIENTS", "PT"),
+    "Mz": ("ALIGNING_COEFFICIENTS", "SS"),
+    "Mx": ("OVERTURNING_COEFFICIENTS", "-"),
+}
+"""Section of the coefficients of a channel, and how those begin that are none of its force without slip to the other side. The
+side force comes before the moments, into which it enters."""
+
+
+def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProxyType({})) -> OldConversion:
+    """The MF 5.2 or PAC2002 file that comes nearest to the forces of an MF 6.2 file, at its inflation pressure.
+
+    Coefficients that mean the same stay. Those of a channel are fitted to its forces where the old formula gives others: those of
+    camber alone if the upright wheel agrees, all otherwise.
+
+    Parameters
+    ----------
+    path : the file, evaluated as its USE_MODE asks, on a straight path
+    kind : ``"mf52"`` or ``"pac2002"``
+    given : values [SI] of keys that it lacks
+
+    Raises
+    ------
+    TirError
+        If the file cannot be read.
+    """
+    tyre = tir.read(path, **given)
+    reach = reach_of(tyre.values, tyre.present)
+    at = conditions(reach)
+    goal = dict(zip(CHANNELS_COMPARED, _forces(tyre, at), strict=True))
+    values = _start(tyre)
+    values |= _relaxation(tyre, values, reach)
+    fitted: list[str] = []
+    for channel in OF_CHANNEL:
+        wanted, u, stages = goal[channel], at.u(goal[channel]), _stages(channel, values, at, goal[channel])
+        for names, at_these in stages:
+            here = Conditions(*(x[at_these] for x in at))
+            values |= _fitted(channel, names, values, here, wanted[at_these], u[at_these])
+        fitted += stages[-1][0] if stages else []
+    new = mf52.forces(mf52.in_terms_of_62(values), *at)._asdict()
+    misfit = tuple(misfits(new, at, goal))
+    return OldConversion(
+        source=tyre,
+        path=Path(path),
+        kind=KINDS[kind],
+        text=_text(tyre, Path(path).name, kind, values, fitted, wording.worst(misfit)),
+        reach=reach,
+        misfit=misfit,
+        fitted=tuple(fitted),
+    )
+
+
+def _forces(tyre: Tyre, at: Conditions) -> list[np.ndarray]:
+    found = outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict(), turn_slip=tyre.turn_slip)
+    return [np.array(np.broadcast_to(force, at.Fz.shape)) for force in found]
+
+
+def _start(tyre: Tyre) -> dict[str, Any]:
+    """The old values: those of the same name, at the pressure of the file, where the terms of pressure are 0."""
+    values: dict[str, Any] = {name: old_default(name) for name in BY_NAME}
+    values |= {name: row.default for name, row in OWN.items()}
+    values |= {name: tyre[name] for keys in KEYS.values() for name in keys.split() if name in tyre.values}
+    values |= {"NOMPRES": tyre["INFLPRES"], "INFLPRES": tyre["INFLPRES"]}
+    at_pressure = (float(tyre["INFLPRES"]) / float(tyre["NOMPRES"])) ** float(tyre["QSY8"])
+    return values | {name: float(tyre[name]) * at_pressure for name in KEYS["ROLLING_COEFFICIENTS"].split()}
+
+
+def _relaxation(tyre: Tyre, values: Mapping[str, Any], reach: Reach) -> dict[str, float]:
+    """Coefficients of the old relaxation lengths nearest to those of the upright wheel over load."""
+    Fz, names = loads(reach), ("PTX1", "PTX2", "PTX3", "PTY1", "PTY2")
+    state = tyre.state(Fz)
+    wanted = np.concatenate([np.abs(state.sigma_x), np.abs(state.sigma_y)])
+
+    def off(x: np.ndarray) -> np.ndarray:
+        p = mf52.in_terms_of_62({**values, **dict(zip(names, x.tolist(), strict=True))})
+        return np.asarray(np.concatenate(mf52.relaxation_lengths(p, Fz)) - wanted)
+
+    return dict(zip(names, least_squares(off, [1.0, 0.0, 0.0, 1.0, 2.0]).x.tolist(), strict=True))
+
+
+def _stages(
+    channel: str, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
+) -> list[tuple[list[str], np.ndarray]]:
+    """What is fitted after one another, and to which conditions (n,): nothing if the old formula gives the same, the coefficients
+    of camber if it does so upright; else those of the upright wheel, those of camber, and all together."""
+    section, others = OF_CHANNEL[channel]
+    names = [name for name in KEYS[section].split() if not name.startswith(others)]
+    by_camber = [name for name in names if name in mf52.SCALED_BY_CAMBER]
+    everywhere, upright = np.ones_like(at.gamma, bool), at.gamma == 0.0
+    off = np.abs(_force(channel, values, at) - goal) > ROUNDING * np.max(np.abs(goal))
+    if not np.any(off):
+        return []
+    if by_camber and not np.any(off & upright):
+        return [(by_camber, everywhere)]
+    alone = [([name for name in names if name not in by_camber], upright), (by_camber, everywhere)]
+    return [*(alone if by_camber else []), (names, everywhere)]
+
+
+def _force(channel: str, values: Mapping[str, Any], at: Conditions) -> Any:  # plain or traced
+    return getattr(mf52.forces(mf52.in_terms_of_62(values), *at), channel)
+
+
+def _fitted(
+    channel: str,
+    names: Sequence[str],
+    values: Mapping[str, Any],
+    at: Conditions,
+    goal: np.ndarray,
+    u: np.ndarray,
+) -> Mapping[str, float]:
+    def force(numbers: Mapping[str, Any]) -> Any:
+        return _force(channel, {**values, **numbers}, at)
+
+    numbers = [FreeNumber(name, float(values[name]), *_bounds(name, float(values[name]))) for name in names]
+    return solve(of_model(force, names, goal, u), numbers).values
+
+
+def _bounds(name: str, start: float) -> tuple[float, float]:
+    """Those of a fit: they keep terms of camber that hardly differ from running away."""
+    if name not in BY_NAME:
+        return UNBOUNDED
+    lower, upper = BY_NAME[name].bounds
+    return min(lower, start), max(upper, start)
+
+
+def _text(
+    tyre: Tyre, name: str, kind: str, values: Mapping[str, Any], fitted: Sequence[str], worst: str
+) -> str:
+    """The old file; comments say of every value whether it is that of the 6.2 file."""
+    about = {ORIGIN: f"{name}, MF 6.2 at {float(tyre['INFLPRES']) / 1000.0:g} kPa", MISFIT: worst}
+    lines = ["[MDI_HEADER]", *_entries(FILE)]
+    for key, words in about.items():
+        lines += folded(f"! provenance: {key}: {comment_text(words)}")
+    lines += ["[UNITS]", *_entries(SI)]
+    rows = {**BY_NAME, **OWN}
+    for section, keys in KEYS.items():
+        lines.append(f"[{section}]")
+        lines += _entries(HEADERS[kind] if section == "MODEL" else {})
+        for key in keys.split():
+            said = "fitted to the forces of the MF 6.2 file" if key in fitted else ""
+            lines.append(entry(key, value_text(rows[key], values[key]), said))
+    return "\r\n".join(lines) + "\r\n"
+
+
+def _entries(stated: Mapping[str, object]) -> list[str]:
+    return [entry(key, f"'{x}'" if isinstance(x, str) else f"{x}") for key, x in stated.items()]
