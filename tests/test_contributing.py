@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import tir
 from mffit.effects import NEEDS
 from mffit.effects.effect import Effect
 from mffit.errors import InputError
@@ -94,17 +93,6 @@ def test_the_reader_refuses_a_damaged_file_in_one_sentence(examples, tmp_path, t
     with pytest.raises(InputError, match=r"a\.json") as caught:
         examples["read_json"](path)
     assert "\n" not in str(caught.value)
-
-
-def test_the_exporter_writes_the_forces_of_the_tyre(examples, tmp_path):
-    (path,) = examples["write_table"](SAMPLE, tmp_path / "out")
-    tyre = tir.read(SAMPLE)
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(file))
-    assert rows[0] == ["alpha_deg", *(f"Fy_{share * tyre['FNOMIN']:.0f}N" for share in (0.5, 1.0, 1.5))]
-    for row in rows[1:]:
-        Fy = tyre(tyre["FNOMIN"], alpha=np.radians(float(row[0]))).Fy
-        assert float(row[2]) == pytest.approx(Fy, rel=1e-5, abs=1e-3)
 
 
 def test_the_picture_is_drawn_where_it_appears_and_its_numbers_are_the_readings(examples, tmp_path):

@@ -1,13 +1,15 @@
 """The reader of MATLAB files: v4 to v7 through scipy, v7.3 through h5py.
 
-A recording is a set of column vectors of one length. The layout of the tyre test consortium adds a structure
-``channel`` with the order of the vectors (``name``) and their ``units``, and the texts ``tireid``, ``testid`` and ``source``.
+A recording is a set of column vectors of one length, by themselves or in a structure. The layout of the tyre test consortium adds
+a structure ``channel`` with the order of the vectors (``name``) and their ``units``, and the texts ``tireid``, ``testid`` and
+``source``.
 Only numbers and texts are read, never objects, functions or anything else that could run as code.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -18,13 +20,15 @@ from typing import Any
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.sweeps import constants, matlab_apart
-from mffit.sweeps.extras import BYTES_OF_A_NUMBER, TIME_TO_READ, check_size, damaged, needed, undamaged
+from mffit.sweeps import matlab_apart
+from mffit.sweeps.extras import TIME_TO_READ, check_size, damaged, largest, needed, undamaged
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE
 from mffit.sweeps.raw_table import RawTable
 
 KIND = "MATLAB file"
 HDF5_MARK = b"\x89HDF"
+CONDITION_OF = re.compile("(alpha|gamma|camber|fz|pressure|speed)_?(fx|fy|mx|my|mz)", re.IGNORECASE)
+"""A condition under which one channel was measured."""
 
 
 def read_mat(path: Path) -> RawTable:
@@ -38,6 +42,7 @@ def read_mat(path: Path) -> RawTable:
     """
     content = _hdf5(path) if _is_hdf5(path) else _classic(path)
     vectors = {name: values for name, values in content.items() if isinstance(values, np.ndarray)}
+    vectors, apart = _with_common_conditions(vectors)
     if not vectors:
         raise InputError("has no column of numbers; save every channel as a vector", file=path)
     lengths = [len(values) for values in vectors.values()]
@@ -56,8 +61,34 @@ def read_mat(path: Path) -> RawTable:
         lines=range(1, n + 1),
         path=path,
         heading_line=None,
-        about={name: text for name, text in content.items() if isinstance(text, str)},
+        about={name: text for name, text in content.items() if isinstance(text, str)}
+        | ({"left out": f"{', '.join(apart)}, at conditions of its own"} if apart else {}),
     )
+
+
+def _with_common_conditions(vectors: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], list[str]]:
+    """The vectors, where each channel has conditions of its own (``alphaFy``, ``Fz_Fy``, ``alphaMz``) under plain names.
+
+    A channel whose conditions are not those of the first one is left out and named.
+    """
+    own: dict[str, dict[str, str]] = {}
+    for name in vectors:
+        found = CONDITION_OF.fullmatch(name)
+        if found and found[2] in vectors:
+            own.setdefault(found[2], {})[found[1]] = name
+    if not own:
+        return vectors, []
+    first = next(channel for channel in vectors if channel in own)
+    apart = [
+        channel
+        for channel, names in own.items()
+        if any(
+            not np.array_equal(vectors[names[key]], vectors[own[first].get(key, channel)]) for key in names
+        )
+    ]
+    dropped = {*apart, *(name for names in own.values() for name in names.values())}
+    kept = {name: values for name, values in vectors.items() if name not in dropped}
+    return {key: vectors[name] for key, name in own[first].items()} | kept, apart
 
 
 def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
@@ -72,14 +103,14 @@ def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
 def _classic(path: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        most = str(constants.LARGEST_UNPACKED // BYTES_OF_A_NUMBER)
+        most = str(largest(path))
         command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name, most]
         try:
             subprocess.run(command, check=True, timeout=TIME_TO_READ, capture_output=True)
         except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
             raise damaged(path, KIND, "reading it failed without a reason") from None
         if (folder / SIZE).exists():
-            check_size(BYTES_OF_A_NUMBER * int((folder / SIZE).read_text(encoding="utf-8")), path)
+            check_size(int((folder / SIZE).read_text(encoding="utf-8")), path)
         trouble = folder / TROUBLE
         if trouble.exists():
             raise damaged(path, KIND, trouble.read_text(encoding="utf-8", errors="replace"))
@@ -99,14 +130,20 @@ def _hdf5(path: Path) -> dict[str, Any]:
     h5py = needed("h5py", "MATLAB files of version 7.3", path)
     content: dict[str, Any] = {}
     with undamaged(path, KIND), h5py.File(path, "r") as file:
-        check_size(sum(int(one.nbytes) for one in file.values() if isinstance(one, h5py.Dataset)), path)
-        for name, item in file.items():
-            if name.startswith("#"):
-                continue
+        sizes: list[int] = []
+        file.visititems(lambda _, one: sizes.append(int(getattr(one, "nbytes", 0))))
+        check_size(sum(sizes), path)
+        variables = {name: item for name, item in file.items() if not name.startswith("#")}
+        for name, item in list(variables.items()):
             if isinstance(item, h5py.Group):
                 if {"name", "units"} <= set(item):
                     content[name] = {key: _referred(file, item[key]) for key in ("name", "units")}
-            elif item.attrs.get("MATLAB_class", b"double") == b"char":
+                else:
+                    variables |= {key: one for key, one in item.items() if isinstance(one, h5py.Dataset)}
+        for name, item in variables.items():
+            if isinstance(item, h5py.Group):
+                continue
+            if item.attrs.get("MATLAB_class", b"double") == b"char":
                 content[name] = _letters(item)
             elif item.dtype.kind in "fiu" and item.size > 1 and item.size == max(item.shape):
                 content[name] = np.asarray(item, dtype=float).reshape(-1)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 import sys
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +18,15 @@ import numpy as np
 
 LARGEST_TEXT = 10_000  # letters; not a record of constants.py, which this module must not import
 TROUBLE, TEXTS, SIZE = "trouble.txt", "texts.json", "size.txt"
+PACKED = 15
+"""The kind of an element of MATLAB v5 to v7 that zlib packed."""
+NESTED = (1, 2, 3)
+"""Classes of arrays whose parts whosmat does not count: cells, structures, objects."""
+CHUNK = 1 << 20
 
 
 def load(path: Path) -> dict[str, Any]:
-    """Column vectors (n,), texts, and the names and units of the structure ``channel``."""
+    """Column vectors (n,) and texts, by themselves or in a structure, and the names and units of the structure ``channel``."""
     import scipy.io
 
     loaded = scipy.io.loadmat(path, chars_as_strings=True)
@@ -27,10 +34,22 @@ def load(path: Path) -> dict[str, Any]:
     for name, value in loaded.items():
         if name.startswith("__") or not isinstance(value, np.ndarray):
             continue
-        if value.dtype.names and {"name", "units"} <= set(value.dtype.names) and value.size == 1:
+        if value.dtype.names and value.size == 1:
             entry = value.reshape(-1)[0]
-            content[name] = {key: _texts(entry[key]) for key in ("name", "units")}
-        elif value.dtype.kind == "U" and value.size == 1:
+            if {"name", "units"} <= set(value.dtype.names):
+                content[name] = {key: _texts(entry[key]) for key in ("name", "units")}
+            else:
+                content |= _known({key: entry[key] for key in value.dtype.names})
+        else:
+            content |= _known({name: value})
+    return content
+
+
+def _known(variables: dict[str, Any]) -> dict[str, Any]:
+    """Those that are vectors or texts."""
+    content: dict[str, Any] = {}
+    for name, value in variables.items():
+        if value.dtype.kind == "U" and value.size == 1:
             content[name] = str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()
         elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
             content[name] = value.reshape(-1).astype(float, copy=False)
@@ -46,18 +65,44 @@ def _texts(cells: Any) -> list[str]:
     return found
 
 
+def unpacked(path: Path, most: int) -> int:
+    """Bytes that scipy may load of a file, counted no further than past ``most``, before it loads them all at once."""
+    import scipy.io
+
+    size = 0
+    for _, shape, _ in scipy.io.whosmat(path):
+        size += 8 * int(math.prod(shape))  # the file may store numbers shorter
+    with path.open("rb") as file:
+        head = file.read(128)
+        if 0 in head[:4]:  # v4, which is neither packed nor nested
+            return size
+        order, held = ("<" if head[126:128] == b"IM" else ">"), 0
+        while max(size, held) <= most and len(tag := file.read(8)) == 8:
+            kind, length = struct.unpack(f"{order}II", tag)
+            packed, inflate = file.read(length), zlib.decompressobj()
+            each = 8 if kind == PACKED and _first(packed, order) in NESTED else 1
+            while kind == PACKED and packed and held <= most:
+                held += each * len(inflate.decompress(packed, CHUNK))
+                packed = inflate.unconsumed_tail
+    return max(size, held)
+
+
+def _first(packed: bytes, order: str) -> int:
+    """The class of a packed array."""
+    flags: bytes = zlib.decompressobj().decompress(packed, 20)[16:20]
+    return int.from_bytes(flags, "little" if order == "<" else "big") & 0xFF
+
+
 def main(source: str, out: str, most: str) -> None:
     """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``.
 
-    A file with more than ``most`` numbers is not loaded; their number is written to ``size.txt``.
+    A file that holds more than ``most`` bytes is not loaded; as far as they were counted they are written to ``size.txt``.
     """
-    import scipy.io
-
     folder = Path(out)
     try:
-        numbers = sum(math.prod(shape) for _, shape, _ in scipy.io.whosmat(source))
-        if numbers > int(most):
-            (folder / SIZE).write_text(str(numbers), encoding="utf-8")
+        size = unpacked(Path(source), int(most))
+        if size > int(most):
+            (folder / SIZE).write_text(str(size), encoding="utf-8")
             return
         content = load(Path(source))
         for k, value in enumerate(content.values()):

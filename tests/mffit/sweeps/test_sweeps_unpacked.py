@@ -48,6 +48,16 @@ def packed_workbook(path: Path) -> None:
         file.writestr("xl/media/noise.bin", bytes(10 * LIMIT))
 
 
+def packed_structure(path: Path) -> None:
+    scipy.io.savemat(path, {"S": {"FY": np.zeros((LIMIT, 1))}}, do_compression=True)
+
+
+def short_numbers(path: Path) -> None:
+    """One byte a number in the file, eight once it is loaded."""
+    zeros = np.zeros((LIMIT // 4, 1), np.int8)
+    scipy.io.savemat(path, {"S": {"SA": zeros, "FY": zeros}}, do_compression=True)
+
+
 def wide_workbook(path: Path) -> None:
     """Two rows that a cell in the last column pads to 16384 cells each, a hundred times."""
     openpyxl = pytest.importorskip("openpyxl")
@@ -62,6 +72,8 @@ BOMBS = {
     "a.tdx.gz": packed_text,
     "a.mat": packed_mat,
     "b.mat": claimed_mat73,
+    "c.mat": packed_structure,
+    "d.mat": short_numbers,
     "a.parquet": repeated_parquet,
     "a.xlsx": packed_workbook,
     "b.xlsx": wide_workbook,
