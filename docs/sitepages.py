@@ -13,7 +13,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from tir.parameters import TABLE, Parameter
 
 SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
-PAGE = re.compile(r"\]\(([\w/-]+)\.md\)")
+PAGE = re.compile(r"\]\(([\w/-]+)\.(?:md|ipynb)\)")
 OUTSIDE = re.compile(r"\[([^\]]+)\]\(\.\./([\w./-]+)\)")
 COLUMNS = ("name", "unit", "default", "range", "stage", "seen in", "needs", "equation", "description")
 WIDTHS = (11, 8, 9, 14, 8, 8, 14, 10, 40)

@@ -74,6 +74,8 @@ def summary(x: Any) -> str:
         return f"{len(x)}: {', '.join(map(str, x))}" if x else "none"
     if isinstance(x, Brief):
         return _title(x)
+    if _is_record(x):
+        return type(x).__name__
     if isinstance(x, Collection) and x and all(map(_is_record, x)):
         return f"{len(x)}: {', '.join(dict.fromkeys(type(one).__name__ for one in x))}"
     if isinstance(x, Collection):
