@@ -13,7 +13,7 @@ def comparison_table(found: Comparison) -> str:
     worst = {row.key: row for row in reversed(found.numbers)}  # of each number, the first of its loads
     numbers = [row for row in found.numbers if row is worst[row.key]]
     of_files = found.first, found.second, "difference", "in u"
-    sweeps = [
+    sweeps: list[tuple[str, ...]] = [
         (
             gap.sweep,
             gap.channel,
@@ -24,7 +24,7 @@ def comparison_table(found: Comparison) -> str:
         for gap in found.sweeps
     ]
     mean = f"mean, {found.second} less {found.first}"
-    tables = [
+    tables: list[tuple[tuple[str, ...], list[tuple[str, ...]], int]] = [
         (("number", "load", *of_files), [_number(row) for row in numbers], 2),
         (("coefficient", *of_files), [(row.key, *_values(row)) for row in found.coefficients], 1),
         (("sweep", "channel", "rms", mean, "rms over noise"), sweeps, 2),

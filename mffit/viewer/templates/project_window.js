@@ -102,6 +102,7 @@ function limitsForm(row, change, refused, close) {
   form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
   return form;
 }
+byId("other").addEventListener("click", () => byId("other-file").click());
 byId("other-file").addEventListener("change", async event => {
   const [file] = event.target.files;
   event.target.value = "";
