@@ -120,7 +120,7 @@ def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(engine, result):
 def test_a_fit_with_temperature_is_shown_with_its_own_points(result, data):
     """Another fit of the same readings: its misfit in the page is that of its simulation; only what differs travels twice."""
     tyre = result.fit.tyre.replace(PDY1=1.1 * result.fit.tyre["PDY1"])
-    warm = result.fit.simulation.with_numbers({"PDY1": tyre["PDY1"], "gain_Fy": 1.04, "F0_N": 20.0})
+    warm = result.fit.simulation.with_numbers({"PDY1": tyre["PDY1"], "gain": 1.04, "F0_N": 20.0})
     other = replace(result.fit, tyre=tyre, simulation=warm)
     over = differing(result.points, result.excluded, result.fit, other)
     names = {name for name, *_ in over["layout"]}

@@ -84,7 +84,7 @@ def test_a_moved_coefficient_moves_the_misfit_and_undo_brings_it_back(page, resu
 
 def test_another_fit_of_the_readings_can_be_chosen_and_the_address_keeps_it(page, result, tmp_path):
     data = project_data(result)
-    other = replace(result.fit, simulation=result.fit.simulation.with_numbers({"gain_Fy": 1.1}))
+    other = replace(result.fit, simulation=result.fit.simulation.with_numbers({"gain": 1.1}))
     points = differing(result.points, result.excluded, result.fit, other)
     data["others"] = [{"title": "warm.tir", "channels": data["channels"][:1], "points": points}]
     path = tmp_path / "two.html"
