@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
+from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.rounding import ascii_only, stated
 from tir import Quantity, Tyre
 
@@ -28,8 +28,8 @@ class Brief:
 
     def __repr__(self) -> str:
         lines = [f"<{_title(self)}", *(f" {name}: {text}" for name, text in _fields(self))]
-        if len(lines) > LINES_PER_RECORD:
-            shown = LINES_PER_RECORD - 1
+        if len(lines) > TERMINAL_LINES:
+            shown = TERMINAL_LINES - 1
             lines = [*lines[:shown], f" and {len(lines) - shown} fields more"]
         return "\n".join(_cut(line, TERMINAL_WIDTH - 1) for line in lines) + ">"
 

@@ -73,8 +73,10 @@ NAMED_IN_SENTENCE = Count(3, "-", "Most places of a kind that a sentence names; 
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")
+TERMINAL_LINES = Count(
+    25, "-", "Lines that a terminal shows whole: of a record's repr, or what a command says."
+)
 NEARLY_CERTAIN = Real(0.99, "-", "Confidences above this are written as more than this: no model is certain.")
-LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a terminal shows it whole.")
 
 # Judged by prediction
 PREDICTION_FALSE_ALARM = Real(

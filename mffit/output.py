@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import errno
 import hashlib
+import io
 import json
 import os
 import platform
@@ -352,7 +353,7 @@ def save_over(path: Path, before: bytes, after: bytes) -> None:
 
     A link stays one; permissions, owner and extended attributes stay. Where a new file could not have them, or the old one has
     other names (hard links), or the folder takes no new file, the old one is written over: not in one step if it is longer than
-    a page of memory (4 kB).
+    a page of memory (4 kB), but :func:`finish_save` ends what a kill divides, unless the folder takes no file.
 
     Raises
     ------
@@ -368,19 +369,63 @@ def save_over(path: Path, before: bytes, after: bytes) -> None:
                 if (now := old.read()) != before:
                     raise ChangedMeanwhile(now)
                 if new is None:
-                    # In one call, which a kill divides between pages at most; what is too long is blank until it is cut off.
-                    longer = after.ljust(len(before), b"\n")
-                    if old.seek(0) + old.write(longer) < len(longer):
-                        old.seek(0)
-                        old.truncate(old.write(before))
-                        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-                    old.truncate(len(after))
+                    with _journal(path, before, after):
+                        _write_over(old, before, after)
             if new is not None:
                 _put(new, path, before, after)
     except OSError as error:
         is_full = error.errno in DISK_FULL - {errno.EROFS}
         remedy = "free some space" if is_full else "check the permissions of file and folder"
         raise InputError(f"cannot be written ({error.strerror}); {remedy}", file=path) from None
+
+
+def _write_over(old: io.FileIO, before: bytes, after: bytes) -> None:
+    # In one call, which a kill divides between pages at most; what is too long is blank until it is cut off.
+    longer = after.ljust(len(before), b"\n")
+    if old.seek(0) + old.write(longer) < len(longer):
+        old.seek(0)
+        old.truncate(old.write(before))
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    old.truncate(len(after))
+
+
+def finish_save(path: Path) -> None:
+    """End a :func:`save_over` that a kill has divided, if the file holds the parts of both contents and nothing else."""
+    path = path.resolve()
+    journal = _journal_of(path)
+    try:
+        if os.name != "nt" and journal.lstat().st_uid != os.geteuid():
+            return  # of another user, who may not say what is written here
+        head, _, both = journal.read_bytes().partition(b"\n")
+        with _alone(path.parent), path.open("r+b", buffering=0) as old:
+            lengths, now = [int(n) for n in head.split()], old.read()
+            before, after = both[: lengths[0]], both[lengths[0] :]
+            longer = after.ljust(len(before), b"\n")
+            ends = min(len(now), len(longer))
+            same = next((k for k in range(ends) if now[k] != longer[k]), ends)
+            if len(both) == sum(lengths) and now != before and now[same:] == before[same:]:
+                _write_over(old, now, after)
+        journal.unlink()
+    except (OSError, ValueError, IndexError):
+        return  # there is none, or it was not complete before anything was written
+
+
+@contextmanager
+def _journal(path: Path, before: bytes, after: bytes) -> Iterator[None]:
+    """Within this block both contents of a file lie beside it, if its folder takes files, for :func:`finish_save`."""
+    journal, ours = _journal_of(path), False
+    try:
+        with contextlib.suppress(PermissionError, FileExistsError), journal.open("xb") as stream:
+            ours = True
+            stream.write(b"%d %d\n%b%b" % (len(before), len(after), before, after))
+        yield
+    finally:
+        if ours:
+            journal.unlink(missing_ok=True)
+
+
+def _journal_of(path: Path) -> Path:
+    return path.with_name(f".{path.name}.saving")
 
 
 def _put(new: str, path: Path, before: bytes, after: bytes) -> None:

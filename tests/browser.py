@@ -30,6 +30,7 @@ if (matchMedia('print').matches) for (const control of document.querySelectorAll
   if (control.checkVisibility() && framed) found.push(`on paper: ${control.outerHTML.slice(0, 60)}`);
 }
 for (const drawing of document.querySelectorAll('figure img')) {
+  if (matchMedia('print').matches && drawing.closest('.screen-only')) continue;
   const box = drawing.getBoundingClientRect(), said = drawing.closest('[role=img]').getAttribute('aria-label').slice(0, 40);
   if (box.width < 5 || box.height < 5) found.push(`invisible: ${said}`);
   if (box.left < 0 || box.right > width + 1) found.push(`outside the page: ${said}`);

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tir.constants import PRESSURE_RANGE, SMALLEST_LOAD
-from tir.equations import forces, normalise
+from tir.equations import forces, normalise, vertical
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
 from tir.errors import TirError
@@ -127,6 +127,13 @@ def either_way(p: Any, backwards: Any, at: OperatingCondition, switches: Switche
     out, state = forwards(turned_on_rim(p, turned), ahead, switches)
     out = out._replace(Fx=turned * out.Fx, Fy=turned * out.Fy, Mx=turned * out.Mx, My=turned * out.My)
     return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)
+
+
+def loaded_radius(p: Any, at: OperatingCondition, out: Forces, state: State) -> Any:
+    """Loaded radius [m] of a wheel with these forces and this state at an operating condition."""
+    rim_speed = np.abs(state.omega) * p.UNLOADED_RADIUS / p.LONGVL
+    dpi = at.pressure / p.NOMPRES - 1.0
+    return vertical.loaded_radius(p, at.Fz, out.Fx, out.Fy, at.gamma, rim_speed, dpi)
 
 
 def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:

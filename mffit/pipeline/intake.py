@@ -60,7 +60,7 @@ def init_from(
     folder = Path(folder)
     stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
     sniffed, text = project_of(sniff(files, unloaded_radius=unloaded_radius), folder, stated)
-    return sniffed, _written(folder, sniffed, text)
+    return sniffed, written_project(folder, sniffed, text)
 
 
 def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:
@@ -123,7 +123,14 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
         )
 
 
-def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
+def written_project(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
+    """Write the text of :func:`project_of` with what belongs to it; returns the paths, ``tyre.toml`` first.
+
+    Raises
+    ------
+    InputError
+        One of the files is there already, or the folder cannot be written to.
+    """
     pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
     contents = {"tyre.toml": text}
     if sniffed.reading.stretches:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from html import escape, unescape
 
-from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIAGNOSED, DIRECT
+from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
 
 VERBATIM = frozenset({"code", "title"})
@@ -26,7 +26,7 @@ SYMBOLS = {
     **{name: channel.html for name, channel in CHANNELS.items()},
     **{
         q.ascii: q.html
-        for table in (CONDITIONS, DIRECT, COMPARED, DIAGNOSED)
+        for table in (CONDITIONS, DIRECT, CHARACTERISTICS, DIAGNOSED)
         for q in table.values()
         if len(q.ascii) > 1
     },

@@ -2,61 +2,103 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mffit
+from mffit.fit import name_at_temperature
 from mffit.fit.agreement import with_points
+from mffit.fit.influences.modelled import without_runs
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.results.values import Json, document
+from mffit.rig import SIMULATED
 from mffit.templates import environment
 from mffit.viewer.page import Page, on_page
 from mffit.viewer.project_coefficients import coefficient_rows
-from mffit.viewer.project_points import axis_quantities, columns, delivered
+from mffit.viewer.project_points import axis_quantities, columns, delivered, differing
 from tir.codegen.javascript import javascript
-from tir.codegen.program import INPUTS, Switches, trace
-from tir.equations.forces import Forces, State
+from tir.codegen.program import INPUTS, LOADED, Switches, trace
 from tir.evaluate import CONICITY
-
-MODELLED = tuple(name for name in CHANNELS if name in Forces._fields + State._fields)
-"""The outputs that the page computes."""
 
 
 def project_data(result: BuildResult) -> dict[str, Json]:
-    """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite."""
+    """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite.
+
+    ``others`` are further fits of the same points: ``title``, and what of the rest is different, with the columns that are.
+    """
     fitted, points = result.fit, result.points
     simulation = fitted.simulation
-    switches = Switches(simulation.turn_slip, simulation.star)
-    parameters = trace(switches, MODELLED).parameters
-    rows = coefficient_rows(result, parameters)
-    values = {name: float(simulation.values[name]) for name in parameters}
+    others = [_at_temperature(result)] if fitted.temperature is not None else []
     return document(
         {
             "name": result.config.tyre.name,
+            "title": f"{result.config.tyre.name}.tir, as delivered",
             "order": INPUTS,
             "turn_slip": simulation.turn_slip,
             "star": simulation.star,
             "quantities": {name: on_page(quantity) for name, quantity in axis_quantities().items()},
-            "channels": [
-                {
-                    "name": name,
-                    "rmse": rmse,
-                    "over_noise": result.trust.over_noise.get(name),
-                    "of_fit": name in fitted.channels,
-                    "uses": trace(switches, (name,)).parameters,
-                }
-                for name, rmse in _misfits(result).items()
-            ],
-            "values": values | {row["name"]: row["value"] for row in rows},
-            "conicity": [name for name in CONICITY if name in parameters],
-            "coefficients": rows,
+            **_of_fit(result),
             "points": columns(points, result.excluded, fitted),
             "hand": result.config.hand,
             "exclude": result.config.fit.exclude,
             "trusted": result.trusted,
             "warnings": result.warnings,
-            "rig": [{"name": name, "value": value, "stderr": u} for name, (value, u) in fitted.rig.items()],
             "seconds": result.seconds,
+            "others": [
+                {
+                    "title": title,
+                    **_of_fit(other),
+                    "points": differing(points, result.excluded, fitted, other.fit),
+                }
+                for title, other in others
+            ],
         }
     )
+
+
+def _of_fit(result: BuildResult) -> dict[str, object]:
+    """What the page shows of a fit beside its points."""
+    fitted = result.fit
+    simulation, misfits = fitted.simulation, _misfits(result)
+    switches = Switches(simulation.turn_slip, simulation.star)
+    parameters = trace(
+        switches, tuple(name for name in CHANNELS if name in {*SIMULATED, *misfits})
+    ).parameters
+    rows = coefficient_rows(result, parameters)
+    values = {name: float(simulation.values[name]) for name in parameters}
+    return {
+        "channels": [
+            {
+                "name": name,
+                "rmse": rmse,
+                "over_noise": result.trust.over_noise.get(name),
+                "of_fit": name in fitted.channels,
+                "uses": trace(switches, (name,)).parameters,
+            }
+            for name, rmse in misfits.items()
+        ],
+        "values": values | {row["name"]: row["value"] for row in rows},
+        "conicity": [name for name in CONICITY if name in parameters],
+        "coefficients": rows,
+        "rig": [{"name": name, "value": value, "stderr": u} for name, (value, u) in fitted.rig.items()],
+    }
+
+
+def _at_temperature(result: BuildResult) -> tuple[str, BuildResult]:
+    """The fit with temperature terms, at one temperature and the mean of the runs; and its title."""
+    fitted, found = result.fit, result.fit.temperature
+    assert found is not None
+    assert fitted.full is not None
+    other = replace(
+        fitted,
+        tyre=found.file.tyre,
+        simulation=without_runs(fitted.full.simulation),
+        coefficients=found.coefficients,
+        channels=found.channels,
+        rig=found.rig,
+    )
+    title = f"{name_at_temperature(result.config.tyre.name)}, at {found.T_ref:.1f} degC"
+    return title, replace(result, fit=other)
 
 
 def project_html(
@@ -110,10 +152,13 @@ def _computed(data: dict[str, Json] | None) -> list[str]:
 def _misfits(result: BuildResult) -> dict[str, float]:
     """By channel that was measured and that the page computes, rms misfit of the fitted model.
 
-    Some, such as the wheel speed, are fitted by themselves, from the freely rolling wheel only, and are no channel of the fit.
+    Some, such as the wheel speed, are fitted by themselves, from the freely rolling wheel only, and are no channel of the fit;
+    so is the loaded radius, which has a curve where the file's terms of the radius were fitted.
     """
-    fitted, measured = result.fit, [name for name in result.points.measured if name in MODELLED]
-    others = [name for name in measured if name not in fitted.channels]
+    fitted = result.fit
+    apart = {name: x for name, x in fitted.radii.agreement(fitted.tyre.values).items() if name == LOADED}
+    measured = [name for name in result.points.measured if name in {*SIMULATED, *apart}]
+    others = [name for name in measured if name not in {*fitted.channels, *apart}]
     readings = delivered(fitted).readings(result.points, others)
-    found = {**with_points(readings, result.points), **fitted.channels}
+    found = {**with_points(readings, result.points), **fitted.channels, **apart}
     return {name: found[name].rmse for name in measured if found[name].n}

@@ -43,14 +43,9 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
     the rig read beyond what the tyre felt, of the columns that differ; ``more`` the lines of a point after its first.
     ``fitted`` is the number of points that the fit has.
     """
-    parts = [points] if excluded is None else [points, excluded]
-    simulation = delivered(fitted)
-    felt = concatenate([simulation.felt(part) for part in parts])
-    read = concatenate(parts)
-    own, rig = _shown(felt), _shown(read)
+    read, at_tyre = _read_and_felt(points, excluded, fitted)
     groups, levels_of = facets(read)
     named = {
-        "shift": {name: column - own[name] for name, column in rig.items() if _differ(column, own[name])},
         "u": {
             name: np.where(stating(points.u(name)), points.u(name), np.nan)
             for name in read.measured
@@ -61,9 +56,9 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
             for name in read.measured
         },
         "of": levels_of,
-        **_bands(felt, len(points), fitted),
+        **_bands(at_tyre, len(points), fitted),
     }
-    found = own | {
+    found = _felt(read, at_tyre) | {
         "mount": read.mount,
         "file": read.file,
         "line": read.line,
@@ -78,6 +73,29 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
         "files": list(read.files),
         "facets": groups,
     }
+
+
+def differing(
+    points: Points, excluded: Points | None, fitted: FitResult, other: FitResult
+) -> dict[str, object]:
+    """Those of the :func:`columns` that another fit has otherwise than ``fitted``, packed."""
+    known, found = (_felt(*_read_and_felt(points, excluded, one)) for one in (fitted, other))
+    found |= {name: np.zeros_like(column) for name, column in known.items() if name not in found}
+    return dict(
+        packed({name: x for name, x in found.items() if name not in known or _differ(x, known[name])})
+    )
+
+
+def _read_and_felt(points: Points, excluded: Points | None, fitted: FitResult) -> tuple[Points, Points]:
+    parts, simulation = [points] if excluded is None else [points, excluded], delivered(fitted)
+    return concatenate(parts), concatenate([simulation.felt(part) for part in parts])
+
+
+def _felt(read: Points, at_tyre: Points) -> dict[str, np.ndarray]:
+    """Conditions and channels as the tyre felt them, and what the rig read beyond that."""
+    own, rig = _shown(at_tyre), _shown(read)
+    shift = {name: column - own[name] for name, column in rig.items() if _differ(column, own[name])}
+    return own | {f"shift.{name}": column for name, column in shift.items()}
 
 
 def _bands(felt: Points, n: int, fitted: FitResult) -> dict[str, dict[str, np.ndarray]]:

@@ -27,6 +27,9 @@ from mffit.window.reading import ReadingProcess
 from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
 from mffit.window.session import ChangedElsewhere, Session
+from tir.document import parse_document
+from tir.errors import TirError
+from tir.tyre import interpret
 
 Endpoint = Callable[[Request], Awaitable[Response]]
 SERVED = (".html", ".png", ".svg", ".json", ".csv", ".tir", ".toml")
@@ -129,6 +132,7 @@ def window_app(
         "make": lambda content, at: opened.make(content),
         "add": lambda content, at: opened.add(content),
         "edit": lambda content, at: opened.edit(content),
+        "values": lambda content, at: _values_of(content),
         "undo": lambda content, at: opened.session.undo(),
         "stop": lambda content, at: opened.session.stop(),
         "stop-reading": lambda content, at: opened.stop_reading(),
@@ -233,6 +237,15 @@ def _recordings_page(opened: Opened) -> str:
 def _here(folder: Path) -> dict[str, Any]:
     """What a page needs to take recordings for a folder."""
     return {"folder": folder.name, "endings": ENDINGS}
+
+
+def _values_of(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The numbers of a property file, SI, by name; ``given`` has its ``name`` and ``text``."""
+    try:
+        tyre = interpret(parse_document(str(given.get("text")), path=str(given.get("name"))))
+    except TirError as error:
+        raise InputError(str(error)) from None
+    return {"values": {name: x for name, x in tyre.values.items() if isinstance(x, float)}}
 
 
 async def _events(session: Session, request: Request, closing: Callable[[], bool]) -> AsyncIterator[str]:

@@ -15,8 +15,8 @@ from mffit.config import Config
 from mffit.config.lines import line_ranges
 from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
-from mffit.output import digest, new_files
-from mffit.pipeline.intake import project_of
+from mffit.output import digest
+from mffit.pipeline.intake import STRETCHES, project_of, written_project
 from mffit.points import Points, levels
 from mffit.points.loading import read
 from mffit.quantities import CONDITIONS
@@ -35,7 +35,7 @@ from mffit.viewer.controls import in_si
 from mffit.window.edits import add_recordings
 
 PROJECT = "tyre.toml"
-NOT_READABLE_HERE = (PROJECT, "stretches.csv")
+NOT_READABLE_HERE = (PROJECT, STRETCHES)
 SEPARATORS = frozenset('/\\:*?"<>|')
 """Characters that separate folders on some system, or that no file there may have."""
 SETTINGS = ("Fz_N", "gamma_deg", "kappa", "p_kPa", "V_mps")
@@ -167,7 +167,7 @@ class RecordingsFolder:
     def _chosen_config(self, choice: Mapping[str, Any]) -> Config:
         """The project as chosen, of these recordings alone."""
         if self.project is None:
-            return checked(tomllib.loads(self._text(choice)), path=None, folder=self.folder, lines={})
+            return checked(tomllib.loads(self._project(choice)[1]), path=None, folder=self.folder, lines={})
         text = add_recordings(self.project.read_bytes().decode("utf-8-sig"), **self.added(choice))
         found = checked(tomllib.loads(text), path=self.project, folder=self.project.parent, lines={})
         known = config.load(self.project).sweep
@@ -194,24 +194,25 @@ class RecordingsFolder:
         ]
         return {"sweeps": sweeps_text(found, self.folder, project.columns), "bad": bad}
 
+    @formats.reading_once()
     def make(self, choice: Mapping[str, Any]) -> Path:
-        """Write the ``tyre.toml``; returns its path.
+        """Write what ``mffit init --from`` writes; returns the path of the ``tyre.toml``.
 
         Raises
         ------
         InputError
-            The recordings cannot be read as chosen, or the file exists.
+            The recordings cannot be read as chosen, or one of the files exists.
         """
-        return new_files(self.folder, {PROJECT: self._text(choice)})[0]
+        return written_project(self.folder, *self._project(choice))[0]
 
     @formats.reading_once()
-    def _text(self, choice: Mapping[str, Any]) -> str:
-        """The ``tyre.toml``, as ``mffit init --from`` makes it; only files of this folder are named."""
+    def _project(self, choice: Mapping[str, Any]) -> tuple[Sniffed, str]:
+        """What the recordings hold, and the ``tyre.toml`` as ``mffit init --from`` makes it; only files of this folder."""
         with _complete():
             chosen = self._chosen_files(choice)
             stated = self._stated(choice["tyre"], choice["rig"], [path.name for path in chosen])
         found = sniff(sorted(chosen), unloaded_radius=stated.unloaded_radius, chosen=chosen)
-        return project_of(found, self.folder, stated)[1]
+        return project_of(found, self.folder, stated)
 
     def _chosen_files(self, choice: Mapping[str, Any]) -> dict[Path, ChosenFile]:
         """The files that are used, with what the page says of them; only files of this folder."""

@@ -12,7 +12,7 @@ import pytest
 
 from mffit import output
 from mffit.errors import InputError
-from mffit.output import ChangedMeanwhile, save_over
+from mffit.output import ChangedMeanwhile, finish_save, save_over
 
 posix = pytest.mark.skipif(os.name == "nt", reason="owners and modes of POSIX")
 OLD, NEW = b"a = 1\nb = 2  # both\n", b"a = 3\n"
@@ -133,6 +133,32 @@ def test_a_full_disk_leaves_the_old_content(tmp_path):
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
         signal.signal(signal.SIGXFSZ, old)
     assert path.read_bytes() == before
+
+
+@posix
+@pytest.mark.parametrize(("long", "short"), [(9000, 5000), (5000, 9000), (9000, 9000)])
+@pytest.mark.parametrize("written", [0, 4096, 8192, 9000])
+def test_a_file_that_a_kill_divided_is_whole_when_it_is_opened_again(path, monkeypatch, long, short, written):
+    before, after = b"a" * long, b"b" * short
+    path.write_bytes(before)
+    os.link(path, path.with_name("hard.toml"))
+
+    def killed(old, before, after):
+        old.seek(0)
+        old.write(after.ljust(len(before), b"\n")[:written])
+        os._exit(9)
+
+    monkeypatch.setattr(output, "_write_over", killed)
+    if not (child := os.fork()):
+        save_over(path, before, after)
+    os.waitpid(child, 0)
+    monkeypatch.undo()
+    theirs = b"theirs" + path.read_bytes()[6:-1]
+    if written == 9000:  # saved by another program since
+        path.write_bytes(theirs)
+    finish_save(path)
+    assert path.read_bytes() == {0: before, 9000: theirs}.get(written, after)
+    assert sorted(os.listdir(path.parent)) == ["hard.toml", "tyre.toml"]
 
 
 def test_windows_at_work_on_one_file_lose_no_save(path):

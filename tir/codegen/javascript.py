@@ -38,7 +38,7 @@ def javascript(
 
     Parameters
     ----------
-    outputs : fields of Forces and State
+    outputs : fields of Forces and State, or RL, the loaded radius [m]
     turn_slip, star, limits : as in a call of the tyre
     """
     program = trace(Switches(turn_slip, star, limits), outputs)

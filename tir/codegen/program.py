@@ -10,13 +10,15 @@ from typing import Any
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
 from tir.errors import TirError, some
-from tir.evaluate import OperatingCondition, either_way, zero_divisors
+from tir.evaluate import OperatingCondition, either_way, loaded_radius, zero_divisors
 from tir.evaluate import Switches as Switches
 from tir.parameters import TABLE
 
 INPUTS = OperatingCondition._fields
 CALLED = {"pressure": "p"}
 """Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
+LOADED = "RL"
+"""The loaded radius, which is no state of the model because many files lack what it depends on."""
 NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
 
 
@@ -55,11 +57,11 @@ def trace(
     Parameters
     ----------
     switches : see :class:`Switches`
-    outputs : fields of Forces and State to compute
+    outputs : fields of Forces and State to compute, or RL
     fixed : parameters that the program holds as numbers, the others stay symbols
     changed : changes the parameters by name before the run
     """
-    found = run_on_symbols(switches, fixed or {}, {}, changed)
+    found = run_on_symbols(switches, fixed or {}, {}, changed, radius=LOADED in outputs)
     for name in outputs:
         if name not in found:
             raise TirError(f"{name} is no force or state: use {', '.join(found)}", name=name)
@@ -71,10 +73,13 @@ def run_on_symbols(
     fixed: Mapping[str, float],
     given: Mapping[str, float],
     changed: Callable[[dict[str, Any], Graph], None] | None = None,
+    *,
+    radius: bool = False,
 ) -> dict[str, Any]:
     """Every force and state as a node of one graph, or as a number.
 
-    ``fixed`` and ``given`` are the parameters and inputs that are numbers already; ``changed`` changes the parameters.
+    ``fixed`` and ``given`` are the parameters and inputs that are numbers already; ``changed`` changes the parameters; ``radius``
+    asks for RL, the loaded radius, too: with it there are twice as many nodes.
     """
     graph = Graph()
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
@@ -82,8 +87,10 @@ def run_on_symbols(
         changed(p, graph)
     inputs: list[Any] = [given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS]
     at = OperatingCondition(*inputs)
-    forces, state = either_way(SimpleNamespace(**p), at.Vx < 0.0, at, switches)
-    return {**state._asdict(), **forces._asdict()}
+    named = SimpleNamespace(**p)
+    forces, state = either_way(named, at.Vx < 0.0, at, switches)
+    found = {**state._asdict(), **forces._asdict()}
+    return found | {LOADED: loaded_radius(named, at, forces, state)} if radius else found
 
 
 def refuse_zero_divisors(p: Any, switches: Switches, outputs: Sequence[str]) -> None:

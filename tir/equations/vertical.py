@@ -19,7 +19,7 @@ def load(p, RL, Fx, Fy, gamma, rim_speed, dpi):
     free, lean, R0 = free_radius(p, rim_speed), absolute(gamma), p.UNLOADED_RADIUS
     tread = (1.075 - 0.5 * p.ASPECT_RATIO) * p.WIDTH  # reference width
     whole = p.Q_CAM1 * free + p.Q_CAM2 * free**2
-    flat = real(whole) == 0.0
+    flat = absolute(real(whole)) <= 0.0  # exported code has no equality
     share = select(flat, 0.0, (p.Q_CAM1 * RL + p.Q_CAM2 * RL**2) / select(flat, 1.0, whole))
     by_radius = select(flat, 0.0, (p.Q_CAM1 + 2.0 * p.Q_CAM2 * RL) / select(flat, 1.0, whole))
     edge = tread / 8.0 * tan(lean)

@@ -4,49 +4,40 @@ from __future__ import annotations
 
 from mffit.comparison import Comparison, Difference, wording
 from mffit.quantities import CHANNELS
-from mffit.report import constants
-from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.report.text.layout import blocks, lines_left, paragraphs, tables_within, wrapped
 from mffit.rounding import number, with_u
 
 
 def comparison_table(found: Comparison) -> str:
-    """The text that ``mffit compare`` prints: the main sentence, the largest differences, the worst sweeps."""
-    parts = [wrapped(wording.headline(found))]
-    if found.numbers:
-        head = ("number", "load", found.first, found.second, "difference", "in u")
-        parts.append(table(head, [_number(row) for row in found.numbers[: constants.MOST_ROWS]], left=2))
-    if found.coefficients:
-        of_coefficients = ("coefficient", found.first, found.second, "difference", "in u")
-        parts.append(
-            table(
-                of_coefficients,
-                [_coefficient(row) for row in found.coefficients[: constants.MOST_ROWS]],
-            )
+    """What ``mffit compare`` prints on one screen: the main sentence, the largest differences of each, the worst sweeps."""
+    worst = {row.key: row for row in reversed(found.numbers)}  # of each number, the first of its loads
+    numbers = [row for row in found.numbers if row is worst[row.key]]
+    of_files = found.first, found.second, "difference", "in u"
+    sweeps: list[tuple[str, ...]] = [
+        (
+            gap.sweep,
+            gap.channel,
+            f"{number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit}",
+            f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
+            number(gap.over_noise, digits=3) if gap.over_noise else "–",
         )
-    if found.sweeps:
-        rows = [
-            (
-                gap.sweep,
-                gap.channel,
-                f"{number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit}",
-                f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
-                number(gap.over_noise, digits=3) if gap.over_noise else "–",
-            )
-            for gap in found.sweeps[: constants.MOST_ROWS]
-        ]
-        mean = f"mean, {found.second} less {found.first}"
-        parts.append(table(("sweep", "channel", "rms", mean, "rms over noise"), rows, left=2))
-    parts.append(paragraphs(found.notes))
-    return blocks(parts)
+        for gap in found.sweeps
+    ]
+    mean = f"mean, {found.second} less {found.first}"
+    tables: list[tuple[tuple[str, ...], list[tuple[str, ...]], int]] = [
+        (("number", "load", *of_files), [_number(row) for row in numbers], 2),
+        (("coefficient", *of_files), [(row.key, *_values(row)) for row in found.coefficients], 1),
+        (("sweep", "channel", "rms", mean, "rms over noise"), sweeps, 2),
+    ]
+    shown = [(head, *rows) for head, rows, _ in tables if rows]
+    headline, notes = wrapped(wording.headline(found)), paragraphs(found.notes)
+    room = lines_left(headline, notes) - 1
+    return blocks([headline, *tables_within(room, shown, [left for _, rows, left in tables if rows]), notes])
 
 
 def _number(row: Difference) -> tuple[str, ...]:
     known = wording.quantity(row)
     return (known.column(known.word), wording.place(row), *_values(row))
-
-
-def _coefficient(row: Difference) -> tuple[str, ...]:
-    return (row.key, *_values(row))
 
 
 def _values(row: Difference) -> tuple[str, ...]:

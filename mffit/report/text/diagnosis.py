@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
+from mffit.diagnosis.notes import NotVisible
 from mffit.diagnosis.where import Region
+from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS
 from mffit.report import words
-from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.report.text.layout import blocks, cut, lines_left, table, wrapped
 from mffit.rounding import as_good_as, number, per_cent, with_u
+from tir.errors import counted
 
 
 def diagnosis_summary(diagnosis: Diagnosis) -> str:
-    """The text that ``mffit diagnose`` prints: the main sentence, the gap, the effects, what is unexplained."""
+    """What ``mffit diagnose`` prints on one screen: the main sentence, the gap, the effects, what is unexplained."""
     gaps: tuple[tuple[str, Gap], ...] = (
         ("before", diagnosis.gap_before),
         ("after", diagnosis.gap_after),
@@ -30,11 +33,35 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
         *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
         wrapped(diagnosis.headline),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, values in rows]),
-        *(_effect(found, diagnosis.signs) for found in diagnosis.effects),
-        _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
-        paragraphs(wording.notes(diagnosis)),
     ]
-    return blocks(parts)
+    regions = _regions(diagnosis.unexplained_where) if diagnosis.unexplained else ""
+    unseen = [note for note in diagnosis.notes if isinstance(note, NotVisible)]
+    seen = [said for said in wording.notes(diagnosis) if said not in {note.sentence for note in unseen}]
+    notes = "\n".join([*(f"- {cut(said, 2, '  ')}" for said in seen), *_invisible(unseen)])
+    effects = [_effect(found, diagnosis.signs) for found in diagnosis.effects]
+    return blocks([*parts, *_within(lines_left(*parts, regions, notes), effects), regions, notes])
+
+
+def _within(lines: int, effects: Sequence[str]) -> list[str]:
+    """Effects as far as there is room for all that is said of them; of the others their first lines."""
+    heads = [effect.partition("\n")[0] for effect in effects]
+    full = 0
+    while full < len(effects):
+        lines -= effects[full].count("\n") + 2
+        if full and lines < len(effects) - full - 1:
+            break
+        full += 1
+    return [*effects[:full], "\n".join(heads[full:])]
+
+
+def _invisible(found: Sequence[NotVisible]) -> list[str]:
+    """How many effects these data cannot show, and what they lack."""
+    if not found:
+        return []
+    lack = dict.fromkeys(NEEDS[need] for note in found for need in note.needs)
+    count = sum(len(note.effects) for note in found)
+    said = f"{counted(count, 'effect')} cannot be seen without {'; '.join(lack)} (page and JSON name them)."
+    return [wrapped(said, "- ", "  ")]
 
 
 def models_written(diagnosis: Diagnosis) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from mffit.constants import TERMINAL_WIDTH
+from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.rounding import ascii_only
 
 
@@ -26,6 +26,26 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) 
 def blocks(parts: Sequence[str]) -> str:
     """The parts that are not empty, with a blank line between them."""
     return ascii_only("\n\n".join(part for part in parts if part))
+
+
+def lines_left(*parts: str) -> int:
+    """Lines of a screen that parts leave, with a blank one after each and one for what is written."""
+    return TERMINAL_LINES - 1 - sum(part.count("\n") + 2 for part in parts if part)
+
+
+def tables_within(lines: int, tables: Sequence[Sequence[Sequence[str]]], left: Sequence[int]) -> list[str]:
+    """Tables, each of its head and its rows, cut to an even share of so many lines, with what is left out said below them."""
+    texts, cut_off = [], 0
+    for k, (head, *rows) in enumerate(tables):
+        room = max(lines // (len(tables) - k) - 3, 1)  # head, rule and blank line
+        texts.append(table(head, rows[:room], left=left[k]))
+        lines -= 3 + min(room, len(rows))
+        cut_off += max(len(rows) - room, 0)
+    return (
+        texts
+        if not cut_off
+        else [*texts[:-1], f"{texts[-1]}\n... and {cut_off} rows more in page and JSON (--out DIR)"]
+    )
 
 
 def paragraphs(sentences: Sequence[str]) -> str:

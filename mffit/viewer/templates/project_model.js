@@ -4,7 +4,7 @@ const RESIDUAL = "residual of ";
 const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, KNOTS = 16;
 const MOST_MOVED = 2000;  // points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
 const TYPES = {f4: Float32Array, u1: Uint8Array, i1: Int8Array, u2: Uint16Array, i2: Int16Array, i4: Int32Array};
-const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true};
+const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true, fit: ""};
 let project = null;
 let rows = [];  // coefficients by index, and by name below
 let coefficient = {};
@@ -39,16 +39,24 @@ function unpacked(bytes, layout) {
   }
   return found;
 }
-function take(data, bytes) {
+// Takes the data of the fit, or what another fit of the same points has instead, with the bytes of its columns.
+function take(data, bytes, over = null) {
   project = data;
   rows = data.coefficients;
   coefficient = Object.fromEntries(rows.map(row => [row.name, row]));
   channels = data.channels.map(channel => channel.name);
   const points = data.points, n = points.count;
   columns = {count: n, shift: {}, read: {}, u: {}, of: {}, unused: {}, band: {}, missed: {}, half: {}};
-  for (const [name, column] of Object.entries(unpacked(bytes, points.layout))) {
-    const [kind, own] = name.split(".");
-    if (own) columns[kind][own] = column; else columns[kind] = column;
+  const set = found => {
+    for (const [name, column] of Object.entries(found)) {
+      const [kind, own] = name.split(".");
+      if (own) columns[kind][own] = column; else columns[kind] = column;
+    }
+  };
+  set(unpacked(bytes, points.layout));
+  if (over) {  // bands are around the file as delivered
+    columns.missed = {};
+    set(unpacked(over, data.over));
   }
   for (const [name, shift] of Object.entries(columns.shift)) columns.read[name] = Float64Array.from(shift, (x, i) => columns[name][i] + x);
   columns.last = Int32Array.from(columns.line, (line, i) => line + columns.more[i]);
@@ -63,7 +71,7 @@ function take(data, bytes) {
     const column = columns[name], first = column ? column.find(Number.isFinite) : undefined;
     return [name, first !== undefined && column.some(x => x !== first)];
   }));
-  trial = Object.fromEntries(Object.entries(trial).filter(([name]) => name in coefficient));
+  trial = Object.fromEntries(Object.entries(trial).filter(([name]) => name in data.values));
   fitModels = compiled(data.values);
   beforeModels = data.before ? compiled({...data.values, ...data.before.values}) : null;
   fitOwn = Object.fromEntries(channels.map(name => [name, predicted(fitModels, name, new Float64Array(n), 1)]));

@@ -16,6 +16,14 @@ function move(name, value, final) {
   showRow(coefficient[name]);
   update();
 }
+// Values by name in place of those of the fit; others stay as fitted.
+function tryOut(values) {
+  moves.push({trial: {...trial}});
+  trial = Object.fromEntries(Object.entries(project.values).filter(([name, x]) => name in values && values[name] !== x).map(([name]) => [name, values[name]]));
+  rows.forEach(showRow);
+  remember();
+  update();
+}
 function update() {
   if (pending || !project) return;
   pending = true;
@@ -34,7 +42,7 @@ function undo() {
   if (!last || !last.trial) return undoEdit();
   const names = new Set([...Object.keys(trial), ...Object.keys(last.trial)]);
   trial = last.trial;
-  for (const name of names) showRow(coefficient[name]);
+  for (const name of names) if (name in coefficient) showRow(coefficient[name]);
   remember();
   update();
 }
@@ -338,7 +346,7 @@ function showFacets() {
 
 // ---- the address
 function remember() {
-  const {hidden, ranges, colour, reading, bands} = state, kept = {panels: state.panels.map(({x, y}) => ({x, y})), hidden, ranges, colour, reading, bands, trial};
+  const {hidden, ranges, colour, reading, bands, fit} = state, kept = {panels: state.panels.map(({x, y}) => ({x, y})), hidden, ranges, colour, reading, bands, fit, trial};
   history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify(kept))}`);
 }
 function recalled() {
@@ -352,7 +360,18 @@ function recalled() {
 async function showProject(data) {
   if (data.channels.some(channel => !(channel.name in MODELS))) return location.reload();  // with the model of these channels
   const places = new Set(project ? chosen.map(placeOf) : []);
-  take(data, await inflated(data.points.bytes));
+  const other = data.others.find(one => one.title === state.fit), whole = await inflated(data.points.bytes);
+  if (other) take({...data, ...other, points: data.points, over: other.points.layout, before: null}, whole, await inflated(other.points.bytes));
+  else take(data, whole);
+  state.fit = other ? other.title : data.title;
+  byId("fit").replaceChildren(...[data, ...data.others].map(({title}) => new Option(title, title, false, title === state.fit)));
+  byId("fit").parentNode.hidden = !data.others.length;
+  byId("fit").onchange = event => {
+    state.fit = event.target.value;
+    trial = {};
+    moves = moves.filter(one => !one.trial);
+    showProject(data).then(remember);
+  };
   setChosen(places.size ? [...columns.line.keys()].filter(i => places.has(placeOf(i))) : []);
   byId("content").hidden = false;
   const names = project.points.facets.filter(one => one.labels.length > 1);
@@ -388,7 +407,7 @@ async function begin() {
   const kept = recalled();
   wanted = Array.isArray(kept.panels) ? kept.panels : [];
   for (const name of ["hidden", "ranges"]) if (kept[name] && typeof kept[name] === "object") state[name] = kept[name];
-  if (kept.colour) state.colour = kept.colour;
+  for (const name of ["colour", "fit"]) if (typeof kept[name] === "string") state[name] = kept[name];
   if (["curve", "felt", "read"].includes(kept.reading)) state.reading = kept.reading;
   for (const [name, value] of Object.entries(kept.trial || {})) if (Number.isFinite(value)) trial[name] = value;
   if (typeof kept.bands === "boolean") state.bands = kept.bands;
@@ -396,13 +415,7 @@ async function begin() {
   byId("bands").checked = state.bands;
   byId("find").addEventListener("input", find);
   byId("undo").addEventListener("click", undo);
-  byId("reset").addEventListener("click", () => {
-    moves.push({trial: {...trial}});
-    trial = {};
-    rows.forEach(showRow);
-    remember();
-    update();
-  });
+  byId("reset").addEventListener("click", () => tryOut({}));
   byId("colour").addEventListener("change", event => { state.colour = event.target.value; recolour(); listFacets(); showFacets(); remember(); update(); });
   byId("bands").addEventListener("change", event => { state.bands = event.target.checked; remember(); update(); });
   byId("reading").addEventListener("change", event => { state.reading = event.target.value; remember(); update(); });

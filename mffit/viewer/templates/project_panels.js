@@ -121,7 +121,7 @@ function limits(panel, shown, lines) {
       if (x > x1) x1 = x;
     }
   }
-  if (shown.residual || lines.length) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }
+  if (shown.residual || (lines.length && Math.min(Math.abs(y0), Math.abs(y1)) < y1 - y0)) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }  // a radius is far from it
   const wide = (low, high) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)] : [low - 1, high + 1];
   let box = {x: wide(x0, x1), y: wide(y0, y1)};
   if (panel.box && dragging) {  // axes only grow while a slider moves, so that the curve is seen to move, and in steps

@@ -102,6 +102,17 @@ function limitsForm(row, change, refused, close) {
   form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
   return form;
 }
+byId("other").addEventListener("click", () => byId("other-file").click());
+byId("other-file").addEventListener("change", async event => {
+  const [file] = event.target.files;
+  event.target.value = "";
+  if (!file || !project) return;
+  const found = await asked("values", say, sent({name: file.name, text: await file.text()}));
+  if (!found) return lost();
+  if (found.error) return say(found.error, true);
+  tryOut(found.values);
+  say(`Solid curves have the values of ${file.name}, dashed ones are the fit; Reset all ends it.`);
+});
 leaveOut = () => {
   const members = chosen.filter(i => !left[i]), dialog = byId("ask");
   if (!members.length) return;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 from dataclasses import replace
 from itertools import chain
@@ -19,6 +20,7 @@ from mffit import fleet
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
 from mffit.comparison.record import ranked
+from mffit.constants import TERMINAL_LINES
 from mffit.errors import InputError
 from mffit.fit import Posterior
 from mffit.fleet import Information, Specimen
@@ -240,6 +242,10 @@ def test_the_command_prints_the_differences(capsys):
     main(["compare", str(SAMPLE / "base.tir"), str(SAMPLE / "true.tir"), "--turn-slip", "on"])
     said = capsys.readouterr().out
     assert said.startswith("The curves of base.tir and true.tir differ in Fy by up to")
+    assert len(said.splitlines()) <= TERMINAL_LINES
+    names = re.findall(r"^(\S.*?)  +\d+ N  ", said, re.MULTILINE)
+    assert len(names) > 1
+    assert len({*names}) == len(names)  # each at the worst of its loads
     assert "camber reduction factor" in said
     assert "written to" not in said
 

@@ -13,7 +13,7 @@ from report_toys import made_coefficients, made_result, read_page
 from mffit.report import write_build
 from mffit.report.verdict import headlines
 from mffit.rounding import ascii_only
-from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened
+from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
 PNG = b"\x89PNG\r\n"
 
@@ -195,12 +195,18 @@ def test_the_headings_of_tables_are_repeated_on_the_next_sheet(written):
     assert not re.search(r"<table[^>]*>\s*<tr[^>]*>\s*<th", page)
 
 
-def test_folded_coefficients_show_when_opened_and_on_paper(browser):
+def test_folds_show_when_opened_and_on_paper_what_is_decided_by(browser):
+    """The warnings and limits; of the rest, which is named there, a few sheets are left."""
     look(browser)
-    label = browser.find_element("css selector", ".fold summary")
+    label = browser.find_element("css selector", "#fold-purposes summary")
 
-    def shown() -> bool:
-        return browser.execute_script("return document.querySelector('.folded').checkVisibility()")
+    def shown(css: str = "#fold-purposes .folded") -> bool:
+        script = "return [...document.querySelectorAll(arguments[0])].some(one => one.checkVisibility())"
+        return browser.execute_script(script, css)
+
+    for css in (".screen-only img", ".screen-only table"):
+        assert shown(css)
+    assert not shown(".paper-only")
 
     assert not shown()
     label.click()
@@ -208,7 +214,12 @@ def test_folded_coefficients_show_when_opened_and_on_paper(browser):
     label.click()
     assert not shown()
     look(browser, PAPER, media="print")
-    assert shown()
+    assert shown("#fold-warnings .folded")
+    assert not shown()
+    assert not shown(".screen-only")
+    assert shown(".paper-only")
+    assert sheets(browser) <= 5
+    look(browser)
 
 
 def test_page_and_pictures_are_dark_in_dark_mode(browser):

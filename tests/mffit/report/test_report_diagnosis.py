@@ -9,7 +9,7 @@ import pytest
 from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
-from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
+from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.ties import SeparatingRun, Separation
@@ -57,7 +57,7 @@ def written(diagnosis, folder):
 
 def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
     lines = repr(misaligned).splitlines()
-    assert len(lines) <= LINES_PER_RECORD
+    assert len(lines) <= TERMINAL_LINES
     assert max(map(len, lines)) <= TERMINAL_WIDTH
     assert misaligned.headline[:60] in lines[0]
 
@@ -181,7 +181,13 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
     for diagnosis in (misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()
-        assert all(len(line) <= 110 for line in said.splitlines())
+        assert max(map(len, said.splitlines())) <= TERMINAL_WIDTH
+        assert len(said.splitlines()) < TERMINAL_LINES  # and one for what is written
+    many = dataclasses.replace(misaligned, effects=misaligned.effects * 3)
+    said = text.diagnosis_summary(many)
+    assert len(said.splitlines()) < TERMINAL_LINES
+    assert said.count("(rig), confidence") == 3
+    assert 0 < said.count("to do:") < 3
 
 
 def test_a_reader_sees_every_picture_on_screen_phone_and_paper(misaligned, tmp_path):

@@ -8,13 +8,13 @@ import html
 import pytest
 
 from mffit.brief import summary
-from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
+from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from tir import Quantity
 
 
 def fits(text: str) -> bool:
     lines = text.splitlines()
-    return len(lines) <= LINES_PER_RECORD and max(map(len, lines)) <= TERMINAL_WIDTH
+    return len(lines) <= TERMINAL_LINES and max(map(len, lines)) <= TERMINAL_WIDTH
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import zlib
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -19,13 +20,16 @@ import numpy as np
 import pytest
 from small_rigs import SAMPLE
 
+import tir
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.points import concatenate
 from mffit.rig import Simulation
 from mffit.templates import environment
 from mffit.viewer import project_data, project_html, show
 from mffit.viewer.packing import packed
-from mffit.viewer.project_points import delivered
+from mffit.viewer.project_points import delivered, differing
+from mffit.virtual_rig.machine import loaded_radius
+from tir.codegen.javascript import javascript
 
 SIX_DIGITS = 1e-4
 """Agreement [-] of misfits: points have six digits in a page, and a misfit is a hundredth of a force."""
@@ -111,6 +115,52 @@ def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(engine, result):
     assert wanted > 2.0 * result.fit.channels["Fy"].rmse
     assert engine("own.My === fitOwn.My")
     assert engine("misfit('My')") == rolling
+
+
+def test_a_fit_with_temperature_is_shown_with_its_own_points(result, data):
+    """Another fit of the same readings: its misfit in the page is that of its simulation; only what differs travels twice."""
+    tyre = result.fit.tyre.replace(PDY1=1.1 * result.fit.tyre["PDY1"])
+    warm = result.fit.simulation.with_numbers({"PDY1": tyre["PDY1"], "gain": 1.04, "F0_N": 20.0})
+    other = replace(result.fit, tyre=tyre, simulation=warm)
+    over = differing(result.points, result.excluded, result.fit, other)
+    names = {name for name, *_ in over["layout"]}
+    assert "Fy" in names
+    assert not names & {"Fz", "kappa", "t", "line", "Mx"}
+    engine = Engine(data)
+    packed_twice = [list(zlib.decompress(base64.b64decode(part["bytes"]))) for part in (data["points"], over)]
+    whole, added = (f"Uint8Array.from({content})" for content in packed_twice)
+    values = data["values"] | {"PDY1": tyre["PDY1"]}
+    engine(f"take({json.dumps(data | {'values': values, 'over': over['layout']})}, {whole}, {added})")
+    readings = warm.readings(result.points)
+    wanted = float(np.sqrt(np.mean((readings.Fy - result.points.Fy) ** 2)))
+    assert engine("misfit('Fy').rmse") == pytest.approx(wanted, rel=SIX_DIGITS)
+
+
+def test_the_loaded_radius_of_a_page_carries_the_load():
+    """The rig's own formula, by bisection, with the forces and the wheel speed of the tyre; also rolling backwards."""
+    tyre = tir.Tyre.from_values(
+        {
+            **dict(
+                UNLOADED_RADIUS=0.3, WIDTH=0.2, ASPECT_RATIO=0.5, VERTICAL_STIFFNESS=2e5, Q_FZ2=10.0, PFZ1=0.6
+            ),
+            **dict(
+                Q_RE0=1.004, Q_V1=1e-3, Q_V2=0.05, Q_FCX=0.2, Q_FCY=0.3, Q_CAM1=0.2, Q_CAM2=0.8, Q_CAM3=0.4
+            ),
+            **dict(FNOMIN=1500.0, PDY1=-1.0, PKY1=15.0, PKY2=1.5, PCY1=1.3, PDX1=1.1, PKX1=20.0, PCX1=1.6),
+        }
+    )
+    context = pytest.importorskip("quickjs").Context()
+    context.eval(f"radius = ({javascript(('RL',), turn_slip=False)})({json.dumps(dict(tyre.p.__dict__))})")
+    for Fz, alpha, gamma, kappa, Vx, p in (
+        (1500.0, 0.0, 0.0, 0.0, 10.0, tyre["NOMPRES"]),
+        (1200.0, 0.08, -0.1, 0.0, 25.0, 1.1 * tyre["NOMPRES"]),
+        (2000.0, -0.05, 0.06, 0.03, -15.0, 0.8 * tyre["NOMPRES"]),
+    ):
+        at = dict(Fz=Fz, alpha=alpha, gamma=gamma, kappa=kappa, Vx=Vx, p=p, turn_slip=False)
+        out = tyre(**at)
+        wanted = loaded_radius(tyre.values, Fz, out.Fx, out.Fy, gamma, tyre.state(**at).omega, p)
+        found = context.eval(f"radius({Fz}, {alpha}, {gamma}, {kappa}, 0, {Vx}, {p}).RL")
+        assert found == pytest.approx(float(wanted), rel=1e-6), at
 
 
 def test_a_moving_slider_asks_for_some_points_only_and_says_so(engine, result):

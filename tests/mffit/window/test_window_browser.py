@@ -22,7 +22,8 @@ import pytest
 
 import mffit
 from mffit.quantities import SIDEWAYS
-from mffit.viewer import project_page
+from mffit.viewer import project_data, project_html, project_page
+from mffit.viewer.project_points import differing
 from mffit.window.session import Session
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
@@ -79,6 +80,28 @@ def test_a_moved_coefficient_moves_the_misfit_and_undo_brings_it_back(page, resu
     assert ask(page, "mffit.misfit('Fy').rmse") == fitted
     assert console_errors(page) == []
     assert ask(page, "performance.getEntriesByType('resource').length") == 0
+
+
+def test_another_fit_of_the_readings_can_be_chosen_and_the_address_keeps_it(page, result, tmp_path):
+    data = project_data(result)
+    other = replace(result.fit, simulation=result.fit.simulation.with_numbers({"gain": 1.1}))
+    points = differing(result.points, result.excluded, result.fit, other)
+    data["others"] = [{"title": "warm.tir", "channels": data["channels"][:1], "points": points}]
+    path = tmp_path / "two.html"
+    path.write_text(project_html("two", data, turn_slip=data["turn_slip"], star=data["star"]))
+    page.get(path.as_uri())
+    fitted = ask(shown(page), "mffit.misfit('Fy').rmse")
+    assert ask(page, "[...document.querySelector('#fit').options].map(one => one.text)")[1:] == ["warm.tir"]
+    choose = "Object.assign(document.querySelector('#fit'), {selectedIndex: arguments[0]}).dispatchEvent(new Event('change'))"
+    ask(page, choose, 1)
+    until(lambda: ask(page, "mffit.data().channels.length") == 1)
+    warm = ask(page, "mffit.misfit('Fy').rmse")
+    assert warm > 1.5 * fitted
+    page.refresh()
+    assert ask(shown(page), "mffit.misfit('Fy').rmse") == warm
+    ask(page, choose, 0)
+    until(lambda: ask(page, "mffit.misfit('Fy').rmse") == fitted)
+    assert console_errors(page) == []
 
 
 def test_tab_reaches_the_pictures_at_once(page):
@@ -590,13 +613,19 @@ def test_a_call_without_an_answer_says_so(browser, tyre_toml, result):
         browser.get("about:blank")
 
 
-def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml):
+def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml, result, tmp_path):
     """A walk: what is shown at its end is what mffit build gives for the file that was saved on the way."""
     before = tyre_toml.read_text(encoding="utf-8")
     status = lambda: browser.find_element("id", "status").text  # noqa: E731
     with window(tyre_toml) as (once, process):
         address = enter(browser, once)
         shown(browser)
+        result.fit.tyre.replace(PCY1=1.7).write(tmp_path / "other.tir")
+        browser.find_element("id", "other-file").send_keys(str(tmp_path / "other.tir"))
+        until(lambda: ask(browser, "mffit.trial()") == {"PCY1": 1.7})
+        assert "other.tir" in status()
+        press(browser, "#undo")
+        until(lambda: ask(browser, "mffit.trial()") == {})
         ask(browser, "mffit.move('PEY1', -0.9)")
         press(browser, ".coefficient[data-name=PEY1] .keys button")
         until(lambda: "PEY1" in tyre_toml.read_text(encoding="utf-8"))

@@ -105,10 +105,15 @@ def test_the_window_and_the_command_make_the_same_project(tmp_path, kind):
     type_ = "rotating-disk" if kind == "disc" else "flat-track"
     found = RecordingsFolder(tmp_path)
     made = found.make(untouched(found, {"type": type_, **path}))
-    in_window = made.read_text()
-    made.unlink()
-    _, (written, *_) = init_from(given, tmp_path, unloaded_radius=0.2057, nominal_load=1500.0, **options)
-    assert written.read_text() == in_window
+    new = [path for path in tmp_path.iterdir() if path not in given]
+    content = {path: path.read_bytes() for path in new}
+    for one in new:
+        one.unlink()
+    _, by_command = init_from(given, tmp_path, unloaded_radius=0.2057, nominal_load=1500.0, **options)
+    assert {path: path.read_bytes() for path in by_command} == content
+    in_window, written = content[made].decode(), by_command[0]
+    if kind == "belt":
+        assert {path.name for path in new} == {"tyre.toml", "stretches.csv", "cornering.png"}
     if kind == "belt":
         tyre = config.load(written).tyre
         assert (tyre.nominal_speed, tyre.nominal_pressure) == (11.0, pytest.approx(83.0, abs=15.0))

@@ -54,6 +54,16 @@ def test_pages_and_data_travel_compressed(client):
         assert int(answer.headers["content-length"]) < 0.8 * len(answer.content)
 
 
+def test_the_values_of_a_file_are_told_in_si(client, result, tmp_path):
+    text = result.fit.tyre.text().replace("'newton'", "'kilonewton'")
+    values = post(client, "values", name="other.tir", text=text).json()["values"]
+    assert values["FNOMIN"] == pytest.approx(1e3 * result.fit.tyre["FNOMIN"])
+    assert values["PCY1"] == pytest.approx(result.fit.tyre["PCY1"])
+    refused = post(client, "values", name="other.tir", text="no tyre")
+    assert refused.status_code == 422
+    assert refused.json()["error"].startswith("other.tir")
+
+
 @pytest.mark.parametrize(
     ("path", "headers"),
     [
