@@ -24,8 +24,6 @@ def adapted(app: Any, page: str, source: list[str]) -> None:
     text = source[0]
     if page == "index":
         text = text + "\n" + navigation(text)
-    elif page == "effects/index":
-        text = text + "\n" + toctree("", ["*"], glob=True)
     if "/" not in page:
         # The site contains docs/ only; a link to another file of the repository becomes its path.
         text = OUTSIDE.sub(r"\1 (`\2` in the repository)", text)

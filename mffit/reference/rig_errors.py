@@ -9,14 +9,12 @@ from mffit.rig_errors import AFTER, BEFORE, RIG_ERRORS, RigError
 INTRODUCTION = """\
 # Rig errors
 
-How the readings of a rig differ from the steady forces of the tyre, in the order of the chain from reading to reading, in
-ISO-W. Fit, uncertainty budget, [diagnosis](diagnosis.md), [virtual rig](simulate.md) and `mffit plan` use these records of
-`mffit/rig_errors`. "Declared by" names the key of `[rig]` that gives the standard uncertainty; such an error is a number of
-the fit with this prior. Only a diagnosis searches for the others. The limits hold for fits and for `[faults]`.
+How the readings of a rig differ from the steady forces of the tyre, in ISO-W and in the order in which the errors act. Fit,
+uncertainty budget, [diagnosis](diagnosis.md), [virtual rig](simulate.md) and `mffit plan` use this list. "Declared by" names
+the key of `[rig]` with the standard uncertainty and its default; such an error is a number of the fit with this prior. Only a
+diagnosis searches for the others, by the named [effects](effects.md). The limits hold for fits and for `[faults]`. Numbers
+marked \\* are zeros, which every [set-up](configuration.md#set-ups-of-the-rig) has anew.
 """
-
-
-OF_SETUP = "; every [set-up](configuration.md#set-ups-of-the-rig) has its own"
 
 
 def page() -> str:
@@ -46,13 +44,12 @@ def _row(error: RigError) -> str:
     declared = "–"
     if error.declared is not None:
         default = error.declared.default
-        declared = f"`{error.declared.key}` [{error.declared.unit}]" + (
-            f", default {default:g}" if default is not None else ""
-        )
-    effects = ", ".join(f"[{seen.name}](effects/{seen.id}.md)" for seen in error.seen_as) or "–"
+        declared = f"`{error.declared.key}`" + (f" ({default:g})" if default is not None else "")
+    effects = ", ".join(f"`{seen.id}`" for seen in error.seen_as) or "–"
     limits = f"{_bound(error.lower)} to {_bound(error.upper)}"
-    meaning = error.meaning.replace("|Fy|", r"\|Fy\|") + (OF_SETUP if error.of_setup else "")
-    return f"| `{error.name}` | {error.unit} | {meaning} | {error.spread:g}{scale} | {limits} | {declared} | {effects} |"
+    meaning = error.meaning.replace("|Fy|", r"\|Fy\|")
+    zero = r"\*" if error.of_setup else ""
+    return f"| `{error.name}`{zero} | {error.unit} | {meaning} | {error.spread:g}{scale} | {limits} | {declared} | {effects} |"
 
 
 def _bound(x: float) -> str:

@@ -12,7 +12,7 @@ from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Place, RigError
 from tir.temperature import SCALED_BY
 
-WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
+WARMTH = "(T - T_ref)"
 
 
 def _warmed(k: Any, value: Any, at: Any) -> Any:
@@ -61,7 +61,7 @@ TEMPERATURE_GRIP_CURVATURE = RigError(
     name="k_T_grip_per_K2",
     unit="1/K^2",
     kind="environment",
-    meaning=f"adds k2 (T - T_ref)^2 to the factor 1 + k {WARMTH} of the friction",
+    meaning=f"friction times 1 + k {WARMTH} + k2 {WARMTH}^2",
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_grip_per_K2"],),
     formula=lambda k2, value, at: (
@@ -183,7 +183,7 @@ REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
     word="temperature at which the model holds",
     unit="degC",
-    meaning="temperature at which the model holds",
+    meaning="temperature at which the model holds, T_ref; the mean of the data unless it is fitted",
     kind="environment",
     place=None,
     undisturbed=constants.REFERENCE_TEMPERATURE,

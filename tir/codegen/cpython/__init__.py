@@ -1,4 +1,4 @@
-"""Machine code as a built-in function of CPython: the only place that knows CPython's C interface; see docs/machine-code.md."""
+"""Machine code as a built-in function of CPython: the only place that knows CPython's C interface."""
 
 from __future__ import annotations
 
