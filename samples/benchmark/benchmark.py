@@ -5,8 +5,8 @@
 
 ``make`` writes a folder for each campaign: ``tyre.toml`` and the sweeps for a fit, sweeps that are ``held`` back, and the truth.
 ``score`` prints how far a file is from the true tyre, as share of the largest force: within the tested conditions, and beyond
-them (loads from 0.7 to 1.3 times as far, sideslip and slip 1.5 times); and how far it is from the readings of the sweeps held
-back, which contain noise and the errors of the rig. Files of MF 6.1, 6.2, 5.2 and PAC2002 are read.
+them (loads from 0.7 to 1.3 times as far, sideslip and slip 1.5 times, camber to the other side); and how far it is from the
+readings of the sweeps held back, which contain noise and the errors of the rig. Files of MF 6.1, 6.2, 5.2 and PAC2002 are read.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ from mffit.scatter import rms
 HERE = Path(__file__).parent
 CAMPAIGNS: Mapping[str, Any] = tomllib.loads((HERE / "campaigns.toml").read_text(encoding="utf-8"))
 CONDITIONS = 4000
-BEYOND = {"Fz_N": (0.7, 1.3), "alpha_deg": 1.5, "gamma_deg": 1.0, "kappa": 1.5}
+NAMES = {"Fz_N": "Fz", "alpha_deg": "alpha", "gamma_deg": "gamma", "kappa": "kappa"}
+BEYOND = {"alpha_deg": 1.5, "gamma_deg": 1.0, "kappa": 1.5}
 
 
 def make(out: Path, name: str) -> Path:
@@ -41,7 +42,8 @@ def make(out: Path, name: str) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     tyre = tir.read(rig.parent / plan["truth"]["tyre"])
     tyre = tyre.replace(**{key: tyre[key] * times for key, times in campaign["tyre"].items()})
-    tyre.write(folder / "true.tir")
+    on_disc = plan["rig"]["type"] == "rotating-disk"
+    tyre.replace(USE_MODE=125 if on_disc else 124).write(folder / "true.tir")
     plan["truth"]["tyre"] = str((folder / "true.tir").resolve())
     if "base" in plan["tyre"]:
         plan["tyre"]["base"] = str((rig.parent / plan["tyre"]["base"]).resolve())
@@ -58,14 +60,17 @@ def make(out: Path, name: str) -> Path:
     return folder / "given" / "tyre.toml"
 
 
-def drawn(within: Mapping[str, Any], times: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Conditions (n,) over the ranges, in SI and radians."""
+def drawn(within: Mapping[str, Any], *, beyond: bool) -> dict[str, np.ndarray]:
+    """Conditions (n,) within the ranges or beyond them, in SI and radians."""
     rng = np.random.default_rng(1)
-    low, high = (limit * by for limit, by in zip(within["Fz_N"], times["Fz_N"], strict=True))
-    found = {"Fz": rng.uniform(low, high, CONDITIONS)}
-    for key, name in (("alpha_deg", "alpha"), ("gamma_deg", "gamma"), ("kappa", "kappa")):
-        end = within.get(key, 0.0) * times[key]
-        found[name] = rng.uniform(-end, end, CONDITIONS) * (np.pi / 180.0 if key.endswith("deg") else 1.0)
+    found = {}
+    for key, name in NAMES.items():
+        low, high = within.get(key, (0.0, 0.0))
+        if beyond:
+            low, high = (
+                (0.7 * low, 1.3 * high) if key == "Fz_N" else (-BEYOND[key] * high, BEYOND[key] * high)
+            )
+        found[name] = rng.uniform(low, high, CONDITIONS) * (np.pi / 180.0 if key.endswith("deg") else 1.0)
     return found
 
 
@@ -77,18 +82,16 @@ def score(out: Path, name: str, file: Path) -> dict[str, float]:
     within = CAMPAIGNS[name]["within"]
     tyre = convert(file).tyre if is_old(file) else tir.read(file)
     true = tir.read(out / name / "true.tir")
-    config = configuration.load(out / name / "held" / "tyre.toml")
-    held = points.read(config).points
+    held = points.read(configuration.load(out / name / "held" / "tyre.toml")).points
     channels = ["Fx", "Fy", "Mz"] if "kappa" in within else ["Fy", "Mz"]
-    once = {**dict.fromkeys(BEYOND, 1.0), "Fz_N": (1.0, 1.0)}
-    regions = {"tested": (once, 0.0), "beyond": (BEYOND, 0.0)}
+    regions = {"tested": (False, 0.0), "beyond": (True, 0.0)}
     if tyre.turn_slip:
-        regions["on the disc"] = (once, float(held.phi_t[0]))
+        regions["on the disc"] = (False, float(held.phi_t[0]))
     rows = {}
-    for region, (times, phi_t) in regions.items():
-        at = drawn(within, times)
+    for region, (beyond, phi_t) in regions.items():
+        at = drawn(within, beyond=beyond)
         curved = {"phi_t": phi_t} if phi_t else {}
-        read, wanted = tyre(**at, **curved), true(**at, **curved, turn_slip=config.rig.on_disc)
+        read, wanted = tyre(**at, **curved), true(**at, **curved)
         for channel in channels:
             error, force = getattr(read, channel) - getattr(wanted, channel), getattr(wanted, channel)
             rows[f"{channel} {region} [%]"] = 100.0 * rms(error) / float(np.max(np.abs(force)))
