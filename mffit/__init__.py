@@ -7,23 +7,47 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
+from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+_REINSTALL = "pip install --force-reinstall --no-deps mffit"
+
+
+def _wrong_tir(found: ModuleSpec | None) -> str:
+    """Why ``import tir`` does not give what mffit needs; empty if it does. A project on PyPI has a package of this name, too."""
+    if found is None or found.origin is None:  # a folder that pip left behind has no origin
+        return (
+            "the package tir is missing, probably because mffit-tir or tir, which have files of the same names as mffit, "
+            f"was removed: {_REINSTALL}"
+        )
+    source = getattr(found.loader, "get_source", lambda name: None)("tir")
+    if source is None or "MF-6.2" in source:
+        return ""
+    replaced = Path(found.origin).parents[1] == Path(__file__).parents[1]
+    remedy = f"pip uninstall tir, then {_REINSTALL}" if replaced else "rename it, or start in another folder"
+    return f"{found.origin} is not the tir that mffit needs, but has its name: {remedy}"
+
+
 _TIR = find_spec("tir")
-if _TIR is None or _TIR.origin is None:  # a folder that pip left behind has no origin
-    raise ImportError(
-        "the package tir is missing, probably because mffit-tir, which has the same files as mffit, was removed: "
-        "pip install --force-reinstall --no-deps mffit"
-    )
-if any(Path(_TIR.origin).parents[1].glob("mffit_tir-*.dist-info")):
-    warnings.warn(
-        "mffit and mffit-tir are both installed and have the same files, so that removing one breaks the other: "
-        "pip uninstall mffit-tir, then pip install --force-reinstall --no-deps mffit",
-        stacklevel=2,
-    )
+if _WRONG := _wrong_tir(_TIR):
+    # The command line cannot catch what happens before its first line.
+    if sys.argv[:1] == ["-m"] or Path(*sys.argv[:1]).stem == "mffit":
+        print(f"mffit: {_WRONG}", file=sys.stderr)
+        raise SystemExit(2)
+    raise ImportError(_WRONG)
+assert _TIR is not None
+assert _TIR.origin is not None
+for _other in ("mffit-tir", "tir"):
+    if any(Path(_TIR.origin).parents[1].glob(f"{_other.replace('-', '_')}-*.dist-info")):
+        warnings.warn(
+            f"mffit and {_other} are both installed and have files of the same names, so that removing one breaks the other: "
+            f"pip uninstall {_other}, then {_REINSTALL}",
+            stacklevel=2,
+        )
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu

@@ -295,7 +295,7 @@ def _remove_litter(out: Path) -> None:
 
 def _alive(pid: int) -> bool:
     """Whether the process runs; always true on Windows, where a signal to ask would end it."""
-    if os.name == "nt":
+    if sys.platform == "win32":
         return True
     try:
         os.kill(pid, 0)
@@ -394,7 +394,7 @@ def finish_save(path: Path) -> None:
     path = path.resolve()
     journal = _journal_of(path)
     try:
-        if os.name != "nt" and journal.lstat().st_uid != os.geteuid():
+        if sys.platform != "win32" and journal.lstat().st_uid != os.geteuid():
             return  # of another user, who may not say what is written here
         head, _, both = journal.read_bytes().partition(b"\n")
         with _alone(path.parent), path.open("r+b", buffering=0) as old:

@@ -119,11 +119,13 @@ def test_the_pages_together_stay_short():
 DISTRIBUTIONS = [ROOT / "pyproject.toml", ROOT / "tir" / "pyproject.toml"]
 
 
-def test_both_distributions_and_the_changelog_have_one_version():
+def test_both_distributions_the_changelog_and_the_citation_have_one_version():
     projects = [tomllib.loads(text_of(file))["project"] for file in DISTRIBUTIONS]
     newest = re.search(r"^## (\d\S+)", text_of(DOCS / "changelog.md"), re.MULTILINE)
+    cited = re.search(r"^version: (\S+)", text_of(DOCS / "CITATION.cff"), re.MULTILINE)
     assert newest
-    assert {project["version"] for project in projects} | {newest[1]} == {projects[0]["version"]}
+    assert cited
+    assert {project["version"] for project in projects} | {newest[1], cited[1]} == {projects[0]["version"]}
 
 
 def test_tir_by_itself_declares_what_mffit_declares():

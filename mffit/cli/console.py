@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -14,6 +16,7 @@ import click
 
 from mffit.progress import Progress, remaining, silent
 
+NOT_ASCII = re.compile(r"[^\x00-\x7f]")
 NOT_TRUSTED = 3
 """Exit code of a command that is done, but whose result says that it is not to be trusted."""
 
@@ -105,7 +108,10 @@ def voiced(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class PipeTolerant:
-    """Output stream that ignores a closed pipe (``mffit ... | head -1``)."""
+    """Output stream that ignores a closed pipe (``mffit ... | head -1``), and takes every character.
+
+    A file or a pipe on Windows has an encoding of a few hundred characters; others are escaped there as in JSON.
+    """
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -115,7 +121,10 @@ class PipeTolerant:
 
     def write(self, text: str) -> int:
         try:
-            return int(self._stream.write(text))
+            try:
+                return int(self._stream.write(text))
+            except UnicodeEncodeError:
+                return int(self._stream.write(NOT_ASCII.sub(lambda found: json.dumps(found[0])[1:-1], text)))
         except BrokenPipeError:
             self._discard_the_rest()
             return len(text)

@@ -34,11 +34,14 @@ from mffit.rig_errors import BY_NAME, CALIBRATED, DECLARED, Declared
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 
 SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
+RESERVED_NAME = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+"""Devices of Windows, whatever the ending."""
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
 
 
 def _file_stem(name: str) -> str:
-    if not name.strip() or name.startswith(".") or set(name) & FORBIDDEN_IN_NAMES:
+    reserved = RESERVED_NAME.fullmatch(name)
+    if not name.strip() or name.startswith(".") or set(name) & FORBIDDEN_IN_NAMES or reserved:
         raise q.wrong(f'"{name}" cannot name the output files; use letters, digits, - and _')
     return name
 

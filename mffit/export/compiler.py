@@ -67,7 +67,9 @@ def compile_shared(sources: Sequence[Path], library: Path, definitions: Sequence
         "-lm",
     ]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300.0)
+        done = subprocess.run(
+            command, capture_output=True, text=True, errors="replace", check=False, timeout=300.0
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         why = getattr(error, "strerror", None) or error
         raise InputError(

@@ -133,6 +133,7 @@ def _hdf5(path: Path) -> dict[str, Any]:
         sizes: list[int] = []
         file.visititems(lambda _, one: sizes.append(int(getattr(one, "nbytes", 0))))
         check_size(sum(sizes), path)
+        _refuse_other_files(file, path, h5py)
         variables = {name: item for name, item in file.items() if not name.startswith("#")}
         for name, item in list(variables.items()):
             if isinstance(item, h5py.Group):
@@ -148,6 +149,17 @@ def _hdf5(path: Path) -> dict[str, Any]:
             elif item.dtype.kind in "fiu" and item.size > 1 and item.size == max(item.shape):
                 content[name] = np.asarray(item, dtype=float).reshape(-1)
     return content
+
+
+def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:
+    """HDF5 takes numbers out of any file that it names, which may be none of the sender's."""
+    elsewhere: list[bool] = []
+    file.visititems_links(lambda _, link: elsewhere.append(isinstance(link, h5py.ExternalLink)))
+    file.visititems(
+        lambda _, one: elsewhere.append(isinstance(one, h5py.Dataset) and bool(one.external or one.is_virtual))
+    )
+    if any(elsewhere):
+        raise InputError("takes numbers out of other files; save it as one file", file=path)
 
 
 def _referred(file: Any, cells: Any) -> list[str]:

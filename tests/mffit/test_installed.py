@@ -14,25 +14,28 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-def imported(folder: Path) -> str:
-    """What Python says on importing mffit from a folder like that of installed packages."""
+def started(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """What Python says in a folder like that of installed packages, which nothing but the standard library is beside."""
     command = [
         sys.executable,
         "-I",
         "-S",
         "-c",
-        f"import sys; sys.path[:] = [{str(folder)!r}, *sys.path]; import mffit",
+        f"import sys; sys.path.insert(0, {str(folder)!r}); {arguments[0]}",
     ]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False).stderr
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def imported(folder: Path) -> str:
+    """What Python says on importing mffit."""
+    return started(folder, "import mffit").stderr
 
 
 @pytest.fixture
 def site(tmp_path) -> Path:
     for name in ("mffit", "tir"):
         (tmp_path / name).mkdir()
-        (tmp_path / name / "__init__.py").write_bytes(
-            (ROOT / name / "__init__.py").read_bytes() * (name == "mffit")
-        )
+        shutil.copy(ROOT / name / "__init__.py", tmp_path / name)
     return tmp_path
 
 
@@ -41,10 +44,11 @@ def test_mffit_alone_says_nothing(site):
     assert imported(site) == ""
 
 
-def test_both_distributions_are_pointed_out(site):
-    (site / "mffit_tir-0.2.0.dist-info").mkdir()
+@pytest.mark.parametrize("other", ["mffit-tir", "tir"])
+def test_both_distributions_are_pointed_out(site, other):
+    (site / f"{other.replace('-', '_')}-0.2.0.dist-info").mkdir()
     assert (
-        "removing one breaks the other: pip uninstall mffit-tir, then pip install --force-reinstall"
+        f"removing one breaks the other: pip uninstall {other}, then pip install --force-reinstall"
         in imported(site)
     )
 
@@ -57,6 +61,25 @@ def test_a_removed_tir_is_one_sentence_with_the_remedy(site, folder_stays):
     last = imported(site).splitlines()[-1]
     assert last.startswith("ImportError: the package tir is missing")
     assert last.endswith("pip install --force-reinstall --no-deps mffit")
+
+
+@pytest.mark.parametrize("where", ["in our place", "elsewhere"])
+def test_a_tir_of_another_project_is_one_sentence_and_never_run(site, tmp_path_factory, where):
+    """In Python, and on the command line, in both ways to start it, without a traceback and with exit code 2."""
+    replaced = where == "in our place"
+    folder = site if replaced else tmp_path_factory.mktemp("work")
+    other = folder / "tir" / "__init__.py" if replaced else folder / "tir.py"
+    other.write_text("raise SystemExit('run')", encoding="utf-8")
+    path = f"sys.path.insert(0, {str(folder)!r}); "
+    remedy = "pip uninstall tir, then pip install" if replaced else "rename it, or start in another folder"
+    assert (
+        f"ImportError: {other} is not the tir that mffit needs, but has its name: {remedy}"
+        in started(site, f"{path}import mffit").stderr
+    )
+    for argument in ("-m", "/somewhere/bin/mffit", "mffit.exe"):
+        done = started(site, f"{path}sys.argv = [{argument!r}]; import mffit")
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert done.stderr.startswith(f"mffit: {other} is not the tir")
 
 
 SAID = "from mffit.made import source; print(source())"

@@ -124,3 +124,25 @@ def test_a_small_file_holds_little(tmp_path):
     noise = np.random.default_rng(1).standard_normal((100_000, 2))
     pd.DataFrame(noise, columns=["alpha_deg", "Fy_N"]).round(3).to_csv(tmp_path / "b.csv.gz", index=False)
     assert len(formats.read(tmp_path / "b.csv.gz")) == 100_000
+
+
+@pytest.mark.parametrize("kind", ["storage", "link", "view"])
+def test_a_recording_takes_no_numbers_out_of_other_files(tmp_path, kind):
+    """HDF5 would read any file that it names."""
+    h5py = pytest.importorskip("h5py")
+    path, other = tmp_path / "a.mat", tmp_path / "of_somebody_else.bin"
+    np.arange(100.0).tofile(other)
+    with h5py.File(tmp_path / "b.mat", "w") as file:
+        file["FY"] = np.arange(100.0)
+    with h5py.File(path, "w") as file:
+        file["SA"] = np.linspace(-5.0, 5.0, 100)
+        if kind == "storage":
+            file.create_dataset("FY", (100,), dtype="f8", external=[(str(other), 0, 800)])
+        elif kind == "link":
+            file["deep/FY"] = h5py.ExternalLink(str(tmp_path / "b.mat"), "/FY")
+        else:
+            layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
+            layout[:] = h5py.VirtualSource(str(tmp_path / "b.mat"), "FY", shape=(100,))
+            file.create_virtual_dataset("FY", layout)
+    with pytest.raises(InputError, match="takes numbers out of other files"):
+        formats.read(path)

@@ -212,11 +212,16 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, code: bytes) -> None:
-    """Write the file in one step, because several processes may write it at the same time."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    with os.fdopen(handle, "wb") as stream:
-        stream.write(_seal(code) + b"\n" + code)
-    os.replace(temporary, path)
+    """Write the file in one step, because several processes may write it at the same time; the code serves without it, too."""
+    temporary = ""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(_seal(code) + b"\n" + code)
+        os.replace(temporary, path)
+    except OSError:  # the disk is full, or, on Windows, another process reads the file
+        if temporary:
+            Path(temporary).unlink(missing_ok=True)
 
 
 def _seal(code: bytes) -> bytes:
