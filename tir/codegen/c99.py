@@ -213,9 +213,7 @@ def refuse_name(name: str, language: str, is_taken: Callable[[str], bool]) -> No
             f"{name!r} is not a valid name in {language}: use letters, digits and underscores, starting with a letter"
         )
     if is_taken(name):
-        raise TirError(
-            f"{name!r} is a word or a file of {language}: use another name, for example tyre_{name}"
-        )
+        raise TirError(f"{name!r} is taken in {language}: use another name, for example tyre_{name}")
 
 
 def taken(name: str) -> bool:

@@ -60,6 +60,8 @@ MATLAB = SourceDialect(
 )
 
 
+PRAGMA = ("", "%#codegen")
+"""What MATLAB's checks of code generation look for; not in front of the help text, which Octave would not find."""
 VARIABLE = re.compile(r"\bv\d+\b")
 
 
@@ -126,7 +128,7 @@ def export_matlab(
         "tuning.": {one.name: one.description for one in tunables(tyre)},
     }
     function = [
-        f"function [r, s, tuning] = {name}({given}, tuning) %#codegen",
+        f"function [r, s, tuning] = {name}({given}, tuning)",
         f"%{name}  Forces and moments of a tyre.",
         f"%   [r, s, tuning] = {name}({given}, tuning)",
         *(f"%   {line}" for line in about),
@@ -134,6 +136,7 @@ def export_matlab(
         "%   Inputs are scalars or arrays whose sizes expand to one another. Those left out at the end are 0; Vx, p and",
         f"%   tuning are then as in the file. Another factor: [~, ~, t] = {name}(1000); t.LMUY = 0.8; then give t last.",
         *(f"%   {start + key:<18}{text}" for start, rows in texts.items() for key, text in rows.items()),
+        *PRAGMA,
         f"file = {_struct(factors)};",
         *(
             f"if nargin < {i + 1}, {called(key)} = {usual.get(key, '0')}; end"
@@ -228,7 +231,7 @@ def _mfeval(name: str, about: Sequence[str], use: int, pressure: str) -> str:
     missing = ", ".join(str(i) for i, column in enumerate(COLUMNS, start=1) if not column)
     return _text(
         [
-            f"function out = {name}_mfeval(in, useMode) %#codegen",
+            f"function out = {name}_mfeval(in, useMode)",
             f"%{name}_mfeval  The tyre of {name}.m with the columns of MFeval.",
             f"%   out = {name}_mfeval([Fz kappa alpha gamma phit Vx P omega], {use}) has the 30 columns of MFeval 4; rows are",
             "%   conditions. P and omega may be left out. omega is not used: the speed of rotation follows from kappa and Vx.",
@@ -237,6 +240,7 @@ def _mfeval(name: str, about: Sequence[str], use: int, pressure: str) -> str:
             "%   the inputs as given.",
             f"%   useMode may be left out; only {use} is accepted, because turn slip and limits are fixed in {name}.m.",
             *(f"%   {line}" for line in about),
+            *PRAGMA,
             f"if nargin > 1 && useMode ~= {use}",
             f"    error('{name}:useMode', 'this tyre was exported for useMode {use}');",
             "end",
