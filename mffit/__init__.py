@@ -50,7 +50,7 @@ for _other in ("mffit-tir", "tir"):
         )
 
 if TYPE_CHECKING:
-    from mffit.export import write_c, write_fmu
+    from mffit.export import write_c, write_fmu, write_matlab
     from mffit.pipeline import (
         align,
         build,
@@ -79,11 +79,13 @@ __all__ = [
     "verify",
     "write_c",
     "write_fmu",
+    "write_matlab",
     "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",
     "write_fmu": "mffit.export",
+    "write_matlab": "mffit.export",
     "convert": "mffit.conversion",
 }
 """Public names that are not the pipeline's."""

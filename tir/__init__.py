@@ -11,6 +11,7 @@ from tir.calls import compile_kernels
 from tir.checking import check
 from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
+from tir.codegen.matlab import export_matlab
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, TirWarning
 from tir.record import Quantity
@@ -28,6 +29,7 @@ __all__ = [
     "check",
     "compile_kernels",
     "export_c",
+    "export_matlab",
     "read",
     "transient",
 ]

@@ -1,4 +1,4 @@
-"""`mffit export`: a property file as C code, FMU or the file of another program, or a project's points as TYDEX."""
+"""`mffit export`: a property file as code, FMU or the file of another program, or a project's points as TYDEX."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import Voice, voiced
-from mffit.cli.options import code_options, out_option, tir_file, tyre_toml
+from mffit.cli.options import code_options, out_option, tir_file, transient, tyre_toml
 from mffit.errors import InputError
 
 
@@ -53,11 +53,12 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
 
 @click.group()
 def export() -> None:
-    """Export a property file as C code, FMU or for another program, or points as TYDEX."""
+    """Export a property file as C code, FMU, MATLAB functions or for another program, or points as TYDEX."""
 
 
 @export.command()
 @code_options
+@transient
 @click.option(
     "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
 )
@@ -93,6 +94,7 @@ def c(
 
 @export.command()
 @code_options
+@transient
 @click.option(
     "--fmi",
     type=click.Choice(["2", "3"]),
@@ -101,7 +103,9 @@ def c(
     help="Version of the standard: FMI 2.0 or 3.0.",
 )
 @click.option(
-    "--sources-only", is_flag=True, help="Without a binary: the importing program compiles the sources."
+    "--sources-only",
+    is_flag=True,
+    help="Without a binary: the importing program compiles the sources (Simulink: fmudialog.compileFMUSources).",
 )
 @voiced
 def fmu(
@@ -133,6 +137,23 @@ def fmu(
             sources_only=sources_only,
         )
     _report(voice, [written], file, turn_slip)
+
+
+@export.command()
+@code_options
+@voiced
+def matlab(
+    file: Path, out: Path, name: str | None, turn_slip: bool | None, limits: bool, voice: Voice
+) -> None:
+    """Export a property file as MATLAB functions of arrays.
+
+    Writes NAME.m, and NAME_mfeval.m with the columns of MFeval. Scaling factors are arguments. Octave runs them too.
+    """
+    from mffit.export import write_matlab
+
+    with _told(voice):
+        written = write_matlab(file, _folder(out, ".m"), name=name, turn_slip=turn_slip, limits=limits)
+    _report(voice, written, file, turn_slip)
 
 
 @export.command("tir")

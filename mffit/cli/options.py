@@ -57,7 +57,6 @@ def code_options(command: Command) -> Command:
                 help="Turn slip on or off [default: as the file's USE_MODE says].",
             ),
             click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
-            transient,
         )
     ):
         command = option(command)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,18 +66,22 @@ class CodeOfFile(NamedTuple):
 
 
 def as_c(path: Path, given: str | None, turn_slip: bool | None, **switches: bool) -> CodeOfFile:
-    """The code of a property file, with a ``given`` name or one made from that of the file.
-
-    Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
-    USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of C.
-    """
+    """The code of a property file, with a ``given`` name or one made from that of the file."""
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
-    mode = "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
-    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
-    name = name if re.match(r"[A-Za-z]", name) and not taken(name) else f"tyre_{name}"
-    name = name if given is None else given
+    name = name_in_code(path, tyre, on, taken) if given is None else given
     try:
         return CodeOfFile(tyre, name, on, tir.export_c(tyre, name=name, turn_slip=on, **switches))
     except tir.TirError as error:
         raise InputError(error.sentence, file=path) from error
+
+
+def name_in_code(path: Path, tyre: tir.Tyre, turn_slip: bool, is_taken: Callable[[str], bool]) -> str:
+    """A name in a language, made from that of the property file.
+
+    Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
+    USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
+    """
+    mode = "" if turn_slip == tyre.turn_slip else "_turn_slip" if turn_slip else "_normal"
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
+    return name if re.match(r"[A-Za-z]", name) and not is_taken(name) else f"tyre_{name}"

@@ -10,12 +10,10 @@ from dataclasses import dataclass
 import tir
 from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
-from tir.codegen.program import INPUTS, called
+from tir.codegen.program import INPUTS, ORDER, called
 from tir.equations.forces import Forces
 from tir.tuning import tunables
 
-ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
-"""Inputs in the order that is usual in other programs."""
 NAMES = {"Fz": "Fz_out"}
 """Outputs with another name than in C: the load is input and output."""
 

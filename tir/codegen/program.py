@@ -15,6 +15,8 @@ from tir.evaluate import Switches as Switches
 from tir.parameters import TABLE
 
 INPUTS = OperatingCondition._fields
+ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
+"""Inputs in the order that is usual in other programs."""
 CALLED = {"pressure": "p"}
 """Inputs that calls and exported code name otherwise than the equations, where p is the parameters."""
 LOADED = "RL"
