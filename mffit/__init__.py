@@ -26,7 +26,7 @@ if any(Path(_TIR.origin).parents[1].glob("mffit_tir-*.dist-info")):
     )
 
 if TYPE_CHECKING:
-    from mffit.export import write_c, write_fmu
+    from mffit.export import write_c, write_fmu, write_table
     from mffit.pipeline import (
         align,
         build,
@@ -55,11 +55,13 @@ __all__ = [
     "verify",
     "write_c",
     "write_fmu",
+    "write_table",
     "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",
     "write_fmu": "mffit.export",
+    "write_table": "mffit.export",
     "convert": "mffit.conversion",
 }
 """Public names that are not the pipeline's."""

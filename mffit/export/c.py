@@ -72,11 +72,15 @@ def as_c(path: Path, given: str | None, turn_slip: bool | None, **switches: bool
     """
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
-    mode = "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
-    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode_suffix(tyre, on)
     name = name if re.match(r"[A-Za-z]", name) and not taken(name) else f"tyre_{name}"
     name = name if given is None else given
     try:
         return CodeOfFile(tyre, name, on, tir.export_c(tyre, name=name, turn_slip=on, **switches))
     except tir.TirError as error:
         raise InputError(error.sentence, file=path) from error
+
+
+def mode_suffix(tyre: tir.Tyre, on: bool) -> str:
+    """The end of the name of exported files, which says whether turn slip is on where the file's USE_MODE says otherwise."""
+    return "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
