@@ -12,7 +12,7 @@ TABLE_ERROR = Real(
 TABLE_RESERVE = Real(
     0.9,
     "-",
-    "Share of that error at which a table is good, as not every condition is tested. Below three quarters of it, fewer nodes are tried.",
+    "Share of that error at which a table is good: not every condition is tested. Below 3/4 of it fewer nodes are tried.",
 )
 TABLE_NODES = Count(1_000_000, "-", "Most nodes of a table: 8 MB of numbers, the rows of a spreadsheet.")
 TABLE_TRIES = Count(8, "-", "Most grids that are tried for a table; two to four are usual.")

@@ -137,6 +137,7 @@ def _measured(
     nodes = list(axes.values())
     values = function(**dict(zip(axes, np.meshgrid(*nodes, indexing="ij", sparse=True), strict=True)), **held)
     values = _rounded(np.broadcast_to(values, [len(x) for x in nodes]), largest)
+    largest = max(largest, float(np.abs(values).max()))
     table = RegularGridInterpolator(nodes, values)
     n = int(constants.TABLE_CONDITIONS)
 

@@ -56,7 +56,7 @@ class Table:
         axes, error = self.grid.axes, self.grid.error
         text = (
             f"{self.name}: {' x '.join(str(len(x)) for x in axes.values())} nodes of {', '.join(axes)}"
-            f"{''.join(f', {name} = {value:g}' for name, value in self.held.items())}; linear interpolation misses "
+            f"{''.join(f'; {name} = {value:g}' for name, value in self.held.items())}; linear interpolation misses "
             f"{100.0 * error:.2f} % of the largest {self.heading} {self.grid.largest:.4g} at most "
             f"({self.grid.tested} conditions off the nodes)"
         )
@@ -145,8 +145,8 @@ def write_table(
         tables.append(Table(name, asked.heading, grid, asked.held | grid.held, asked.lost(grid)))
         if grid.error > error:
             warnings.append(
-                f"{name} misses {100.0 * grid.error:.2f} % instead of {100.0 * error:g} %: more than {grid.values.size} nodes are "
-                "too many, so narrow its ranges, for example --range alpha_deg=-12:12, or allow a larger --error"
+                f"{name} misses {100.0 * grid.error:.2f} % instead of {100.0 * error:g} %: {grid.values.size} nodes are the "
+                "most, so narrow its ranges, for example --range alpha_deg=-12:12, or allow a larger --error"
             )
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
     about = f"{path.name}, {words(on)}, {at}; {FORMS[form].signs}"
@@ -159,6 +159,8 @@ def write_table(
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:
     """The range of each condition: as asked for, or of the file, as far as tyres are used; the lowest load of the file counts."""
     usual = {low[:-3]: ends for (low, _), ends in zip(RANGES, box(tyre).T, strict=True)}
+    for name in asked.keys() - CONDITIONS.keys():
+        raise InputError(f"there is no such condition, only {', '.join(CONDITIONS)}", key=f"--range {name}")
     found = {}
     for name, key in CONDITIONS.items():
         scale = np.degrees(1.0) if name.endswith("_deg") else 1.0
