@@ -20,7 +20,7 @@ TABLE_POSITIONS = Count(
     201, "-", "Positions on each side of zero from which the nodes of an axis are chosen."
 )
 TABLE_PLACES = Count(
-    800, "-", "Random values of the other conditions at which the curvature along an axis is seen."
+    400, "-", "Random values of the other conditions at which the curvature along an axis is seen."
 )
 TABLE_CONDITIONS = Count(
     20_000,

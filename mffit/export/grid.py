@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.export import constants
+from tir.correction import interpolated
 
 Function = Callable[..., Any]
 Ranges = Mapping[str, tuple[float, float]]
@@ -132,13 +133,10 @@ def _measured(
     random: np.random.Generator,
 ) -> Grid:
     """The grid of these nodes, with its error at random conditions, in the middle of cells and all over the worst cells."""
-    from scipy.interpolate import RegularGridInterpolator
-
     nodes = list(axes.values())
     values = function(**dict(zip(axes, np.meshgrid(*nodes, indexing="ij", sparse=True), strict=True)), **held)
     values = _rounded(np.broadcast_to(values, [len(x) for x in nodes]), largest)
     largest = max(largest, float(np.abs(values).max()))
-    table = RegularGridInterpolator(nodes, values)
     n = int(constants.TABLE_CONDITIONS)
 
     def within(cells: np.ndarray, part: Any) -> np.ndarray:
@@ -149,7 +147,7 @@ def _measured(
 
     def missed(at: np.ndarray) -> np.ndarray:
         exact = function(**dict(zip(axes, at.T, strict=True)), **held)
-        return np.asarray(np.abs(table(at) - exact) / largest)
+        return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact) / largest)
 
     shape = (n, len(nodes))
     cells = random.integers(0, [len(x) - 1 for x in nodes], shape)
