@@ -50,7 +50,7 @@ for _other in ("mffit-tir", "tir"):
         )
 
 if TYPE_CHECKING:
-    from mffit.export import write_c, write_fmu, write_matlab
+    from mffit.export import write_c, write_fmu, write_matlab, write_table
     from mffit.pipeline import (
         align,
         build,
@@ -80,12 +80,14 @@ __all__ = [
     "write_c",
     "write_fmu",
     "write_matlab",
+    "write_table",
     "write_tydex",
 ]
 ELSEWHERE = {
     "write_c": "mffit.export",
     "write_fmu": "mffit.export",
     "write_matlab": "mffit.export",
+    "write_table": "mffit.export",
     "convert": "mffit.conversion",
 }
 """Public names that are not the pipeline's."""

@@ -125,13 +125,13 @@ CONDITIONS = (
 
 def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     """Problems for the conditions that the tyre violates within its ranges or just outside."""
-    box = _box(tyre)
-    reach = constants.JUST_OUTSIDE * (box[1] - box[0])
-    around = np.array([box[0] - reach, box[1] + reach])
+    inside = box(tyre)
+    reach = constants.JUST_OUTSIDE * (inside[1] - inside[0])
+    around = np.array([inside[0] - reach, inside[1] + reach])
     around[0, 0] = max(around[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
     around[0, 2] = max(around[0, 2], constants.IN_USE[0] * tyre["NOMPRES"])
     for condition in CONDITIONS:
-        margin, point = worst(tyre, condition.measure, box)
+        margin, point = worst(tyre, condition.measure, inside)
         if np.isnan(margin):
             yield Problem(
                 "error",
@@ -178,17 +178,17 @@ def _measured(tyre: TyreRecord, measure: Measure, points: np.ndarray) -> Any:
         return measure(tyre.p, q)
 
 
-def _box(tyre: TyreRecord) -> np.ndarray:
-    """The file's ranges, reduced to what tyres are used for."""
+def box(tyre: TyreRecord) -> np.ndarray:
+    """The file's :data:`RANGES` (2, 5), reduced to what tyres are used for."""
     camber, sideslip = constants.LARGEST_CAMBER.rad, 2.0 * constants.USUAL_SIDESLIP.rad
-    box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
-    box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
-    box[:, 1] = np.clip(box[:, 1], -camber, camber)
+    ends = np.array([[float(tyre[name]) for name in names] for names in RANGES]).T
+    ends[0, 0] = max(ends[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
+    ends[:, 1] = np.clip(ends[:, 1], -camber, camber)
     least, most = (share * tyre["NOMPRES"] for share in constants.IN_USE)
-    pressure = np.clip(box[:, 2], least, most)
-    box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
-    box[:, 3] = np.clip(box[:, 3], -sideslip, sideslip)
-    return box
+    pressure = np.clip(ends[:, 2], least, most)
+    ends[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
+    ends[:, 3] = np.clip(ends[:, 3], -sideslip, sideslip)
+    return ends
 
 
 def _place(point: np.ndarray, condition: Condition) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import Voice, voiced
-from mffit.cli.options import code_options, out_option, tir_file, transient, tyre_toml
+from mffit.cli.options import code_options, out_option, tir_file, transient, turn_slip_option, tyre_toml
 from mffit.errors import InputError
 
 
@@ -39,7 +39,7 @@ def _told(voice: Voice) -> Iterator[None]:
     voice.warn(str(one.message) for one in caught)
 
 
-def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | None) -> None:
+def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | None, **more: object) -> None:
     import tir
     from tir.mode import words
 
@@ -48,7 +48,7 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
     on = tyre.turn_slip if turn_slip is None else turn_slip
     why = f"the file's USE_MODE is {tyre['USE_MODE']:g}" if turn_slip is None else "as asked for"
     voice.say(f"written with {words(on)} ({why}): {', '.join(names)}")
-    voice.give({"written": names, "turn_slip": on})
+    voice.give({"written": names, "turn_slip": on, **more})
 
 
 @click.group()
@@ -196,6 +196,71 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
             f"{counted(len(shown), 'key')} that {file} lacks got the default, marked as not measured: {some(shown)}"
         )
     voice.give({"written": written, "defaults": shown})
+
+
+@export.command()
+@tir_file
+@click.option(
+    "--for",
+    "form",
+    required=True,
+    type=click.Choice(["csv", "mat", "carsim"]),
+    help="Form: CSV, MATLAB, or CarSim's text tables (not tried in CarSim).",
+)
+@out_option("Folder to write to.", default="export", show_default=True)
+@turn_slip_option
+@click.option(
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="NAME=LOW:HIGH",
+    help="Narrower range of Fz_N, alpha_deg, gamma_deg or kappa; may be repeated.",
+)
+@click.option("--error", type=float, default=0.5, show_default=True, metavar="PERCENT", help="Largest error.")
+@voiced
+def table(
+    file: Path,
+    form: str,
+    out: Path,
+    turn_slip: bool | None,
+    ranges: tuple[str, ...],
+    error: float,
+    voice: Voice,
+) -> None:
+    """Export a property file as lookup tables.
+
+    Linear interpolation between their nodes misses the tyre by less than 0.5 % of the largest force.
+    """
+    from mffit.export import write_table
+
+    ending = {"csv": ".csv", "mat": ".mat", "carsim": ".par"}[form]
+    with _told(voice), voice.progress() as progress:
+        made = write_table(
+            file,
+            _folder(out, ending, named=False),
+            form=form,
+            turn_slip=turn_slip,
+            error=error / 100.0,
+            ranges=dict(map(_range, ranges)),
+            progress=progress,
+        )
+    voice.warn(made.warnings)
+    for one in made.tables:
+        voice.say(one.sentence)
+    if form == "carsim":
+        voice.say("not tried in CarSim: compare a curve of its tire tester with the file")
+    _report(voice, made.written, file, turn_slip, tables=[one.keys() for one in made.tables])
+
+
+def _range(text: str) -> tuple[str, tuple[float, float]]:
+    name, _, ends = text.partition("=")
+    try:
+        low, high = map(float, ends.split(":"))
+    except ValueError:
+        raise InputError(
+            "is not NAME=LOW:HIGH; write, for example, --range alpha_deg=-12:12", key=f"--range {text}"
+        ) from None
+    return name, (low, high)
 
 
 @export.command()

@@ -29,6 +29,11 @@ transient = click.option(
     is_flag=True,
     help="With the lag of the contact, from slip speeds; an FMU then co-simulates only.",
 )
+turn_slip_option = click.option(
+    "--turn-slip/--no-turn-slip",
+    default=None,
+    help="Turn slip on or off [default: as the file's USE_MODE says].",
+)
 
 
 def out_option(help_text: str, *, is_file: bool = False, **settings: Any) -> Callable[[Command], Command]:
@@ -51,11 +56,7 @@ def code_options(command: Command) -> Command:
             tir_file,
             out_option("Folder to write to.", default="export", show_default=True),
             click.option("--name", help="Name in the code [default: made from the file's name]."),
-            click.option(
-                "--turn-slip/--no-turn-slip",
-                default=None,
-                help="Turn slip on or off [default: as the file's USE_MODE says].",
-            ),
+            turn_slip_option,
             click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
         )
     ):

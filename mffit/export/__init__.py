@@ -1,4 +1,4 @@
-"""A tyre for other programs: C source files, functional mock-up units (FMI 2.0 and 3.0), MATLAB functions.
+"""A tyre for other programs: C source files, functional mock-up units (FMI 2.0 and 3.0), MATLAB functions, lookup tables.
 
 The equations come from ``tir``; this folder adds names, units, files and the call of a compiler.
 """
@@ -6,5 +6,6 @@ The equations come from ``tir``; this folder adds names, units, files and the ca
 from mffit.export.c import write_c
 from mffit.export.fmu import write_fmu
 from mffit.export.matlab import write_matlab
+from mffit.export.table import write_table
 
-__all__ = ["write_c", "write_fmu", "write_matlab"]
+__all__ = ["write_c", "write_fmu", "write_matlab", "write_table"]

@@ -82,6 +82,10 @@ def name_in_code(path: Path, tyre: tir.Tyre, turn_slip: bool, is_taken: Callable
     Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
     USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
     """
-    mode = "" if turn_slip == tyre.turn_slip else "_turn_slip" if turn_slip else "_normal"
-    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode_suffix(tyre, turn_slip)
     return name if re.match(r"[A-Za-z]", name) and not is_taken(name) else f"tyre_{name}"
+
+
+def mode_suffix(tyre: tir.Tyre, on: bool) -> str:
+    """The end of the name of exported files, which says whether turn slip is on where the file's USE_MODE says otherwise."""
+    return "" if on == tyre.turn_slip else "_turn_slip" if on else "_normal"
