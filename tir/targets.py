@@ -294,8 +294,8 @@ TARGETS: dict[str, Target] = {
             (),
             refusal=(
                 "computes PAC_MC, another formula with other coefficients than MF 6.2, and no public text was found that has all "
-                "its equations. Use MF-Tyre/MF-Swift in Adams with the file for adams, or, within 15 deg of camber, PAC2002 by mffit "
-                "convert FILE.tir --to pac2002"
+                "its equations. Use MF-Tyre/MF-Swift in Adams with the file for adams, or, within 15 deg of camber, PAC2002 by "
+                "mffit convert FILE.tir --to pac2002"
             ),
         ),
     )

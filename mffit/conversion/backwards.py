@@ -29,8 +29,8 @@ HEADERS: Mapping[str, Mapping[str, object]] = {
     "mf52": {"PROPERTY_FILE_FORMAT": "MF-TYRE", "TYPE": "CAR", "FITTYP": 6, "USE_MODE": 14},
     "pac2002": {"PROPERTY_FILE_FORMAT": "PAC2002", "USE_MODE": 4, "FE_METHOD": "NO"},
 }
-"""[MODEL] of the old files by their kind: the version, and combined forces by their coefficients. Relaxation (14) is asked for in MF
-5.2 only: Chrono, which reads PAC2002, computes no horizontal force by other modes than 1 to 4."""
+"""[MODEL] of the old files by their kind: the version, and combined forces by their coefficients. Relaxation (14) is asked for in
+MF 5.2 only: Chrono, which reads PAC2002, computes no horizontal force by other modes than 1 to 4."""
 FILE = {"FILE_TYPE": "tir", "FILE_VERSION": 3.0, "FILE_FORMAT": "ASCII"}
 KINDS = {"mf52": "MF-Tyre 5.2", "pac2002": "PAC2002"}
 KEYS: Mapping[str, str] = {
