@@ -23,8 +23,10 @@ def target_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")
-        return
-    for problem in (*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())):
+        found = [*_broken_rules(tyre, target)]
+    else:
+        found = [*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())]
+    for problem in found:
         yield Problem(problem.level, f"for {target.name}: {problem.sentence}", problem.name, problem.line)
 
 
@@ -47,10 +49,14 @@ def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
             "USE_MODE",
         )
     if target.verified:
-        yield Problem("note", f"its own demands are not verified: {target.verified}")
+        yield Problem("note", f"how its demands are known: {target.known}; {target.verified}")
+    yield from _broken_rules(tyre, target)
+
+
+def _broken_rules(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     for rule in target.rules:
-        if rule.concerns(tyre.values):
-            yield Problem(rule.level, rule.sentence, rule.name)
+        if rule.concerns(tyre):
+            yield Problem(rule.level, rule.sentence.format(value=tyre[rule.name]), rule.name)
 
 
 def _at(level: str, line: FileLine, sentence: str, name: str = "") -> Problem:

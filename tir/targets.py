@@ -9,6 +9,7 @@ from typing import Any
 from tir.errors import TirError, listed
 from tir.mode import asks_for_turn_slip
 from tir.parameters import TABLE
+from tir.record import TyreRecord
 
 ADAMS = tuple(row.name for row in TABLE if row.files == "adams")
 ONLY_62 = tuple(row.name for row in TABLE if row.files == "62")
@@ -19,8 +20,8 @@ class TargetRule:
     """Something that a program does with values that others take differently; found in its public source or manual."""
 
     name: str  #: the key at fault
-    concerns: Callable[[Mapping[str, Any]], bool]  #: from the values of a tyre
-    sentence: str
+    concerns: Callable[[TyreRecord], bool]
+    sentence: str  #: ``{value}`` is that of the key
     level: str = "warning"
 
 
@@ -41,13 +42,24 @@ class Target:
     dollar_only: bool = False  #: whether only a dollar sign starts a comment
     refusal: str = ""  #: reason if no file can be written for it
     rules: tuple[TargetRule, ...] = ()
-    verified: str = ""  #: how a profile is known that was made without the program and without its source
+    known: str = "documentation"  #: how the profile is known: one of :data:`KNOWN`
+    verified: str = ""  #: what that rests on, if it is not the program's source
 
 
+KNOWN = ("source read", "documentation", "assumed")
+OF_SWIFT = (
+    TargetRule(
+        "USE_MODE",
+        lambda p: asks_for_turn_slip(p.values),
+        "USE_MODE {value:g} asks for turn slip, which needs the licence of MF-Swift (Ansys' manual says so): with MF-Tyre alone "
+        "take the file for turn slip off, NAME-normal.tir",
+        "note",
+    ),
+)
 OF_SIMSCAPE = (
     TargetRule(
         "USE_MODE",
-        asks_for_turn_slip,
+        lambda p: asks_for_turn_slip(p.values),
         "USE_MODE asks for turn slip, which is an option of the block: switch it on there, or use the file for turn slip off",
     ),
     TargetRule(
@@ -72,41 +84,73 @@ OF_MBSIM = (
     ),
     TargetRule(
         "USE_MODE",
-        asks_for_turn_slip,
+        lambda p: asks_for_turn_slip(p.values),
         "USE_MODE asks for turn slip, with which its Mz is NaN where the spin is zero, and its trail acts on the force of spin "
         "too: use the file for turn slip off, or expect another Mz on curves",
     ),
     TargetRule(
         "QDRP2",
-        lambda p: p["QDRP2"] != 0.0 and asks_for_turn_slip(p),
+        lambda p: p["QDRP2"] != 0.0 and asks_for_turn_slip(p.values),
         "it has no QDRP2, so the turn-slip moment differs; set it to 0 before the fit, or expect another Mz on curves",
     ),
 )
 OF_MFEVAL = (
     TargetRule(
         "USE_MODE",
-        asks_for_turn_slip,
+        lambda p: asks_for_turn_slip(p.values),
         "USE_MODE asks for turn slip, with which it reverses camber thrust: use the file for turn slip off, and a mode of mfeval "
         "that ends in 1",
+    ),
+)
+OF_TYREDYN = (
+    TargetRule(
+        "USE_MODE",
+        lambda p: asks_for_turn_slip(p.values),
+        "USE_MODE asks for turn slip, with which it reverses camber thrust and gives NaN in Mz: use the file for turn slip off",
+    ),
+)
+OF_TEASIT = (
+    TargetRule(
+        "MC_CONTOUR_A",
+        lambda p: p["MC_CONTOUR_A"] > 0.0,
+        "by MC_CONTOUR_A this is a motorcycle tyre, but it takes the sine of camber, so the forces differ where the tyre leans",
+    ),
+)
+READ_BY_CHRONO = ("PAC2002", "MF_05")
+OF_CHRONO = (
+    TargetRule(
+        "PROPERTY_FILE_FORMAT",
+        lambda p: "PROPERTY_FILE_FORMAT" not in p.present,
+        "the file has no PROPERTY_FILE_FORMAT, so it is read without a message, its coefficients as those of PAC2002",
+    ),
+    TargetRule(
+        "PROPERTY_FILE_FORMAT",
+        lambda p: "PROPERTY_FILE_FORMAT" in p.present and p["PROPERTY_FILE_FORMAT"] not in READ_BY_CHRONO,
+        "it stops at PROPERTY_FILE_FORMAT '{value}', as only 'PAC2002' and 'MF_05' are known to it",
+    ),
+    TargetRule(
+        "USE_MODE",
+        lambda p: p["USE_MODE"] not in (1.0, 2.0, 3.0, 4.0),
+        "USE_MODE {value:g} is none of 1 to 4, with which alone it computes Fx and Fy: the tyre would have no grip at all",
     ),
 )
 OF_ANSYS = (
     TargetRule(
         "USE_MODE",
-        asks_for_turn_slip,
+        lambda p: asks_for_turn_slip(p.values),
         "USE_MODE asks for turn slip, for which PROPERTY_FILE_FORMAT has to be 'SWIFT' and the Swift licence be there",
     ),
 )
 ASSUMED = "no public manual was found that names its keys, so this is the file for MF-Tyre/MF-Swift itself"
 HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ...] = (
-    ("carsim", "CarSim and BikeSim", {}, (), ASSUMED),
-    ("simpack", "Simpack", {}, (), ASSUMED),
-    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, (), ASSUMED),
+    ("carsim", "CarSim and BikeSim", {}, OF_SWIFT, ASSUMED),
+    ("simpack", "Simpack", {}, OF_SWIFT, ASSUMED),
+    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, OF_SWIFT, ASSUMED),
     (
         "motionview",
         "MotionView and MotionSolve",
         {},
-        (),
+        OF_SWIFT,
         "its public manual names MF-Tyre/MF-Swift and lets [MODEL] select it; take PROPERTY_FILE_FORMAT and FUNCTION_NAME from "
         "the sample file of the installation",
     ),
@@ -117,13 +161,23 @@ HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ..
         OF_ANSYS,
         "its public manual lists MF-Tyre and MF-Swift and their PROPERTY_FILE_FORMAT",
     ),
-    ("asm", "dSPACE ASM", {}, (), ASSUMED),
+    ("asm", "dSPACE ASM", {}, OF_SWIFT, ASSUMED),
+    (
+        "carmaker-mftyre",
+        "CarMaker",
+        {},
+        OF_SWIFT,
+        "its public forum says that an info file names the model and the property file; that this file is the one for "
+        "MF-Tyre/MF-Swift itself is assumed",
+    ),
 )
 """Programs that have MF-Tyre/MF-Swift built in: name, program, fixed values, rules, and how that is known."""
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
-        Target("mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS),
+        Target(
+            "mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS, rules=OF_SWIFT
+        ),
         Target("mf61", "programs that read MF 6.1 but not 6.2", (61, 60), (*ADAMS, *ONLY_62)),
         Target(
             "adams",
@@ -132,6 +186,8 @@ TARGETS: dict[str, Target] = {
             ("USER_SUB_ID",),
             {"PROPERTY_FILE_FORMAT": "USER", "N_TIRE_STATES": 5.0},
             {"FUNCTION_NAME": "'TNO_DelftTyre_Adams_interface::TYR815'"},
+            rules=OF_SWIFT,
+            verified="public copies of the manual of MF-Tyre/MF-Swift; nothing was run",
         ),
         Target(
             "carmaker",
@@ -141,6 +197,8 @@ TARGETS: dict[str, Target] = {
             turn_slip=False,
             complete=True,
             si=True,
+            verified="its public forum says that it has MF 5.2 and 6.1 of its own and stops where QSY3 or QSY4 is missing; that "
+            "it computes no turn slip and ignores [UNITS] is assumed; nothing was run",
         ),
         Target(
             "simscape",
@@ -149,8 +207,17 @@ TARGETS: dict[str, Target] = {
             complete=True,
             si=True,
             rules=OF_SIMSCAPE,
+            verified="the public pages of the blocks; nothing was run",
         ),
-        Target("recurdyn", "RecurDyn with MF-Tyre", (62, 61, 60), ADAMS, more={"VENDER_TIRE_TYPE": ""}),
+        Target(
+            "recurdyn",
+            "RecurDyn with MF-Tyre",
+            (62, 61, 60),
+            ADAMS,
+            more={"VENDER_TIRE_TYPE": ""},
+            rules=OF_SWIFT,
+            verified="its public manual; nothing was run",
+        ),
         Target(
             "mbsim",
             "MBSim's MagicFormula62",
@@ -160,6 +227,7 @@ TARGETS: dict[str, Target] = {
             si=True,
             positions=True,
             rules=OF_MBSIM,
+            known="source read",
         ),
         *(
             Target(
@@ -169,6 +237,7 @@ TARGETS: dict[str, Target] = {
                 tuple(key for key in ADAMS if key not in values),
                 values=values,
                 rules=rules,
+                known="assumed" if "assumed" in verified or verified == ASSUMED else "documentation",
                 verified=f"{verified}; nothing was run",
             )
             for name, program, values, rules, verified in HOSTS
@@ -181,6 +250,29 @@ TARGETS: dict[str, Target] = {
             si=True,
             dollar_only=True,
             rules=OF_MFEVAL,
+            known="source read",
+        ),
+        Target(
+            "teasit",
+            "the Magic Formula Tyre Library and Tool for MATLAB by teasit",
+            (61,),
+            (*ADAMS, *ONLY_62),
+            turn_slip=False,
+            si=True,
+            dollar_only=True,
+            rules=OF_TEASIT,
+            known="source read",
+        ),
+        Target(
+            "tyredyn",
+            "TyreDyn",
+            (62, 61),
+            ADAMS,
+            complete=True,
+            si=True,
+            dollar_only=True,
+            rules=OF_TYREDYN,
+            known="source read",
         ),
         *(
             Target(
@@ -188,11 +280,23 @@ TARGETS: dict[str, Target] = {
                 "PAC2002",
                 (),
                 refusal=(
-                    "computes PAC2002, another formula with other coefficients than MF 6.2: it would read a renamed file as "
-                    "another tyre without any message. Fit PAC2002 to the forces of this tyre"
+                    "computes PAC2002, another formula with other coefficients than MF 6.2: it would take a renamed file for "
+                    "another tyre without any message. mffit convert FILE.tir --to pac2002 fits one to the forces of this tyre"
                 ),
+                rules=rules,
+                known=known,
             )
-            for name in ("chrono", "pac2002")
+            for name, rules, known in (("chrono", OF_CHRONO, "source read"), ("pac2002", (), "documentation"))
+        ),
+        Target(
+            "adams-motorcycle",
+            "PAC MC, the motorcycle model of Adams",
+            (),
+            refusal=(
+                "computes PAC_MC, another formula with other coefficients than MF 6.2, and no public text was found that has all "
+                "its equations. Use MF-Tyre/MF-Swift in Adams with the file for adams, or, within 15 deg of camber, PAC2002 by "
+                "mffit convert FILE.tir --to pac2002"
+            ),
         ),
     )
 }

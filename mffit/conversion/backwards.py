@@ -12,9 +12,9 @@ from scipy.optimize import least_squares
 
 import tir
 from mffit.conversion import mf52, wording
-from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, misfits
+from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, camber_range, misfits
 from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
-from mffit.conversion.old_files import OWN, old_default
+from mffit.conversion.old_files import OF_62, OWN, old_default
 from mffit.conversion.refit import UNBOUNDED
 from mffit.conversion.result import ROUNDING, OldConversion
 from mffit.least_squares import FreeNumber, of_model, solve
@@ -27,9 +27,10 @@ from tir.writing import comment_text, entry, value_text
 
 HEADERS: Mapping[str, Mapping[str, object]] = {
     "mf52": {"PROPERTY_FILE_FORMAT": "MF-TYRE", "TYPE": "CAR", "FITTYP": 6, "USE_MODE": 14},
-    "pac2002": {"PROPERTY_FILE_FORMAT": "PAC2002", "USE_MODE": 14},
+    "pac2002": {"PROPERTY_FILE_FORMAT": "PAC2002", "USE_MODE": 4, "FE_METHOD": "NO"},
 }
-"""[MODEL] of the old files by their kind: the version, and combined forces with relaxation."""
+"""[MODEL] of the old files by their kind: the version, and combined forces by their coefficients. Relaxation (14) is asked for in
+MF 5.2 only: Chrono, which reads PAC2002, computes no horizontal force by other modes than 1 to 4."""
 FILE = {"FILE_TYPE": "tir", "FILE_VERSION": 3.0, "FILE_FORMAT": "ASCII"}
 KINDS = {"mf52": "MF-Tyre 5.2", "pac2002": "PAC2002"}
 KEYS: Mapping[str, str] = {
@@ -52,6 +53,8 @@ KEYS: Mapping[str, str] = {
     "QEZ4 QEZ5 QHZ1 QHZ2 QHZ3 QHZ4 SSZ1 SSZ2 SSZ3 SSZ4",
 }
 """Keys of an old file in the order of the MF-Tyre 5.2 manual, by section."""
+OF_PAC2002 = {"OVERTURNING_COEFFICIENTS": "QSX4 QSX5 QSX6 QSX7 QSX8 QSX9 QSX10 QSX11"}
+"""Keys that PAC2002 has in addition."""
 OF_CHANNEL = {
     "Fx": ("LONGITUDINAL_COEFFICIENTS", "PT"),
     "Fy": ("LATERAL_COEFFICIENTS", "PT"),
@@ -83,11 +86,13 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
     reach = reach_of(tyre.values, tyre.present)
     at = conditions(reach)
     goal = dict(zip(CHANNELS_COMPARED, _forces(tyre, at), strict=True))
-    values = _start(tyre)
+    keys = _keys(kind)
+    values = _start(tyre, keys) | _cornering_stiffness(tyre, reach) | camber_range(tyre, reach)
     values |= _relaxation(tyre, values, reach)
     fitted: list[str] = []
     for channel in OF_CHANNEL:
-        wanted, u, stages = goal[channel], at.u(goal[channel]), _stages(channel, values, at, goal[channel])
+        wanted, u = goal[channel], at.u(goal[channel])
+        stages = _stages(channel, keys, values, at, wanted)
         for names, at_these in stages:
             here = Conditions(*(x[at_these] for x in at))
             values |= _fitted(channel, names, values, here, wanted[at_these], u[at_these])
@@ -105,19 +110,42 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
     )
 
 
+def _keys(kind: str) -> Mapping[str, list[str]]:
+    """The keys of an old file by section."""
+    more = OF_PAC2002 if kind == "pac2002" else {}
+    return {section: f"{keys} {more.get(section, '')}".split() for section, keys in KEYS.items()}
+
+
 def _forces(tyre: Tyre, at: Conditions) -> list[np.ndarray]:
     found = outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict(), turn_slip=tyre.turn_slip)
     return [np.array(np.broadcast_to(force, at.Fz.shape)) for force in found]
 
 
-def _start(tyre: Tyre) -> dict[str, Any]:
+def _start(tyre: Tyre, keys: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """The old values: those of the same name, at the pressure of the file, where the terms of pressure are 0."""
     values: dict[str, Any] = {name: old_default(name) for name in BY_NAME}
     values |= {name: row.default for name, row in OWN.items()}
-    values |= {name: tyre[name] for keys in KEYS.values() for name in keys.split() if name in tyre.values}
+    values |= {name: tyre[name] for names in keys.values() for name in names if name in tyre.values}
     values |= {"NOMPRES": tyre["INFLPRES"], "INFLPRES": tyre["INFLPRES"]}
     at_pressure = (float(tyre["INFLPRES"]) / float(tyre["NOMPRES"])) ** float(tyre["QSY8"])
-    return values | {name: float(tyre[name]) * at_pressure for name in KEYS["ROLLING_COEFFICIENTS"].split()}
+    return values | {name: float(tyre[name]) * at_pressure for name in keys["ROLLING_COEFFICIENTS"]}
+
+
+def _cornering_stiffness(tyre: Tyre, reach: Reach) -> dict[str, float]:
+    """PKY1 and PKY2 nearest to the stiffness of the upright wheel over load, if PKY4 is not the 2 of the old formula.
+
+    A fit that starts at those of 6.2 ends far off if PKY4 is negative, with which PKY1 has the other sign.
+    """
+    if tyre["PKY4"] == OF_62["PKY4"]:
+        return {}
+    Fz, Fz0 = loads(reach), float(tyre["FNOMIN"]) * float(tyre["LFZO"])
+    wanted = np.asarray(tyre.state(Fz).K_ya) / (Fz0 * (float(tyre["LKY"]) or 1.0))
+
+    def off(x: np.ndarray) -> np.ndarray:
+        return np.asarray(x[0] * np.sin(2.0 * np.arctan(Fz / (x[1] * Fz0))) - wanted)
+
+    most = wanted[np.argmax(np.abs(wanted))]
+    return dict(zip(("PKY1", "PKY2"), least_squares(off, [most, 2.0]).x.tolist(), strict=True))
 
 
 def _relaxation(tyre: Tyre, values: Mapping[str, Any], reach: Reach) -> dict[str, float]:
@@ -134,12 +162,16 @@ def _relaxation(tyre: Tyre, values: Mapping[str, Any], reach: Reach) -> dict[str
 
 
 def _stages(
-    channel: str, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
+    channel: str,
+    keys: Mapping[str, Sequence[str]],
+    values: Mapping[str, Any],
+    at: Conditions,
+    goal: np.ndarray,
 ) -> list[tuple[list[str], np.ndarray]]:
     """What is fitted after one another, and to which conditions (n,): nothing if the old formula gives the same, the coefficients
     of camber if it does so upright; else those of the upright wheel, those of camber, and all together."""
     section, others = OF_CHANNEL[channel]
-    names = [name for name in KEYS[section].split() if not name.startswith(others)]
+    names = [name for name in keys[section] if not name.startswith(others)]
     by_camber = [name for name in names if name in mf52.SCALED_BY_CAMBER]
     everywhere, upright = np.ones_like(at.gamma, bool), at.gamma == 0.0
     off = np.abs(_force(channel, values, at) - goal) > ROUNDING * np.max(np.abs(goal))
@@ -188,10 +220,10 @@ def _text(
         lines += folded(f"! provenance: {key}: {comment_text(words)}")
     lines += ["[UNITS]", *_entries(SI)]
     rows = {**BY_NAME, **OWN}
-    for section, keys in KEYS.items():
+    for section, keys in _keys(kind).items():
         lines.append(f"[{section}]")
         lines += _entries(HEADERS[kind] if section == "MODEL" else {})
-        for key in keys.split():
+        for key in keys:
             said = "fitted to the forces of the MF 6.2 file" if key in fitted else ""
             lines.append(entry(key, value_text(rows[key], values[key]), said))
     return "\r\n".join(lines) + "\r\n"

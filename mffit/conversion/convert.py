@@ -64,7 +64,7 @@ def convert(
     start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
     found = refit(start, at, goal, reach)
-    values = {**start, **found, **_ranges(old, reach)}
+    values = {**start, **found, **camber_range(old, reach)}
     tyre = Tyre.from_values(values)
     new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
     misfit = tuple(misfits(new, at, goal))
@@ -108,8 +108,8 @@ def _carcass(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     return out
 
 
-def _ranges(old: OldFile, reach: Reach) -> dict[str, float]:
-    """The ranges of the new file: those of the old one, camber as far as it was fitted."""
+def camber_range(old: OldFile | Tyre, reach: Reach) -> dict[str, float]:
+    """The range of camber of the converted file where it is narrower than that of the other one: as far as it was fitted."""
     wide = abs(float(old.values["CAMMAX"])) > reach.gamma or "CAMMAX" not in old.present
     return {"CAMMIN": -reach.gamma, "CAMMAX": reach.gamma} if wide else {}
 

@@ -62,7 +62,7 @@ def worst(misfit: Iterable[RegionMisfit]) -> str:
     """The misfit of the channel that differs most, as a share of its largest value at the same load."""
     row = max(misfit, key=lambda row: row.share)
     return (
-        f"{MODEL[row.channel].symbol} differs most from the old file, by up to {size(row)}, at {region(row)}"
+        f"{MODEL[row.channel].symbol} differs most from the original, by up to {size(row)}, at {region(row)}"
     )
 
 

@@ -11,7 +11,7 @@ import tir
 from tir.checking import check
 from tir.document import parse_document
 from tir.parameters import SECTIONS, TABLE
-from tir.targets import ADAMS, ONLY_62, TARGETS, use_mode_words, vendor
+from tir.targets import ADAMS, KNOWN, ONLY_62, TARGETS, use_mode_words, vendor
 from tir.tyre import interpret
 
 VECTORS = Path(__file__).parent / "vectors"
@@ -61,7 +61,18 @@ def line_ends_lost(text: str) -> dict[str, float]:
     return numbers({key.strip(): rest.split("$")[0].strip() for key, rest in pairs})
 
 
-@pytest.mark.parametrize("habit", [first_equals_dollar_comments, every_equals, short_buffer, line_ends_lost])
+def comments_by_pattern(text: str) -> dict[str, float]:
+    """Deletes rulers, section heads and what follows a dollar sign by patterns, then splits every line at '='."""
+    for pattern in (r"\$[-]+[-]*[\w\s]*\n", r"\[\w*\]\s*\n", r"\$[^\n]*"):
+        text = re.sub(pattern, "", text)
+    pairs = [line.split("=") for line in text.split("\n") if "=" in line]
+    return numbers({key.strip(): value.strip() for key, value in pairs})
+
+
+@pytest.mark.parametrize(
+    "habit",
+    [first_equals_dollar_comments, every_equals, short_buffer, line_ends_lost, comments_by_pattern],
+)
 @pytest.mark.parametrize("name", USABLE)
 def test_every_habit_reads_identical_numbers(tyre, name, habit):
     found = habit(tyre.text(name))
@@ -132,11 +143,50 @@ def test_the_keys_are_those_of_the_version(tyre, name):
         assert keys["FITTYP"] == str(int(version)) or int(version) not in TARGETS[name].fittyps
 
 
-@pytest.mark.parametrize("name", ["chrono", "pac2002"])
+def test_tyredyn_refuses_text_in_model_and_a_line_with_two_equals_signs(tyre):
+    """Every value of [MODEL] but two has to be a number; whole-line comments other than rulers are split too."""
+    (model,) = re.findall(r"\[MODEL\]\r\n(.*?)\r\n\$-", tyre.text("tyredyn"), re.DOTALL)
+    values = dict(line.split("$")[0].split("=") for line in model.split("\r\n"))
+    for key, value in values.items():
+        assert key.strip() in ("TYRESIDE", "FITTYP") or float(value) is not None
+
+
+@pytest.mark.parametrize("name", ["chrono", "pac2002", "adams-motorcycle"])
 def test_another_formula_is_refused_with_the_reason(tyre, name):
-    with pytest.raises(tir.TirError, match=r"PAC2002.*another formula"):
+    formula = TARGETS[name].refusal.split()[1].strip(",")
+    with pytest.raises(tir.TirError, match=rf"{formula}.*another formula.*mffit convert"):
         tyre.text(name)
-    assert any(p.level == "error" and "PAC2002" in p.sentence for p in check(tyre, [name]))
+    assert any(p.level == "error" and formula in p.sentence for p in check(tyre, [name]))
+
+
+@pytest.mark.parametrize(
+    ("form", "mode", "said"),
+    [
+        ("", 124, ["no PROPERTY_FILE_FORMAT", "USE_MODE 124 is none of 1 to 4"]),
+        ("", 4, ["no PROPERTY_FILE_FORMAT"]),
+        ("USER", 124, ["stops at PROPERTY_FILE_FORMAT 'USER'", "USE_MODE 124 is none"]),
+        ("PAC2002", 4, []),
+    ],
+)
+def test_what_chrono_does_with_the_file_itself_is_told(tyre, form, mode, said):
+    text = tyre.replace(USE_MODE=float(mode)).text("mftyre")
+    if form:
+        text = text.replace("[MODEL]\r\n", f"[MODEL]\r\nPROPERTY_FILE_FORMAT = '{form}'\r\n")
+    found = [
+        p.sentence for p in check(interpret(parse_document(text)), ["chrono"]) if "for chrono" in p.sentence
+    ]
+    assert len(found) == len(said)
+    assert all(words in sentence for words, sentence in zip(said, found, strict=True))
+
+
+@pytest.mark.parametrize("name", ["mftyre", "adams", "recurdyn", "carsim", "carmaker-mftyre"])
+def test_turn_slip_in_mftyre_needs_the_licence_of_swift(tyre, name):
+    def noted(mode: float) -> list[str]:
+        problems = check(tyre.replace(USE_MODE=mode), [name])
+        return [p.sentence for p in problems if p.level == "note" and "MF-Swift (Ansys" in p.sentence]
+
+    assert len(noted(225.0)) == 1
+    assert not noted(124.0)
 
 
 def test_an_unknown_program_is_refused_with_the_known_ones(tyre):
@@ -228,6 +278,8 @@ def test_the_order_of_sections_is_the_manuals(tyre):
         ("mbsim", {"USE_MODE": 225.0}, "USE_MODE", "Mz is NaN"),
         ("mfeval", {"USE_MODE": 225.0}, "USE_MODE", "reverses camber thrust"),
         ("ansysmotion", {"USE_MODE": 225.0}, "USE_MODE", "'SWIFT'"),
+        ("tyredyn", {"USE_MODE": 225.0}, "USE_MODE", "reverses camber thrust"),
+        ("teasit", {}, "MC_CONTOUR_A", "sine of camber"),
     ],
 )
 def test_what_a_program_does_with_a_value_is_told(tyre, program, changes, name, said):
@@ -242,11 +294,14 @@ def test_what_a_program_does_with_a_value_is_told(tyre, program, changes, name, 
     assert name not in {p.name for p in check(plain, [program]) if f"for {program}" in p.sentence}
 
 
-def test_a_profile_without_the_program_says_so():
-    """Those that were made from a manual or by analogy say what was verified; the others were read by the program's source."""
-    said = {name: target.verified for name, target in TARGETS.items() if target.verified}
-    assert set(said) == {"carsim", "simpack", "vigrade", "motionview", "ansysmotion", "asm"}
-    assert all(sentence.endswith("nothing was run") for sentence in said.values())
+def test_every_profile_says_how_it_is_known():
+    """By the program's source, or else with what it rests on; the form of the manual needs no words."""
+    assert {target.known for target in TARGETS.values()} == set(KNOWN)
+    for name in USABLE:
+        target = TARGETS[name]
+        assert bool(target.verified) == (target.known != "source read" and name not in ("mftyre", "mf61"))
+        assert not target.verified or target.verified.endswith("nothing was run")
+    assert "is assumed" in TARGETS["carmaker"].verified
 
 
 def test_check_notes_what_is_not_verified_of_a_program(tyre):

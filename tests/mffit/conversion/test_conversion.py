@@ -472,3 +472,23 @@ def test_the_older_file_holds_at_the_pressure_of_the_newer(tmp_path):
     assert read_old(tmp_path / "old.tir").values["QSY1"] == pytest.approx(
         tyre["QSY1"] * (200e3 / tyre["NOMPRES"]) ** 0.7
     )
+
+
+def test_a_file_of_pac2002_is_as_chrono_reads_it_and_keeps_the_overturning_moment(tmp_path):
+    """With PKY1 and PKY4 of the other sign, which is the same tyre. Chrono reads lines of 200 characters by blanks and quotes."""
+    tyre = tir.read(SAMPLE)
+    tyre = tyre.replace(PKY1=-tyre["PKY1"], PKY4=-tyre["PKY4"])
+    tyre.write(tmp_path / "odd.tir")
+    found = to_old(tmp_path / "odd.tir", "pac2002")
+    worst = {row.channel: row.rms_share for row in found.misfit if row.small_camber and not row.slipping}
+    assert worst["Fy"] < 0.01
+    assert worst["Mx"] < 0.01
+    lines = found.text.split("\r\n")
+    assert max(map(len, lines)) < 120
+    keys = {words[0]: words[2] for words in map(str.split, lines) if len(words) > 2 and words[1] == "="}
+    assert keys["PROPERTY_FILE_FORMAT"] == "'PAC2002'"
+    assert keys["USE_MODE"] in ("1", "2", "3", "4")
+    assert keys["FE_METHOD"] == "'NO'"  # otherwise its coefficients of combined slip are passed over
+    assert keys["LENGTH"] == "'meter'"
+    assert all(line.find("$") == -1 or line[line.find("$") - 1] == " " for line in lines)
+    assert float(keys["CAMMAX"]) == pytest.approx(math.radians(15.0))
