@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
 
 from mffit.constants import SHARES_OF_A_BUILD
@@ -25,16 +27,50 @@ def silent(sentence: str) -> None:
     """Progress that is not shown."""
 
 
-def remaining(sentence: str, seconds: float) -> tuple[float | None, float | None]:
-    """Share of a build that is done when a step begins, and the time that it still takes [s].
+def remaining(
+    sentence: str, seconds: float, since: float = 0.0, *, writes: bool = True
+) -> tuple[float | None, float | None]:
+    """Share of a build that is done in a step, and the time that it still takes [s].
 
     Parameters
     ----------
     sentence : of the step; both are None for one that is no step of a build
-    seconds : since the build began [s]; the time left is None until the fit, the longest step, has shown how fast it is
+    seconds : from the beginning of the build to that of the step [s]
+    since : from the beginning of the step [s]: the share grows as fast as it did before, up to that of the next step; the time
+        left is None until the fit, the longest step, has shown how fast it is
+    writes : whether the build ends with the step of writing
     """
     at = next((k for k, step in enumerate(STEPS) if sentence.startswith(step)), None)
     if at is None:
         return None, None
-    done = sum(SHARES_OF_A_BUILD[:at])
-    return done, seconds * (1.0 - done) / done if at > STEPS.index(FITTING) else None
+    whole = 1.0 if writes else 1.0 - SHARES_OF_A_BUILD[-1]
+    done, own = sum(SHARES_OF_A_BUILD[:at]) / whole, SHARES_OF_A_BUILD[at] / whole
+    if not done or not seconds:
+        return done, None
+    usual = done / seconds
+    left = (1.0 - done) / usual - since if at > STEPS.index(FITTING) else None
+    return done + min(own, usual * since), left
+
+
+class ShownStep:
+    """A step of a run that has begun, as text that tells how far the run is."""
+
+    def __init__(self, sentence: str, begun: float, *, writes: bool = True) -> None:
+        """``begun`` is when the run began, as ``time.monotonic`` has it."""
+        self.sentence, self.writes = sentence, writes
+        self.at = time.monotonic()
+        self.seconds = self.at - begun
+
+    def text(self, grain: int = 1) -> str:
+        """The sentence behind the share done and the time left, both in steps of ``grain`` percent and seconds."""
+        since = time.monotonic() - self.at
+        done, left = remaining(self.sentence, self.seconds, since, writes=self.writes)
+        if not done:
+            return self.sentence
+        said = f"{grain * math.floor(100.0 * done / grain + 1e-9)} % done"
+        if left is not None:
+            said += f", about {grain * max(1, round(left / grain))} s left"
+        return f"{said}: {self.sentence}"
+
+    def __rich__(self) -> str:
+        return self.text()

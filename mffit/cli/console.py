@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 
 import click
 
-from mffit.progress import Progress, remaining, silent
+from mffit.progress import Progress, ShownStep, silent
 
 NOT_ASCII = re.compile(r"[^\x00-\x7f]")
 NOT_TRUSTED = 3
@@ -32,21 +32,7 @@ def progress() -> Iterator[Progress]:
         return
     begun = time.monotonic()
     with console.status("starting") as status:
-        yield lambda sentence: status.update(_ShownStep(sentence, time.monotonic() - begun))
-
-
-class _ShownStep:
-    """A step of a run, with the share of a build that was done when it began and the time left, which a terminal shows anew."""
-
-    def __init__(self, sentence: str, seconds: float) -> None:
-        self.sentence, self.begun = sentence, time.monotonic()
-        self.done, self.left = remaining(sentence, seconds)
-
-    def __rich__(self) -> str:
-        said = [] if self.done is None else [f"{100.0 * self.done:.0f} % done"]
-        if self.left is not None:
-            said.append(f"about {max(1.0, self.left - (time.monotonic() - self.begun)):.0f} s left")
-        return ": ".join([*([", ".join(said)] if said else []), self.sentence])
+        yield lambda sentence: status.update(ShownStep(sentence, begun))  # which a terminal shows anew
 
 
 class Voice:

@@ -37,7 +37,7 @@ BUILD: tuple[Picture[BuildView], ...] = (
         name="overview",
         title="Readings and fitted model of every channel at nominal load and pressure",
         shows="Every channel at the load and pressure nearest to the nominal ones: readings, and the model as lines. The colour "
-        "is the angle that is held, dark to light from its smallest to its largest value.",
+        "is the angle that is held, from violet at the smallest to green at the largest.",
         section="top",
         draw=fit.overview,
     ),
@@ -53,9 +53,8 @@ BUILD: tuple[Picture[BuildView], ...] = (
     Picture(
         name="camber_reduction",
         title="Camber reduction factor beside published tyres, its uncertainty budget and its course over load",
-        shows=f"Left: this tyre among the six that have been published ({spin.SOURCE}). Middle: the contribution of each "
-        "source to u(eps_gamma); the orange line is the combined uncertainty with correlations. Right: eps_gamma at every load "
-        "and the line that the file carries.",
+        shows=f"This tyre among the six that have been published ({spin.SOURCE}). In the budget, the orange line is the "
+        "combined uncertainty, with correlations. Over the load, the line is that of the file.",
         section="spin",
         draw=spin.camber_reduction,
     ),

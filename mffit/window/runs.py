@@ -7,12 +7,13 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from mffit.errors import InputError
-from mffit.progress import Progress
+from mffit.progress import Progress, ShownStep
 from mffit.window import constants
 from tir.errors import TirError
 
@@ -70,7 +71,8 @@ class Run:
 
     def __init__(self, kind: str, path: Path, digest: str) -> None:
         self.kind, self.digest = kind, digest
-        self.sentence = "starting"
+        self._begun_at = time.monotonic()
+        self._step = ShownStep("starting", self._begun_at)
         self.outcome: RunOutcome | None = None
         self._stopped = self._begun = False
         context = multiprocessing.get_context("spawn")  # a forked copy of a process with threads may hang
@@ -79,6 +81,11 @@ class Run:
         self._process.start()
         sender.close()
         threading.Thread(target=self._listen, args=(receiver,), daemon=True).start()
+
+    @property
+    def sentence(self) -> str:
+        """What it does, and how far it is, in steps that do not make every window draw itself too often."""
+        return self._step.text(grain=5)
 
     def stop(self) -> None:
         """End the run; its temporary files go. A process that has not begun is loading the program and has none."""
@@ -100,7 +107,7 @@ class Run:
                 kind, content = receiver.recv()
                 self._begun = True
                 if kind == "progress":
-                    self.sentence = content
+                    self._step = ShownStep(content, self._begun_at, writes=self.kind in PAGES)
                 else:
                     outcome = content
         receiver.close()

@@ -21,7 +21,7 @@ from mffit import __main__ as script
 from mffit.cli import commands, main
 from mffit.cli.console import progress
 from mffit.constants import SHARES_OF_A_BUILD
-from mffit.progress import FITTING, STEPS, remaining
+from mffit.progress import FITTING, JUDGING, STEPS, ShownStep, remaining
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 
@@ -91,8 +91,27 @@ def test_the_time_left_is_that_of_the_usual_shares_and_counts_down():
         done, left = remaining(f"{step} and more", at)
         assert done == pytest.approx(at / 100.0)
         assert left == (pytest.approx(100.0 - at) if at > begins[FITTING] else None)
+        if at:  # the share grows within a step, but not beyond its end
+            assert remaining(step, at, 1.0)[0] == pytest.approx((at + 1.0) / 100.0)
+            assert remaining(step, at, 200.0)[0] == pytest.approx(
+                min(x for x in [*begins.values(), 100.0] if x > at) / 100.0
+            )
+    assert remaining(JUDGING, begins[JUDGING], writes=False)[0] == pytest.approx(0.58 / 0.67)
     assert sum(SHARES_OF_A_BUILD) == pytest.approx(1.0)
     assert remaining("trying 12 runs one by one", 30.0) == (None, None)
+
+
+def test_a_step_tells_how_far_the_run_is(monkeypatch):
+    now = [58.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    step = ShownStep(JUDGING, 0.0)
+    assert step.text() == f"58 % done, about 42 s left: {JUDGING}"
+    now[0] += 4.0
+    assert step.text() == f"62 % done, about 38 s left: {JUDGING}"
+    assert step.text(grain=5) == f"60 % done, about 40 s left: {JUDGING}"
+    now[0] += 100.0
+    assert step.text().startswith("67 % done, about 1 s left")
+    assert ShownStep("trying every effect", 0.0).text() == "trying every effect"
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")

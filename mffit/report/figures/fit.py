@@ -61,7 +61,7 @@ def _of_channel(view: Overlay, name: str) -> Sheet:
 OF_CHANNELS: tuple[Picture[Overlay], ...] = of_channels(
     "fit",
     title="Model and points of {word} at every load, pressure and camber",
-    shows="{channel}: points, and the model as lines. The colour is the angle that is held, over longitudinal slip the sideslip.",
+    shows="{channel}: points, and the model as lines. The colour is the camber or sideslip that is held.",
     section="fit",
     draw=_of_channel,
 )

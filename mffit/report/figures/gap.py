@@ -170,7 +170,7 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
 
 def evidence(diagnosis: Diagnosis) -> Sheet:
     """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
-    steps = [step for step in diagnosis.steps if step.trials]
+    steps = [step for step in diagnosis.steps if step.trials and step.gain > LEAST_GAIN]  # others have no bar
     panels = [_candidates(step, number_of) for number_of, step in enumerate(steps, 1)]
     most = max((len(panel.y.words or {}) for panel in panels), default=1)
     present = {trial.effects[-1].kind for step in steps for trial in step.trials}

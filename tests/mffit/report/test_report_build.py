@@ -11,6 +11,7 @@ import pytest
 from report_toys import made_coefficients, made_result, read_page
 
 from mffit.report import write_build
+from mffit.report.style import ramp
 from mffit.report.verdict import headlines
 from mffit.rounding import ascii_only
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
@@ -233,3 +234,16 @@ def test_page_and_pictures_are_dark_in_dark_mode(browser):
     assert np.median(dark) < 0.2
     # What is dark on white is light on black, and what is faint stays faint.
     assert np.corrcoef(light.ravel(), dark.ravel())[0, 1] < -0.9
+
+
+def test_the_colours_of_angles_differ_in_dark_mode(browser):
+    colours = list(ramp(range(7)).values())
+    squares = "".join(f'<rect x="{20 * k}" width="20" height="20" fill="{c}"/>' for k, c in enumerate(colours))
+    drawn = f'<svg xmlns="http://www.w3.org/2000/svg" width="140" height="20">{squares}</svg>'
+    look(browser, dark=True)
+    added = "const box = document.createElement('div'); box.className = 'panels'; box.innerHTML = arguments[0];"
+    browser.execute_script(f"{added} document.querySelector('main').prepend(box); scrollTo(0, 0)", drawn)
+    grey = brightness(browser.find_element("css selector", "main > .panels svg"))[10, 10::20]
+    browser.execute_script("document.querySelector('main > .panels').remove()")
+    assert np.all(np.diff(grey) < -0.03)
+    assert grey[-1] > 0.3

@@ -119,6 +119,15 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
     assert lengths == sorted(lengths, reverse=True)
 
 
+def test_a_step_in_which_nothing_gains_has_no_picture(misaligned):
+    step = misaligned.steps[0]
+    worse = tuple(
+        dataclasses.replace(trial, log_evidence=step.before.log_evidence - 1.0) for trial in step.trials
+    )
+    nothing = dataclasses.replace(misaligned, steps=(dataclasses.replace(step, trials=worse),))
+    assert not gap.evidence(nothing).panels
+
+
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIED_EVIDENCE)
