@@ -27,7 +27,7 @@ class Predicted:
         return float(np.sum(self.chi2))
 
     def falls(self, other: Predicted, channel: int | None = None) -> float:
-        """Mean improvement by ``other`` in standard errors over the groups, in all channels or in the ``channel`` of this index."""
+        """Mean improvement by ``other`` in standard errors over the groups, for all channels or the index ``channel``."""
         change = self.chi2 - other.chi2
         return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
 
