@@ -15,16 +15,16 @@ from mffit import constants
 from tir.derivatives import gradient, plain, traced
 
 NEGLIGIBLE = 0.01
-"""Share of the fall that ends a search below which a step is not worth trying, and a rise is none."""
+"""Changes of the sum of squares below this share of the stopping criterion are negligible: such steps are not tried."""
 
 EXACT = 1e-9
-"""Spread of a number that is exactly known."""
+"""Prior standard deviation of a number that is exactly known."""
 
 POLISH_TOLERANCE = 1e-6
-"""Fall that a step still promises, over the sum of squares, at which a search ends."""
+"""Predicted decrease of a step, relative to the sum of squares, at which a search ends."""
 
 UNDAMPED = 1e-9
-"""Damping that only keeps a form positive where rounding would not."""
+"""Smallest damping: it only keeps the quadratic form positive definite against rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,32 +35,32 @@ class FreeNumber:
     start: float
     lower: float = -math.inf
     upper: float = math.inf
-    expected: float = 0.0  #: centre of the prior
-    spread: float = math.inf  #: its standard deviation; infinite without a prior
+    expected: float = 0.0  #: mean of the prior
+    spread: float = math.inf  #: standard deviation of the prior; infinite without a prior
 
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """Residuals and their derivatives at one place; those of the data may be :func:`condensed`."""
+    """Residuals and their derivatives at one set of values; those of the data may be :func:`condensed`."""
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
     limits: (
         np.ndarray
-    )  #: (l,) residuals of physical limits: above 0 where a limit is broken, and of no cost where it is kept
+    )  #: (l,) residuals of physical limits: positive where a limit is violated, without cost otherwise
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
 
 
 def broken(limits: np.ndarray) -> np.ndarray:
-    """What physical limits (l,) cost: their residuals where they are broken, 0 where they are kept."""
+    """Residuals (l,) of physical limits that enter the cost: as given where violated, else 0."""
     return np.asarray(np.maximum(limits, 0.0))
 
 
 def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Residuals (m,) and derivatives (m, k) of blocks of data one after the other.
+    """Residuals (m,) and derivatives (m, k) of consecutive blocks of data.
 
-    Many are replaced by k + 1 rows with the same sums of squares and products, of all that a solver and a covariance need: the
-    memory is then that of one block.
+    If there are very many rows, k + 1 rows with the same sums of squares and products replace them, which suffices for solver and
+    covariance and limits the memory to a few blocks.
     """
     found: list[tuple[np.ndarray, np.ndarray]] = []
     size, products = 0, np.zeros(())
@@ -77,7 +77,7 @@ def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarr
 
 
 def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Sums of products (k + 1, k + 1) of the derivatives and residuals of a block."""
+    """Sums of products (k + 1, k + 1) of the derivatives and the residuals of a block."""
     across = slope.T @ data
     return np.block([[slope.T @ slope, across[:, None]], [across, data @ data]])
 
@@ -88,16 +88,16 @@ class LeastSquaresProblem:
 
     residual: Callable[
         [np.ndarray], tuple[np.ndarray, np.ndarray]
-    ]  #: of data (m,) and limits (l,), as in :class:`Linear`
-    linear: Callable[[np.ndarray], Linear]  #: the same with derivatives
+    ]  #: residuals of data (m,) and limits (l,), as in :class:`Linear`
+    linear: Callable[[np.ndarray], Linear]  #: residuals with derivatives
 
 
 def of_model(
     model: Callable[[Mapping[str, Any]], Any], names: Sequence[str], measured: np.ndarray, u: Any
 ) -> LeastSquaresProblem:
-    """The problem without limits of a model (m,) of named numbers, plain or traced, against measured values (m,).
+    """The least-squares problem of a model (m,) of named numbers, plain or traced, for measured values (m,); without limits.
 
-    ``u`` is the uncertainty of these, scalar or (m,).
+    ``u`` is the standard uncertainty of the measured values, scalar or (m,).
     """
     none, k = np.zeros(0), len(names)
 
@@ -117,13 +117,13 @@ def of_model(
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The end of a search; derivatives there are computed when they are asked for."""
+    """The end of a search; its derivatives are computed on first use."""
 
     objective: Objective
     x: np.ndarray  #: (k,)
     cost: float  #: sum of squares of data, priors and limits
     steps: int
-    known: Linear | None  #: the problem there, where the search computed it
+    known: Linear | None  #: residuals and derivatives at ``x``, if the search computed them
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -137,7 +137,7 @@ class Solution:
 
     @cached_property
     def here(self) -> Linear:
-        """Residuals and derivatives."""
+        """Residuals and derivatives at the solution."""
         return self.objective.problem.linear(self.x) if self.known is None else self.known
 
     @property
@@ -157,7 +157,7 @@ class Solution:
 
     @property
     def covariance(self) -> np.ndarray:
-        """Covariance (k, k) from data and priors; limits are not information and do not enter."""
+        """Covariance (k, k) from data and priors; limits carry no information and do not enter."""
         return inverse(self.jacobian.T @ self.jacobian + np.diag(self.prior))
 
     @property
@@ -168,7 +168,7 @@ class Solution:
 
     @property
     def at_limit(self) -> frozenset[str]:
-        """Numbers whose stiffness comes to a good part from broken limits."""
+        """Numbers for which violated limits contribute a large share of the curvature of the sum of squares."""
         active = self.here.limits_slope[self.here.limits > 0.0]
         by_limits, by_data = np.sum(active**2, axis=0), np.sum(self.jacobian**2, axis=0)
         share = constants.HELD_BY_LIMIT_SHARE
@@ -177,7 +177,7 @@ class Solution:
 
     @property
     def left(self) -> float:
-        """Fall of ``cost`` that an undamped step still promises: 0 at a minimum."""
+        """Predicted decrease of ``cost`` by an undamped step: 0 at a minimum."""
         return _Quadratic.around(self.objective, self.x, self.here).left
 
 
@@ -190,16 +190,16 @@ def solve(
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
 
-    Where a model misses its readings by more than noise, the second derivatives of the residuals count too. They are learnt from
-    the gradients along the way, and every step is tried with and without them (Dennis, Gay and Welsch 1981).
+    If residuals are large, their second derivatives matter. These are estimated from the gradients of successive steps, and every
+    step is tried with and without them (Dennis, Gay and Welsch 1981).
 
     Parameters
     ----------
     problem : residuals and exact derivatives
     numbers : the free numbers
-    max_steps : accepted steps at most
-    tolerance : share of the sum of squares below which the gain that an undamped step promises ends the search (Bates and
-        Watts 1981); the gain of a damped step says nothing, because it is small wherever the damping is large
+    max_steps : largest number of accepted steps
+    tolerance : the search ends if an undamped step would reduce the sum of squares by less than this share (Bates and Watts
+        1981); a damped step is no criterion, because its decrease is small whenever the damping is large
     """
     objective = Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
@@ -237,7 +237,7 @@ def inverse(information: np.ndarray) -> np.ndarray:
 
 
 def root(covariance: np.ndarray) -> np.ndarray:
-    """A matrix (k, k) whose product with its transpose is the covariance; the numbers may differ by orders of magnitude."""
+    """A matrix R (k, k) with R @ R.T = covariance, accurate even if variances differ by orders of magnitude."""
     scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
     return np.asarray(scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0)))
@@ -284,11 +284,11 @@ def _step(
     damping: float,
     least: float,
 ) -> _Step | None:
-    """The next place with a smaller sum of squares, the lower of those that two forms promise; None if there is none.
+    """The best of the steps of all quadratic forms if it reduces the sum of squares, else None; damping grows until one does.
 
-    A damped step of the first form that promises a fall of ``least`` or less is not tried: at an edge, as between a wheel's play
-    and its stops, such steps go to and fro, and rounding would decide on which side they end. An undamped one is the last, near
-    the minimum: its fall may be too small to be seen beside rounding, so it only must not rise by more.
+    A damped step with a predicted decrease of ``least`` or less is not tried: at a kink, as between a wheel's play and its stops,
+    such steps alternate, and rounding would decide on which side they end. An undamped step is the last one, near the minimum.
+    Its decrease may be smaller than rounding, so it is accepted unless the sum rises by more than ``least``.
     """
     last = damping == UNDAMPED
     while damping < 1e12:
@@ -313,14 +313,14 @@ def _step(
 
 
 class _Quadratic(NamedTuple):
-    """The sum of squares around a place, of linearised residuals: data and priors as a quadratic form, limits one by one."""
+    """Local model of the sum of squares from linearised residuals: quadratic in data and priors, limits kept individually."""
 
-    gradient: np.ndarray  #: (k,) half the derivative of the sum of squares of data and priors
-    curvature: np.ndarray  #: (k, k) half its second derivative
-    limits: np.ndarray  #: (l,) residuals of limits, above 0 where broken
+    gradient: np.ndarray  #: (k,) half the gradient of the sum of squares of data and priors
+    curvature: np.ndarray  #: (k, k) half the Hessian of the sum of squares of data and priors
+    limits: np.ndarray  #: (l,) residuals of limits, positive where violated
     limits_slope: np.ndarray  #: (l, k)
-    low: np.ndarray  #: (k,) moves to the bounds
-    high: np.ndarray
+    low: np.ndarray  #: (k,) moves to the lower bounds
+    high: np.ndarray  #: (k,) moves to the upper bounds
 
     @classmethod
     def around(cls, objective: Objective, x: np.ndarray, here: Linear) -> _Quadratic:
@@ -334,26 +334,26 @@ class _Quadratic(NamedTuple):
         )
 
     def bent(self, bend: np.ndarray) -> _Quadratic:
-        """The same with more curvature (k, k), which need not be positive."""
+        """The form with additional curvature (k, k), which need not be positive definite."""
         return self._replace(curvature=self.curvature + bend)
 
     def gain(self, move: np.ndarray) -> float:
-        """Fall of the sum of squares by a move (k,)."""
+        """Predicted decrease of the sum of squares by a move (k,)."""
         before, after = broken(self.limits), broken(self.limits + self.limits_slope @ move)
         return float(before @ before - after @ after - (2.0 * self.gradient + self.curvature @ move) @ move)
 
     @property
     def left(self) -> float:
-        """Fall of the sum of squares by the undamped move to the minimum of the form."""
+        """Predicted decrease of the sum of squares by the undamped move to the minimum of the form."""
         move = self.move(UNDAMPED)
         return math.inf if move is None else self.gain(move)
 
     def move(self, damping: float) -> np.ndarray | None:
-        """The move (k,) to the damped minimum within the bounds; None if the form is not positive.
+        """The move (k,) to the minimum of the damped form within the bounds; None if the form is not positive definite.
 
-        Newton steps with the limits that are broken where the last one ended: each goes to the lowest place on its way, or to a
-        bound, which then holds its number as long as the slope presses against it. A move that looks at bounds and at limits
-        that are still kept is not rejected because of them.
+        An active-set method: each Newton step includes the limits violated at its start, and a line search ends it at the minimum
+        along its direction or at a bound. A number stays at a bound as long as the gradient pushes it outwards. Since the move
+        already accounts for bounds and limits, they rarely cause its rejection.
         """
         over = self.limits > 0.0
         size = np.diag(self.curvature) + np.sum(self.limits_slope[over] ** 2, axis=0)
@@ -399,27 +399,28 @@ class _Quadratic(NamedTuple):
 
 
 def _lowest(slope: float, curvature: float, limits: np.ndarray, rise: np.ndarray) -> float:
-    """The place along a way, from 0, at which half the sum of squares is lowest.
+    """The step length, from 0, at which half the sum of squares is minimal along a direction.
 
-    ``slope`` is its derivative at 0, ``curvature`` the second one without limits, which rise (l,) from their residuals (l,).
+    ``slope`` is its first derivative at 0 and ``curvature`` its second derivative without limits; ``rise`` (l,) are the
+    derivatives of the residuals ``limits`` (l,).
     """
     over = limits > 0.0
-    turns = np.where(over, rise < 0.0, rise > 0.0)  # limits that are kept or broken from some place on
+    turns = np.where(over, rise < 0.0, rise > 0.0)  # limits that change between kept and violated on the way
     place = -limits[turns] / rise[turns]
     order = np.argsort(place)
     place, sign = place[order], np.where(over[turns], -1.0, 1.0)[order]
     bend = np.cumsum(np.append(curvature + rise[over] @ rise[over], sign * rise[turns][order] ** 2))
-    bend = np.maximum(bend, curvature)  # steep limits leave rounding
-    # The derivative at 0 and at each of these places:
+    bend = np.maximum(bend, curvature)  # rounding of steep limits could make it smaller
+    # The derivative at 0 and at each change:
     at = slope + np.cumsum(np.append(0.0, bend[:-1] * np.diff(place, prepend=0.0)))
     k = int(np.searchsorted(at, 0.0)) - 1
     return float((place[k - 1] if k > 0 else 0.0) - at[k] / bend[k])
 
 
 def _bend(bend: np.ndarray, move: np.ndarray, before: _Quadratic, after: _Quadratic) -> np.ndarray:
-    """What the second derivatives of the residuals add to the curvature (k, k), by the gradients at both ends of a move (k,).
+    """Updated estimate (k, k) of the second-derivative part of the curvature, from the gradients at both ends of a move (k,).
 
-    The symmetric change of rank one; none where it would be rounding (Nocedal and Wright 2006, section 6.2).
+    The symmetric rank-one update, skipped where rounding would dominate it (Nocedal and Wright 2006, section 6.2).
     """
     lacking = after.gradient - before.gradient - (after.curvature + bend) @ move
     size = np.diag(after.curvature)
@@ -430,7 +431,7 @@ def _bend(bend: np.ndarray, move: np.ndarray, before: _Quadratic, after: _Quadra
 
 
 def _next_damping(damping: float, fall: float, promised: float) -> float:
-    """The damping after a step with a fall of the sum of squares of which the quadratic form promised another one."""
+    """The damping after a step, from its actual and its predicted decrease of the sum of squares."""
     if fall > 0.75 * promised:
         return damping / 5.0
     return damping if fall > 0.25 * promised else 3.0 * damping

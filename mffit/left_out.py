@@ -1,8 +1,8 @@
 """Prediction of left-out groups of points to first order, from one linearised fit.
 
-No second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the covariance of the
-fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the group is taken out
-(Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
+No second fit is needed. Let J be the derivatives of a group's residuals r in units of their uncertainty, and C the covariance of
+the fit. Without the group the covariance is A^-1 with A = C^-1 - J^T J, and the numbers change by A^-1 J^T r (Belsley, Kuh and
+Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mffit import constants
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """Misfit of every group of points when it is predicted from all others."""
+    """Sum of squared prediction errors of every left-out group of points."""
 
     chi2: np.ndarray  #: (s, c) by group and channel
 
@@ -27,15 +27,15 @@ class Predicted:
         return float(np.sum(self.chi2))
 
     def falls(self, other: Predicted, channel: int | None = None) -> float:
-        """By how many standard errors over the groups ``other`` predicts better, in all channels or in one by number."""
+        """Mean improvement by ``other`` in standard errors over the groups, for all channels or the index ``channel``."""
         change = self.chi2 - other.chi2
         return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
 
     def raised(self, other: Predicted, loss: np.ndarray | float = 0.0) -> bool:
-        """Whether ``other`` predicts one of the channels worse beyond chance and by more than ``loss``.
+        """Whether ``other`` predicts a channel significantly worse, and by more than ``loss``.
 
-        The loss [-] is one of chi-square, for each channel (c,) or all of them. Beyond chance is a loss in standard errors over
-        the groups, or a misfit larger than that of as many independent groups scatters: one group may hold all of it.
+        ``loss`` is an allowed rise of chi-square, for each channel (c,) or one for all. A rise is significant if it is large in
+        standard errors over the groups, or if an F-test finds the misfit larger; the F-test also detects a rise in one group.
         """
         allowed = np.broadcast_to(loss, self.chi2.shape[1])
         return any(
@@ -52,7 +52,7 @@ def left_out_errors(
     gradient: np.ndarray,
     group: np.ndarray,
 ) -> np.ndarray:
-    """Errors (m,) of the points when each group is predicted from all others, all numbers estimated again.
+    """Errors (m,) of the points when each group is predicted from all others, with all numbers re-estimated.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ def left_out_errors(
     residual : (m,) model less measured in units of the noise
     information : (k, k) of data and priors
     gradient : (k,) half the derivative of the sum of squares of data and priors; zero at its minimum
-    group : (m,) number of the group of each row, from 0
+    group : (m,) index of the group of each row, from 0
     """
     error = np.empty_like(residual)
     for k in range(int(group.max(initial=-1)) + 1):
         rows = np.flatnonzero(group == k)
-        out, r = np.take(slopes.T, rows, axis=1).T, residual[rows]  # by columns, as derivatives are in memory
+        out, r = np.take(slopes.T, rows, axis=1).T, residual[rows]  # by columns: the memory order of slopes
         error[rows] = r + out @ moved_without(out, r, information, gradient)
     return error
 
@@ -78,24 +78,24 @@ def moved_without(
 
 
 def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:
-    """The misfit of groups from the errors (m,) of their points; ``channel`` (m,) counts the channels from 0."""
+    """The misfit of groups from the errors (m,) of their points; ``channel`` (m,) is the index of the channel of each error."""
     count = int(group.max(initial=-1)) + 1
     place = channels * group + channel
     return Predicted(np.bincount(place, error**2, minlength=channels * count).reshape(count, channels))
 
 
 def needed_fall(candidates: int) -> float:
-    """Standard errors by which a prediction must fall if the best of several candidates is taken."""
+    """Improvement in standard errors that is significant for the best of several candidates."""
     return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
 
 
 def _larger(before: np.ndarray, after: np.ndarray) -> bool:
-    """Whether the second misfit (s,) is the larger one beyond chance, if each group counts as one reading."""
+    """Whether the misfits ``after`` (s,) are significantly larger by an F-test with one degree of freedom per group."""
     ratio = float(np.sum(after)) / max(float(np.sum(before)), np.finfo(float).tiny)
     return bool(fdtrc(len(before), len(before), ratio) < constants.PREDICTION_FALSE_ALARM)
 
 
 def over_scatter(change: np.ndarray) -> float:
-    """Mean of the changes (s,) of groups over the standard error that their scatter gives it; 0 without scatter."""
+    """Mean of the changes (s,) of groups over its standard error from their scatter; 0 without scatter."""
     error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
     return float(np.mean(change)) / error if error > 0.0 else 0.0

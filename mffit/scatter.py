@@ -1,4 +1,4 @@
-"""Size and scatter of the finite ones of some numbers, with and without regard to outliers."""
+"""Size and scatter of finite numbers, plain and robust against outliers."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ NORMAL = 1.482602218505602
 """Standard deviation of normal noise over the median of its absolute value."""
 
 EFFICIENCY = 0.37
-"""Readings from which a root mean square is as uncertain as this median is from one."""
+"""Relative efficiency of the median absolute value: a root mean square from this share of the readings is as uncertain."""
 
 
 def beyond(chance: float) -> float:
-    """Standard deviations from the mean, to either side, beyond which a normal number lies with a probability."""
+    """Number of standard deviations beyond which a normal variable lies, to either side together, with probability ``chance``."""
     return float(-ndtri(chance / 2.0))
 
 
 ALARM = beyond(FALSE_ALARM)
-"""Standard deviations beyond which a sound number lies with the probability of a false alarm."""
+"""Number of standard deviations that a sound value exceeds with the probability of a false alarm."""
 
 
 def rms(x: np.ndarray) -> float:
@@ -38,7 +38,7 @@ def finite_median(x: np.ndarray) -> float:
 
 
 def robust(x: np.ndarray, centre: float = 0.0) -> float:
-    """Standard deviation of the core of finite values around a centre; NaN if there are none."""
+    """Robust standard deviation of the finite values around a centre, from the median; NaN if there are none."""
     x = x[np.isfinite(x)]
     return NORMAL * float(np.median(np.abs(x - centre))) if len(x) else float("nan")
 

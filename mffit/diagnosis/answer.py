@@ -1,4 +1,4 @@
-"""The record of a diagnosis, made from an explanation: every effect judged beside its rivals."""
+"""The record of a diagnosis, made from an explanation, with every effect compared with its rivals."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tir.parameters import BY_NAME
 
 
 def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
-    """The records of all accepted effects, each judged beside the others."""
+    """The records of all accepted effects, each judged together with the others."""
     return tuple(_found(found, effect, given) for effect in found.chosen.effects)
 
 
@@ -50,10 +50,10 @@ def answer(
     alternatives: Mapping[str, float],
     gap_before: Gap,
 ) -> Diagnosis:
-    """The record of an explanation; ``gap_before`` is that of all readings as they are.
+    """The record of an explanation.
 
-    ``found`` is what left-out sweeps confirm, with the ``named`` effects and the confidence of the ``alternatives`` by id;
-    ``given`` is the problem before it.
+    ``found`` is the explanation that left-out sweeps confirm, with the ``named`` effects and the confidence of the
+    ``alternatives`` by id; ``given`` is the problem of the given model; ``gap_before`` is the gap of all uncorrected readings.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before = given.predict(given.start)
@@ -105,7 +105,7 @@ def _with_repair(named: AcceptedEffect, done: Explanation) -> AcceptedEffect:
 
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
-    """Regions that stay unexplained, the bump first."""
+    """Regions that remain unexplained, the bump first."""
     regions = where(found.problem.points, residual, found.scatter)[: constants.MOST_UNEXPLAINED_REGIONS]
     return (_bump_region(found.bump), *regions) if found.bump.found else regions
 
@@ -120,7 +120,7 @@ def _bump_region(bump: Bump) -> Region:
 
 
 def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
-    """The readings that lost nearly all their weight and are far from the corrected model too."""
+    """The readings with nearly zero weight that are also far from the explained model."""
     if noise.weight is None:
         return ()
     usual = noise.u * np.sqrt(noise.weight)
@@ -131,7 +131,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
 
 
 def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:
-    """The record of one accepted effect, judged beside all the others that were accepted."""
+    """The record of one accepted effect, judged together with all other accepted ones."""
     problem, chosen, steps = found.problem, found.chosen, found.steps
     alone = len(chosen.effects) == 1
     step = next(
@@ -157,7 +157,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
 
 
 def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Simulation:
-    """The simulation with an effect and those accepted before it."""
+    """The simulation with an effect and the effects accepted before it."""
     if not found.coefficients:
         return step.best.state
     start, points = found.problem.start, found.problem.points
@@ -167,16 +167,16 @@ def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Sim
 
 
 class Judgement(NamedTuple):
-    """An effect beside its rivals."""
+    """The comparison of an effect with its rivals."""
 
-    tied: Sequence[Hypothesis]  #: explanations with another effect in its place that are as good
+    tied: Sequence[Hypothesis]  #: equally good explanations with another effect in its place
     confidence: float
-    together: float  #: confidence that it is this effect or a tied one that is no likelier
+    together: float  #: confidence in this effect or one of the tied ones that are not likelier
 
 
 def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> Judgement:
-    """The confidence in an effect, and what it is tied with."""
-    if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
+    """The confidence in an effect, and its ties."""
+    if effect.id in found.predicted:  # unnamed structure leaves evidence too weak to decide
         tied, known = found.predicted[effect.id].tied, found.confidence(effect)
         return Judgement(tied, known / (1.0 + len(tied)), known)
     rivals = _rivals(found.problem, found.chosen, effect, step)
@@ -188,9 +188,10 @@ def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> Judgement:
 
 
 def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
-    """Whether a rival is as good, or nearly so and so alike that these readings are not expected to separate the two.
+    """Whether a rival explains the readings equally well.
 
-    A rival that the likelihood does not exclude is tied as well: usual sizes and declarations alone separate no effects.
+    That is so if the evidence hardly differs, or if it differs moderately between effects that these readings are not expected to
+    separate. A rival that the likelihood does not exclude is tied as well: priors alone do not separate effects.
     """
     lead = chosen.log_evidence - rival.log_evidence
     alike = chosen.apart(rival) < constants.SEPARATING_CHI2
@@ -199,7 +200,7 @@ def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
 
 
 def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
-    """Log evidence over a rival; over a tied one no more than the log likelihood, which decides about ties."""
+    """Gain of log evidence over a rival; over a tied one at most the gain of log likelihood, which decides about ties."""
     lead = chosen.log_evidence - rival.log_evidence
     return min(lead, max(chosen.ahead(rival), 0.0)) if tied else lead
 
@@ -207,7 +208,7 @@ def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
 def _rivals(
     problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: ForwardStep
 ) -> list[Hypothesis]:
-    """Explanations with another of a step's best candidates in the place of one effect, refitted beside the others."""
+    """Refitted explanations in which another of a step's best candidates replaces one effect."""
     others = chosen.others(effect)
     kept = chosen.numbers_of(others)
     return [
@@ -218,9 +219,9 @@ def _rivals(
 
 
 def not_accepted(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
-    """Weights of the effects that were not accepted: in the first step if one was accepted, else in the last.
+    """Weights of the effects that were not accepted, from the first step if an effect was accepted, else from the last.
 
-    Empty if left-out sweeps decided against the weight of evidence.
+    Empty if left-out sweeps decided otherwise than the evidence.
     """
     if not steps:
         return {}
@@ -235,7 +236,7 @@ def not_accepted(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, 
 
 
 def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
-    """The property file with the estimated coefficients, and the reason of each in its comment."""
+    """The property file with the estimated coefficients, each with its reason in the comment."""
     of_tyre = {name: number for name, number in found.coefficients.items() if name in BY_NAME}
     changes = {name: value for name, (value, _) in of_tyre.items()}
     status = {name: wording.adjusted(float(tyre[name]), u) for name, (_, u) in of_tyre.items()}

@@ -1,4 +1,4 @@
-"""Local structure without a name: a bump anywhere in the programme, the rival of every named effect."""
+"""Unnamed local structure: a bump anywhere in the programme, the rival of every named effect."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SWEPT = {
     "gamma_deg": constants.BUMP_WIDTHS_CAMBER,
     "kappa": constants.BUMP_WIDTHS_SLIP,
 }
-"""Conditions of ``mffit.quantities`` over which bumps are sought: their widths. Their centres are the smallest apart."""
+"""By condition of ``mffit.quantities``, widths of the bumps; the smallest width is also the distance of their centres."""
 Ranges = dict[str, tuple[float, float]]
 """Column -> smallest and largest value."""
 
@@ -32,7 +32,7 @@ class Bump:
     channel: str
     region: Ranges
     amplitude: float  #: [N] or [Nm]
-    gain: float  #: log evidence, the search paid for
+    gain: float  #: gain of log evidence, less the penalty for the search
 
     @property
     def found(self) -> bool:
@@ -41,7 +41,7 @@ class Bump:
 
 @dataclass(frozen=True)
 class BumpScan:
-    """All bumps that the programme could show."""
+    """All bumps that the programme could reveal."""
 
     noise: Noise
     bumps: np.ndarray  #: (n, k) unit bumps over the points
@@ -50,9 +50,9 @@ class BumpScan:
 
     @cached_property
     def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
-        """Bumps in blocks: channel, number of the first, the channel's used rows, shapes there without shared changes, power.
+        """Bumps in blocks: channel, index of the first bump, used rows of the channel, whitened shapes, sums of squares.
 
-        A bump is zero in all other rows.
+        A bump is zero in all other rows. The shapes are whitened without shared changes, the sums of squares with them.
         """
         out, block, n = [], 256, len(self.bumps)
         for k, channel in enumerate(self.noise.channels):
@@ -64,10 +64,10 @@ class BumpScan:
         return out
 
     def best(self, hypothesis: Hypothesis) -> Bump:
-        """The bump that explains most of a hypothesis' residual, its own freed numbers projected out."""
+        """The bump that explains most of a hypothesis' residual, with the hypothesis' free numbers projected out."""
         residual = hypothesis.residual
         along = hypothesis.axes.T @ residual
-        # Shared changes act on shapes and residual alike, so that they need to be taken off the smaller one only.
+        # The whitening by shared changes is symmetric, so it is applied to the smaller factor of each product only.
         axes = self.noise.back(hypothesis.axes).astype(np.float32)
         left = self.noise.back(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
@@ -87,9 +87,9 @@ class BumpScan:
 
 
 def bump_scan(points: Points, noise: Noise) -> BumpScan:
-    """Bumps over sideslip, camber or slip: everywhere, or within one load, one side of camber, or backward runs.
+    """Bumps over sideslip, camber or slip: in the whole programme, at one load, on one side of camber, or in backward runs.
 
-    Those over slip also within one side of sideslip.
+    Bumps over slip also on one side of sideslip.
     """
     parts = _parts(points)
     beside = {"kappa": list(_sides("alpha_deg", points, STRAIGHT))}
@@ -122,13 +122,13 @@ def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
 
 
 def _narrowed(region: Ranges, column: str, low: float, high: float) -> Ranges:
-    """The region with one range cut to the bump."""
+    """The region with the range of one column cut to the bump."""
     before = region.get(column, (-np.inf, np.inf))
     return {**region, column: (float(max(low, before[0])), float(min(high, before[1])))}
 
 
 def _centres(values: np.ndarray, step: float) -> np.ndarray:
-    """Centres of bumps: the values in steps, or fewer evenly spaced ones."""
+    """Centres of bumps: the values rounded to steps, or fewer evenly spaced ones if there are too many."""
     most, steps = constants.MOST_BUMP_CENTRES, np.unique(np.round(values / step) * step)
     return steps if len(steps) <= most else np.linspace(steps[0], steps[-1], most)
 
@@ -148,7 +148,7 @@ def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
 
 
 def _sides(column: str, points: Points, middle: float) -> Iterator[tuple[Ranges, np.ndarray]]:
-    """Either side of an angle, and the ``middle`` [deg] around zero."""
+    """Masks of the two sides of an angle and of the band within ``middle`` [deg] around zero."""
     angle = points.condition(column)
     for low, high in ((-90.0, -middle), (-middle, middle), (middle, 90.0)):
         mask = (angle >= low) & (angle <= high)

@@ -1,4 +1,4 @@
-"""Points grouped by the conditions that were held: these groups are left out together when a model is validated."""
+"""Points grouped by held conditions; validation leaves these groups out one by one."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from mffit.points import Points, levels
 def by_condition(points: Points) -> Points:
     """The points with sweeps cut where load, camber, pressure, speed or slip steps.
 
-    A file may hold a whole programme. A quantity that changes from point to point was swept and does not cut.
-    In the result ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep held several.
+    A file may contain a whole programme. A quantity that changes from point to point was swept and causes no cut. In the result
+    ``sweep`` is the index of the condition; conditions are named after their sweep, with a number if it has several.
     """
     held = (
         (points.Fz, levels.LOAD),
@@ -35,7 +35,7 @@ def by_condition(points: Points) -> Points:
 
 
 def _held(values: np.ndarray, quantity: levels.LevelKind) -> np.ndarray:
-    """Number (n,) of the level at which each value was held; all 0 if the quantity was swept or never changed."""
+    """Index (n,) of the level at which each value was held; all 0 if the quantity was swept or never changed."""
     level = levels.nearest_labels(values, quantity)
     many = len(values) < constants.FEWEST_POINTS_OF_A_CONDITION * (level.max() + 1)
     return np.zeros_like(level) if many or levels.spread(values, quantity) else level

@@ -53,21 +53,21 @@ def diagnose(
     culprits: bool = True,
     progress: Progress = silent,
 ) -> Diagnosis:
-    """Find where a model disagrees with points, and the effects that explain it.
+    """The diagnosis of a model: where it disagrees with points, and the effects that explain this.
 
     Parameters
     ----------
     points : raw points (n,), ISO-W, angles as read
     tyre : the model of the simulation
-    config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
+    config : its declarations of model, rig and tyre name are used
     rig : known rig errors, of the rig or of a set-up; default the declared play alone
-    effects : the library to choose from; add your own records to the catalogue's
+    effects : library of effects; extend the catalogue by your own records
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
     repair_all : correct model and readings for uncertain effects too, see :mod:`mffit.diagnosis.repair`
-    as_read : the points (n,) with the errors that were taken off them; default the points
+    as_read : the points (n,) before known errors were subtracted from the readings; default ``points``
     taken_off : sentences about these errors
-    culprits : whether to look for a sweep that was written down wrongly; a model of another tyre finds none
+    culprits : whether to search for a wrongly recorded sweep, which needs a model of this tyre
     progress : called with a sentence before each step
 
     Returns
@@ -139,7 +139,7 @@ def diagnose(
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
-    """The model as the rig ran it, at the mean temperature of the points."""
+    """The given model with the declared and known rig errors, referred to the mean temperature of the points."""
     given = declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):
         given = given.replace(T_ref_degC=float(np.nanmean(points.T)))
@@ -155,9 +155,9 @@ def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, fl
 def _candidates(
     effects: Sequence[Effect], points: Points, start: Simulation, known: Sequence[str]
 ) -> tuple[list[Effect], list[DiagnosisNote]]:
-    """Effects that could be missing, and notes on the others; what is refitted in any case (``known``) is not missing.
+    """Candidate effects, and notes on effects that are not visible; effects of the ``known``, refitted coefficients are left out.
 
-    A model whose coefficients are refitted holds at the mean temperature of the points.
+    If coefficients are refitted, the reference temperature is fixed at the mean of the points.
     """
     candidates, hidden = possible(effects, points, start)
     if known:
@@ -170,7 +170,7 @@ def _candidates(
 def _confirmed(
     found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
 ) -> tuple[Explanation, Validation, NoRepair | None]:
-    """The whole explanation if left-out sweeps confirm it, else its first effect, else nothing; and what was refused."""
+    """The explanation if left-out sweeps confirm it, else its first effect alone, else none; its validation; the refusal."""
     done, validation, refused = checked(found, given, inexact, seen=seen)
     if refused is not None and len(found.chosen.effects) > 1:
         done, validation, _ = checked(only_first(found, inexact), given, inexact, seen=seen)

@@ -1,4 +1,4 @@
-"""Scatter, effects, inexact coefficients and structure without a name, found in turn until they agree."""
+"""Estimation of scatter, effects, inexact coefficients and unnamed structure, in turn until they are consistent."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def explain(
     *,
     seen: bool = False,
 ) -> Explanation:
-    """Find what explains the readings.
+    """The explanation of the readings.
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``seen``: the model was fitted to these
-    points; what its formulae cannot follow then stays as smooth structure, which is no evidence against an effect beside it.
+    points, so model error remains as smooth structure, which is no evidence against an effect.
     """
     channels = stated.channels
     simulated = start.readings(points, channels)
@@ -54,8 +54,8 @@ def explain(
             and not (lost or inexact)
             and all(e.differs_by_run for e in found.chosen.effects)
         ):
-            break  # the scatter was learned from these very residuals
-        # Beside structure without a name offsets of runs were not chosen: then the noise is not what they leave.
+            break  # the scatter was already estimated from these residuals
+        # Offsets of runs were assumed in the noise but not selected as effects: re-estimate the noise without them.
         without_offsets = without_offsets or lost
         before, state = noise, start if found is None else found.without_run_offsets
         noise = learned_noise(
@@ -66,12 +66,12 @@ def explain(
             break
         offset = None
         if found is not None and inexact:
-            # The influence of an inexact coefficient depends on the rest of the model: search again around the last estimate.
+            # The influence of a coefficient depends on the rest of the model: linearise again at the last estimate.
             at = start.with_numbers({name: value for name, (value, _) in found.coefficients.items()})
             offset = inexact.moved(points, found.refined.state, at, channels)
         columns = inexact.columns(points, start if found is None else found.refined.state, channels)
         noise_of_all = noise.sharing(columns)
-        # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
+        # Coefficients linearised at the start leave errors like unnamed structure, so it competes from the second round on.
         beside = None if found is None and inexact and not seen else StructureBeside.over(basis, noise_of_all)
         problem = DiagnosisProblem(points, at, noise_of_all, declared, offset, beside)
         last = found
@@ -81,7 +81,7 @@ def explain(
             found = replace(found, misfit=misfit)
         found = found.with_coefficients(inexact)
         if seen and found.smooth.found:
-            break  # left-out sweeps decide, and beside the misfit of the given model the noise hardly counts
+            break  # left-out sweeps decide; the noise hardly matters against the misfit of the given model
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
     assert found is not None
@@ -95,7 +95,7 @@ def explain(
 
 
 def _selected(given: DiagnosisProblem, candidates: Sequence[Effect]) -> Explanation:
-    """The effects that explain most beside the structure that each of them leaves, but those that are hardly certain."""
+    """The selected effects, in competition with unnamed structure, without those of low certainty."""
     problem, chosen, steps = select(given, candidates)
     bumps = bump_scan(problem.points, problem.noise)
     found = Explanation(problem, chosen, steps, bumps.best(chosen), bumps, refined=chosen)
@@ -109,16 +109,16 @@ def _selected(given: DiagnosisProblem, candidates: Sequence[Effect]) -> Explanat
 
 
 def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:
-    """The explanation with the effects that predict left-out sweeps.
+    """The explanation with effects chosen by prediction of left-out sweeps.
 
-    For a model that leaves smooth structure in any case: beside it evidence decides little.
+    For a model with smooth model error, next to which evidence can hardly decide between effects.
     """
     prediction = LeftOutPrediction(found.plain, inexact, found.independent)
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     tied = [rival for one in support.values() for rival in one.tied]
     best = min((chosen, *tied), key=lambda one: prediction.of(one).total)
-    if best is not chosen:  # to first order another one seemed better
+    if best is not chosen:  # the selection was to first order; a refitted rival predicts better
         chosen = best
         support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     found = replace(found.choosing(chosen), predicted=support)
@@ -126,7 +126,7 @@ def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexa
 
 
 def significant(found: Explanation, inexact: Inexactness) -> Explanation:
-    """The explanation without effects whose numbers vanish once the model's coefficients are estimated beside them."""
+    """The explanation without effects whose numbers are not significant once coefficients are estimated with them."""
     problem, refined = found.problem, found.refined
 
     def is_left(effect: Effect) -> bool:
@@ -143,6 +143,6 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
 
 
 def only_first(found: Explanation, inexact: Inexactness) -> Explanation:
-    """The explanation with nothing but the effect that explains most."""
+    """The explanation with only the effect that explains most."""
     chosen = found.problem.fit(found.steps[0].best.effects[:1])
     return replace(found.choosing(chosen), steps=found.steps[:2]).with_coefficients(inexact)

@@ -1,4 +1,4 @@
-"""An explanation of the readings, and how certain each of its effects is."""
+"""An explanation of the readings, and the certainty of each of its effects."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from mffit.rig import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """Effects, structure without a name, and the noise beside which they were found."""
+    """Effects, unnamed structure, and the noise assumed for them."""
 
-    problem: DiagnosisProblem  #: as it was judged: readings, model, and covariance with everything inexact
+    problem: DiagnosisProblem  #: readings, model, and covariance including inexact coefficients
     chosen: Hypothesis
     steps: list[ForwardStep]
     bump: Bump  #: best local structure in the residual
     bumps: BumpScan
-    refined: Hypothesis  #: the chosen effects, the coefficients of the model estimated beside them
+    refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Inexact coefficients as estimated: name -> (value, standard error)."""
+    """Estimates of the inexact coefficients: name -> (value, standard error)."""
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None
-    """Measured minus simulated (c n,) of the given model, if it was fitted to these points and is not at their noise."""
+    """Measured minus simulated (c n,) of the given model, if it was fitted to these points and its misfit exceeds the noise."""
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    """Share of a cause outside the library that an effect of it explains: of each effect, with itself taken out."""
+    """(n,) for each effect, the share of its misfit that the best other effect would explain, see :func:`imitations`."""
 
     @property
     def smooth(self) -> Smooth:
-        """Smooth structure beside the effects; part of the covariance if found."""
+        """Smooth structure found with the effects; part of the covariance if found."""
         return self.chosen.smooth
 
     @property
@@ -52,7 +52,7 @@ class Explanation:
 
     @property
     def independent(self) -> Noise:
-        """The scatter of the readings, without memory where structure is left: a model shall follow it as far as it can."""
+        """The scatter of the readings; without autocorrelation if structure remains, so that a model follows it if it can."""
         noise = self.scatter
         if not self.smooth.found and self.misfit is None:
             return noise
@@ -61,10 +61,10 @@ class Explanation:
 
     @property
     def plain(self) -> DiagnosisProblem:
-        """The problem in which coefficients are fitted rather than integrated out.
+        """The problem in which coefficients are fitted instead of integrated out.
 
-        Smooth structure is left out of its covariance: a model predicts best if it follows the readings as far as it can.
-        What a model leaves that was fitted to these points counts as noise, channel by channel, as it did in that fit.
+        Its covariance excludes smooth structure, because a model predicts best if it follows the readings closely. The residuals
+        of a model that was fitted to these points count as noise, channel by channel, as in that fit.
         """
         noise = self.independent
         if self.misfit is not None:
@@ -73,18 +73,18 @@ class Explanation:
 
     @property
     def without_run_offsets(self) -> Simulation:
-        """The simulation with its effects apart from offsets of runs, which compete anew with a memory of the errors."""
+        """The simulation with its effects except offsets of runs, which compete again with autocorrelated errors."""
         problem = self.problem
         names = [n for effect in self.chosen.effects if effect.differs_by_run for n in effect.parameters]
         given = {name: problem.start.number(name, problem.points) for name in names}
         return self.chosen.state.with_numbers(given)
 
     def choosing(self, chosen: Hypothesis) -> Explanation:
-        """The same with other effects, not yet refined."""
+        """The explanation with other effects, without estimated coefficients."""
         return replace(self, chosen=chosen, refined=chosen, bump=self.bumps.best(chosen))
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
-        """The same with some of its effects, fitted again by themselves."""
+        """The explanation with some of its effects only, refitted."""
         chosen = refitted(self.problem, self.chosen, effects)
         problem = self.problem.at_amplitude(chosen.smooth)
         if problem is self.problem:
@@ -93,28 +93,28 @@ class Explanation:
         return replace(self, problem=problem, bumps=bumps).choosing(refitted(problem, chosen, effects))
 
     def with_coefficients(self, inexact: Inexactness) -> Explanation:
-        """The same with the model's coefficients estimated beside the effects."""
+        """The explanation with the model's coefficients estimated together with the effects."""
         refined, coefficients = self.plain.refine(self.chosen, inexact)
         return replace(self, refined=refined, coefficients=coefficients)
 
     def withdrawn(self) -> Explanation:
-        """Nothing named, nothing repaired; what is without a name is what the effects would leave."""
+        """The explanation without effects and repair; the unnamed structure is still that found with the effects."""
         null = replace(self.problem.null, smooth=self.smooth)
         return replace(self, chosen=null, refined=null, coefficients={}, steps=self.steps[:1])
 
     def certainty(self, effect: Effect) -> float:
-        """Probability of an effect against its absence with the best structure without a name in its place.
+        """Probability of an effect against the best unnamed structure in its place.
 
-        It is lower the more of the misfit stays unexplained beside it.
+        It is lower the more of the misfit remains unexplained with the effect.
         """
         against, share = self._weighed(effect)
         return share / (1.0 + math.exp(-against))
 
     def confidence(self, effect: Effect) -> float:
-        """The certainty, less the probability that the effect imitates a cause outside the library.
+        """The certainty, reduced by the probability that the effect only imitates a cause outside the library.
 
-        There is such a cause if structure without a name was found. An effect that leaves much of the misfit to it is as
-        likely an imitation as the library's own effects are imitated by others, if they are taken out.
+        Unnamed structure shows that there is such a cause. The probability of imitation follows from a comparison: how well do
+        other effects imitate each effect of the library if that one is removed?
         """
         if effect.id in self.predicted:
             return self.predicted[effect.id].confidence
@@ -124,12 +124,12 @@ class Explanation:
         return acts / (1.0 + math.exp(-against))
 
     def _weighed(self, effect: Effect) -> tuple[float, float]:
-        """Log odds of an effect against structure in its place, and the share of the misfit that is not left unexplained."""
+        """Log odds of an effect against unnamed structure in its place, and the share of the misfit that the effect explains."""
         chosen = self.chosen
         without = refitted(self.problem, chosen, chosen.others(effect))
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
-        if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
+        if effect.id in self.problem.noise.offsets:  # autocorrelated errors are another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, chosen.alone - without.alone, 0.0)
@@ -137,7 +137,7 @@ class Explanation:
         return float(np.clip(against, -500.0, 500.0)), share
 
     def left(self, hypothesis: Hypothesis) -> float:
-        """Log evidence of the best bump beside a hypothesis; 0 without any."""
+        """Gain of log evidence by the best bump in addition to a hypothesis; at least 0."""
         problem, bumps = self.problem.at_amplitude(hypothesis.smooth), self.bumps
         if problem is not self.problem:
             hypothesis, bumps = (

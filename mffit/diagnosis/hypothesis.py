@@ -1,4 +1,4 @@
-"""A set of effects, fitted together and weighed."""
+"""A set of effects, fitted together, with its evidence."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ class Hypothesis:
     stderr: Mapping[str, float]
     chi2: float
     log_evidence: float
-    """Up to a constant that all hypotheses about the same data share; with smooth structure beside it, if that is allowed."""
+    """Up to a constant common to all hypotheses about the same data; includes smooth structure, if that is allowed."""
     state: Simulation
-    residual: np.ndarray  #: whitened, (m,)
-    jacobian: np.ndarray  #: whitened, per freed number (m, k)
-    smooth: Smooth = NO_SMOOTH  #: the likeliest structure beside it
-    alone: float = -math.inf  #: log evidence without structure
+    residual: np.ndarray  #: whitened residual (m,)
+    jacobian: np.ndarray  #: whitened derivatives (m, k) by the free numbers
+    smooth: Smooth = NO_SMOOTH  #: the most likely smooth structure in addition to the effects
+    alone: float = -math.inf  #: log evidence without smooth structure
 
     @property
     def ids(self) -> frozenset[str]:
-        """The set of effects, whatever their order."""
+        """The ids of the effects, without order."""
         return frozenset(effect.id for effect in self.effects)
 
     @property
     def axes(self) -> np.ndarray:
-        """Orthonormal directions (m, k) of the whitened readings that the fitted numbers can follow."""
+        """Orthonormal basis (m, k) of the changes of whitened readings that the fitted numbers can produce."""
         return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
 
     def apart(self, rival: Hypothesis) -> float:
@@ -45,23 +45,23 @@ class Hypothesis:
         return float(np.sum((self.residual - rival.residual) ** 2))
 
     def ahead(self, rival: Hypothesis) -> float:
-        """Log likelihood over that of a rival, each less half the logarithm of the number of readings per freed number (BIC).
+        """Log likelihood less that of a rival, with the penalty of BIC: half the log number of readings per free number.
 
-        Unlike the evidence it does not depend on how large effects usually are, or on what was declared.
+        Unlike the evidence it does not depend on priors, that is on usual sizes of effects and declarations.
         """
         more = len(rival.stderr) - len(self.stderr)
         return 0.5 * (rival.chi2 - self.chi2 + more * math.log(max(len(self.residual), 1)))
 
     def excludes(self, rival: Hypothesis, chance: float) -> bool:
-        """Whether the readings contradict a rival: it would fall so far behind with this probability if it were true.
+        """Whether the readings exclude a rival: if it were true, it would fall so far behind with at most this probability.
 
-        If the rival is true, twice its lead is normal about d with variance 4 d, d being the expected chi2 between the two.
+        If the rival is true, twice its lead is normal with mean d and variance 4 d, where d is the chi2 between the two.
         """
         d = self.apart(rival)
         return 2.0 * self.ahead(rival) + d > -2.0 * float(ndtri(chance)) * math.sqrt(d)
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
-        """All effects but one."""
+        """All effects except one."""
         return tuple(other for other in self.effects if other.id != effect.id)
 
     def numbers_of(self, effects: Sequence[Effect]) -> dict[str, float]:
@@ -71,5 +71,5 @@ class Hypothesis:
 
 
 def outside(axes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Whitened changes (m,) or (m, k) without their part along orthonormal axes."""
+    """Whitened changes (m,) or (m, k) less their projection on orthonormal axes."""
     return x - axes @ (axes.T @ x)

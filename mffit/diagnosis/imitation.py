@@ -1,4 +1,4 @@
-"""How well a library of effects imitates a cause that it lacks, judged by taking each of its own effects out in turn."""
+"""Imitation of causes outside the library: how well other effects explain each effect of the library if it is removed."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from mffit.effects import Effect
 
 
 def imitations(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> np.ndarray:
-    """Share (n,) of the misfit of each effect, as large as it usually is, that the best single other effect would explain.
+    """Share (n,) of each effect's change of the readings that the best single other effect would explain.
 
-    All in whitened readings at the given model, to first order. Effects without influence there are left out, and so are others
-    that are the same effect as far as these readings go: a cause that is imitated so well leaves nothing unexplained.
+    Computed in whitened readings at the given model, to first order. Effects without influence are left out, and so are rivals
+    that practically equal the effect: a cause imitated so well would leave nothing unexplained.
     """
     found = []
     for groups in problem.columns(problem.start, candidates).values():
@@ -33,10 +33,10 @@ def imitations(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> np.nd
 
 
 def is_no_imitation(share: float, imitated: np.ndarray) -> float:
-    """Probability that an effect which explains this share of the misfit acts, and does not imitate an unknown cause alone.
+    """Probability that an effect which explains this share of the misfit is real, and not only an imitation of an unknown cause.
 
-    That cause is certain. The rank of the share among those of imitations (n,) is a p-value, which bounds the Bayes factor
-    by -e p ln p (Sellke, Bayarri and Berger, The American Statistician 55, 2001).
+    The unknown cause is taken as certain. The rank of the share among those of imitations (n,) is a p-value, which bounds the
+    Bayes factor by -e p ln p (Sellke, Bayarri and Berger, The American Statistician 55, 2001).
     """
     p = (1.0 + float(np.sum(imitated >= share))) / (1.0 + len(imitated))
     bound = -math.e * p * math.log(p) if p < 1.0 / math.e else 1.0

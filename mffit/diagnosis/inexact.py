@@ -1,4 +1,4 @@
-"""How inexact the given model's coefficients are: numbers with a prior that are estimated beside the effects."""
+"""Uncertainty of the given model's coefficients: nuisance parameters with a prior, estimated together with the effects."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class Inexactness:
 
     names: tuple[str, ...]
     expected: np.ndarray  #: (k,) values in the file
-    root: np.ndarray  #: (k, k) the covariance is root root'
+    root: np.ndarray  #: (k, k); root @ root.T is the covariance
 
     def __bool__(self) -> bool:
         return bool(self.names)
 
     def columns(self, points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
-        """Changes of the readings (c n, k), one prior standard deviation each."""
+        """Changes of the readings (c n, k) by one prior standard deviation each."""
         return self._slopes(points, state, channels) @ self.root
 
     def moved(
         self, points: Points, state: Simulation, at: Simulation, channels: Iterable[str] = SIDEWAYS
     ) -> np.ndarray:
-        """Change of the readings (c n,) that moves the centre of the prior to the coefficients of ``at``.
+        """Change of the readings (c n,) if the coefficients move from the prior mean to those of ``at``.
 
-        ``state`` is the simulation at which :meth:`columns` are taken.
+        ``state`` is the simulation at which the derivatives are taken, as for :meth:`columns`.
         """
         away = np.array([at.number(name, points) for name in self.names]) - self.expected
         return self._slopes(points, state, channels) @ away
@@ -48,7 +48,7 @@ class Inexactness:
         return np.nan_to_num(state.sensitivities(points, self.names, channels)[1].stacked)
 
     def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
-        """The problem with this prior as additional residuals of its numbers from ``first`` on."""
+        """The problem with this prior as additional residuals of its numbers from index ``first`` on."""
         precision = np.linalg.pinv(self.root)
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -68,7 +68,7 @@ class Inexactness:
         return LeastSquaresProblem(residual, linear)
 
     def without(self, names: frozenset[str]) -> Inexactness:
-        """The prior of the other coefficients, integrated over these."""
+        """The marginal prior of the other coefficients."""
         kept = [k for k, name in enumerate(self.names) if name not in names]
         if len(kept) == len(self.names):
             return self
@@ -80,7 +80,7 @@ EXACT = Inexactness((), np.empty(0), np.empty((0, 0)))
 
 
 def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
-    """Independent relative errors of every nonzero P.Y. and Q.Z. coefficient of a file."""
+    """A prior with independent relative errors of every nonzero lateral and aligning coefficient of a file."""
     if u_coefficients <= 0.0:
         return EXACT
     names = [row.name for row in TABLE if row.normal_mode and float(tyre[row.name])]
@@ -102,9 +102,9 @@ def with_zeros(
 
 
 def refitted(tyre: Tyre, *, curved: bool, stated: Mapping[str, float] | None = None) -> Inexactness:
-    """The coefficients that a build fitted, with the scatter of similar tyres as prior, or the ``stated`` one.
+    """The coefficients that a build fitted, with the scatter of similar tyres or the ``stated`` one as prior.
 
-    For points that the build used already: they hold everything else that is known of these coefficients.
+    For points that the build already used: the posterior of the build would count them twice.
     """
     fitted = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
     spread = {n: scatter(n, float(tyre[n]), from_base=True, curved=curved) for n in fitted}

@@ -1,4 +1,4 @@
-"""The scatter of the readings, learned beside everything that could explain their misfit."""
+"""The scatter of the readings, estimated while everything that could explain their misfit is free."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ def learned_noise(
     *,
     without_offsets: bool = False,
 ) -> Noise:
-    """The noise with the scatter that stays when every candidate, coefficient and structure may explain the misfit.
+    """The noise with the scatter that remains if all candidates, coefficients and structure may explain the misfit.
 
-    The search starts at the noise ``before``, as found in the last round. ``without_offsets``: no run is offset.
+    The search starts at the noise ``before`` of the last round. ``without_offsets``: runs have no offsets.
     """
     problem = DiagnosisProblem(points, state, stated.alone())
     predicted = np.nan_to_num(problem.predict(state))
     residual = problem.measured - predicted
     nothing = np.zeros((len(predicted), 0))
-    # The slope of each effect, and the first finite step of a number without slope at zero.
+    # The derivative by each effect, and its first finite step for numbers whose derivative vanishes at zero.
     columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
     runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
@@ -50,9 +50,9 @@ def learned_noise(
 
 
 def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
-    """The candidates without offsets of runs that errors with a memory explain as well.
+    """The candidates without offsets of runs that autocorrelated errors explain as well.
 
-    Offsets that exceed the memory get the spread that was found with the memory beside them.
+    Offsets that are significant beyond the autocorrelation get the size that was estimated together with it as spread.
     """
     kept = []
     for effect in candidates:
@@ -66,7 +66,7 @@ def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
 
 
 def settled(before: Noise, after: Noise) -> bool:
-    """Whether the scatter changed so little that the effects need not be judged again."""
+    """Whether the scatter changed so little that effects need not be selected again."""
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
     memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in after.channels]

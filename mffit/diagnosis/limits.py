@@ -1,4 +1,4 @@
-"""How large each effect that was not named can be without contradicting the readings."""
+"""Upper limits of the sizes of effects that were not named."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Limit:
     """The largest size of an effect that agrees with the readings."""
 
     effect: Effect
-    share: float  #: over its usual size (1 sigma); rms over its numbers if it has several
+    share: float  #: largest size over the usual size (1 sigma); rms over its numbers if it has several
 
     @property
     def ruled_out(self) -> bool:
@@ -30,7 +30,7 @@ class Limit:
 def limits(
     problem: DiagnosisProblem, chosen: Hypothesis, candidates: Sequence[Effect], known: Collection[str]
 ) -> tuple[Limit, ...]:
-    """The limits of all candidates but those named or tied (``known`` ids), to first order beside the chosen effects."""
+    """The limits of all candidates except named and tied ones (``known`` ids), to first order, given the chosen effects."""
     axes, out = chosen.axes, []
     others = [e for e in candidates if e.id not in known and not e.switches]
     for effect, groups in problem.columns(chosen.state, others).items():
@@ -40,6 +40,6 @@ def limits(
             covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
             found = np.abs(covariance @ (white.T @ chosen.residual))
             sizes.append(rms(found + constants.TWO_SIGMA * np.sqrt(np.diag(covariance))))
-        # Of an effect that is even in its number, the start at which it is most visible counts.
+        # An effect that is even in its number is tested from several starts; the most sensitive one counts.
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -1,4 +1,4 @@
-"""Which effects the data can show."""
+"""The effects that the data can reveal."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mffit.points import Points, levels
 from mffit.rig import Simulation, distance_km, sense
 
 HELD_AT = "T_ref_degC"
-"""The number of an effect of temperature that says at which temperature the model holds."""
+"""The number of a temperature effect that is the model's reference temperature."""
 
 
 def _spread(x: np.ndarray) -> float:
@@ -29,7 +29,7 @@ def _varies(x: np.ndarray, kind: levels.LevelKind) -> bool:
 
 
 def _coupled(points: Points) -> np.ndarray:
-    """Mask (n,) of points with camber and sideslip together."""
+    """Mask (n,) of points with both camber and sideslip."""
     leaned, steered = (np.abs(x) > kind.tolerance for x, kind in _angles(points))
     return leaned & steered
 
@@ -82,12 +82,15 @@ def missing(effect: Effect, points: Points) -> tuple[str, ...]:
 
 
 def without(effect: Effect, name: str) -> Effect:
-    """The effect with one of its numbers as the model has it."""
+    """The effect with one of its numbers held at the model's value."""
     return replace(effect, free=tuple(free for free in effect.free if free.name != name))
 
 
 def _in_range(effect: Effect, points: Points) -> Effect:
-    """The effect with a model that holds at a temperature of the data: further away, temperature is a change of the tyre."""
+    """The effect with the reference temperature bounded to the range of the data.
+
+    A reference far outside would turn a temperature effect into a constant change of the tyre.
+    """
     if HELD_AT not in effect.parameters:
         return effect
     T = points.T[np.isfinite(points.T)]
@@ -101,7 +104,7 @@ def _in_range(effect: Effect, points: Points) -> Effect:
 def possible(
     effects: Sequence[Effect], points: Points, start: Simulation
 ) -> tuple[list[Effect], list[NotVisible]]:
-    """Effects that the data can show, and notes on the others; none on effects of a channel that was not measured."""
+    """Effects that the data can reveal, and notes on the others except those of channels that were not measured."""
     out: list[Effect] = []
     lacking: dict[tuple[str, ...], list[Effect]] = {}
     files = sorted({points.files[k] for k in np.unique(points.file)})

@@ -1,4 +1,4 @@
-"""The covariance that residuals are judged by: noise of the readings, and changes that several readings share."""
+"""The covariance of residuals: noise of the readings, and changes that several readings share."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from mffit.scatter import finite_median, rms
 
 
 class Origin(Enum):
-    """Where the uncertainties of the readings come from, in words."""
+    """Origin of the uncertainties of the readings, in words."""
 
     STATED = "stated uncertainties"
     SCATTER = "scatter between neighbouring points"
 
 
 class MemorySpan(Enum):
-    """What errors with a memory run through before they begin anew."""
+    """The unit along which autocorrelated errors continue before they start independently."""
 
     SWEEP = "sweep"
     FILE = "file"
@@ -32,54 +32,54 @@ class MemorySpan(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Scatter:
-    """How the readings of one channel scatter, relative to their stated uncertainties."""
+    """Scatter of the readings of one channel, relative to their stated uncertainties."""
 
     scale: float = 1.0  #: uncertainty over the stated one
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
-    memory: float = 0.0  #: correlation from one point to the next along a chain, of the part that has one
-    independent: float = 0.0  #: share of the variance without memory, beside a part with one
-    tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
+    memory: float = 0.0  #: correlation of neighbours in a chain, of the autocorrelated part
+    independent: float = 0.0  #: independent share of the variance, next to an autocorrelated part
+    tails: float = np.inf  #: degrees of freedom of Student's t; infinite for normal scatter
     beyond_weights: float = 1.0
-    """Standard error of what the readings determine, over that which the weights of outliers state."""
-    span: MemorySpan = MemorySpan.SWEEP  #: the chains along which errors have their memory
+    """Standard error of an estimate from weighted readings over the standard error that the weights alone suggest."""
+    span: MemorySpan = MemorySpan.SWEEP  #: the chains along which errors are autocorrelated
     without_noise: bool = (
-        False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
+        False  #: whether readings hardly scatter, like those of a simulation; the noise is then assumed
     )
 
 
 class RunOffsets(NamedTuple):
-    """Offsets of whole runs, as the likelihood of the scatter sees them beside errors with a memory."""
+    """Offsets of whole runs, compared with autocorrelated errors alone."""
 
-    log_odds: float  #: logarithm of the odds against the memory alone that the readings give
+    log_odds: float  #: log Bayes factor of the offsets over autocorrelation alone
     needed: (
-        float  #: the same that are needed: the prior odds of any such offsets are shared among their kinds
+        float  #: required log Bayes factor: prior odds against offsets, which are divided among their kinds
     )
-    size: float  #: over the usual one
-    channels: frozenset[str]  #: with a memory, in which the offsets appear
+    size: float  #: estimated size over the usual one
+    channels: frozenset[str]  #: autocorrelated channels in which the offsets appear
 
     @property
     def beyond(self) -> float:
-        """Logarithm of the odds for these offsets after the readings, negative if a memory alone is likelier."""
+        """Log posterior odds of the offsets; negative if autocorrelation alone is more likely."""
         return self.log_odds - self.needed
 
 
 class SharedDirections(NamedTuple):
     """Orthonormal directions along which some whitened readings change together."""
 
-    rows: slice  #: of the readings
-    axes: np.ndarray  #: (m, k)
-    variance: np.ndarray  #: (k,) of the changes; a whitened reading has 1
+    rows: slice  #: rows of the readings
+    axes: np.ndarray  #: (m, k) the directions
+    variance: np.ndarray  #: (k,) variances of the changes; a whitened reading has variance 1
 
     def less(self, z: np.ndarray) -> np.ndarray:
-        """Differences (m,) or (m, j) in units of their uncertainty with these changes; a symmetric operation."""
+        """Differences (m,) or (m, j), whitened for these shared changes by a symmetric matrix."""
         return self._along(z, 1.0 / np.sqrt(1.0 + self.variance) - 1.0)
 
     def more(self, z: np.ndarray) -> np.ndarray:
-        """The inverse."""
+        """The inverse of :meth:`less`."""
         return self._along(z, np.sqrt(1.0 + self.variance) - 1.0)
 
     def power(self, along: np.ndarray) -> np.ndarray:
-        """By how much the sum of squares (j,) of differences falls, from their parts (k, j) along the directions."""
+        """Decrease of the sums of squares (j,) by :meth:`less`, from the projections (k, j) on the directions."""
         return (self.variance / (1.0 + self.variance)) @ along**2
 
     def _along(self, z: np.ndarray, gain: np.ndarray) -> np.ndarray:
@@ -88,30 +88,30 @@ class SharedDirections(NamedTuple):
 
 @dataclass(frozen=True)
 class Noise:
-    """Covariance of the readings, and the whitening that goes with it.
+    """Covariance of the readings, and the corresponding whitening.
 
-    The readings (c n,) are those of n points in c channels, one channel after the other. Their covariance is D M D + S S':
-    independent uncertainties D; M with ``memory`` to the power of the distance along each chain, times 1 less the
-    ``independent`` share; and columns S of changes that several readings share, one standard deviation each. Smooth
+    The readings (c n,) are those of n points in c channels, channel by channel. Their covariance is D M D + S S'. D are the
+    standard uncertainties. M is the correlation along chains: ``memory`` to the power of the distance, times 1 less the
+    ``independent`` share. The columns S are changes that several readings share, one standard deviation each. Smooth
     ``structure`` of single channels is added along directions of the readings that D and M have whitened.
     """
 
     u: np.ndarray  #: (c n,) standard uncertainty of every reading; inf where missing
-    stated: np.ndarray  #: (c n,) the same as stated
-    chain: np.ndarray  #: (c n,) number of the sweep and channel along which errors may be correlated
+    stated: np.ndarray  #: (c n,) stated standard uncertainty; inf where missing
+    chain: np.ndarray  #: (c n,) index of the sweep and channel along which errors may be correlated
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(SIDEWAYS, Scatter()))
     """By channel, in the order of the readings."""
     longer: Mapping[MemorySpan, np.ndarray] = field(default_factory=dict)
-    """Longer chains than sweeps that are possible, (c n,) each."""
+    """Possible chains longer than sweeps, (c n,) each."""
     turn: np.ndarray | None = (
-        None  #: (c n,) place of every reading in time among those of its channel; None if no chain is longer
+        None  #: (c n,) rank in time of every reading within its channel; None without longer chains
     )
-    weight: np.ndarray | None = None  #: (c n,) of each reading, below 1 for outliers; None: all 1
+    weight: np.ndarray | None = None  #: (c n,) weight of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
     structure: tuple[SharedDirections, ...] = ()
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
-    """By id of the effect: offsets of runs that errors with a memory look like; empty without a memory."""
+    """By id of the effect, offsets of runs that compete with autocorrelated errors; empty without autocorrelation."""
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -120,11 +120,11 @@ class Noise:
 
     @property
     def offset(self) -> frozenset[str]:
-        """Ids of the effects that offset runs beyond what errors with a memory explain."""
+        """Ids of the offsets of runs that are significant beyond autocorrelated errors."""
         return frozenset(effect for effect, found in self.offsets.items() if found.beyond > 0.0)
 
     def of_channel(self, readings: np.ndarray, channel: str) -> np.ndarray:
-        """The part (n,) of readings (c n,) that belongs to a channel."""
+        """The readings (n,) of one channel, out of (c n,)."""
         part: np.ndarray = np.split(readings, len(self.channels))[self.channels.index(channel)]
         return part
 
@@ -133,11 +133,11 @@ class Noise:
         return dict(zip(self.channels, np.split(readings, len(self.channels)), strict=True))
 
     def typical(self, channel: str) -> float:
-        """Typical noise of a channel; NaN if it was not measured."""
+        """Typical standard uncertainty of a channel; NaN if it was not measured."""
         return finite_median(self.of_channel(self.u, channel))
 
     def typically_stated(self, channel: str) -> float:
-        """Typical uncertainty of a channel as stated."""
+        """Typical stated standard uncertainty of a channel."""
         return finite_median(self.of_channel(self.stated, channel))
 
     @cached_property
@@ -153,7 +153,7 @@ class Noise:
 
     @cached_property
     def _errors(self) -> list[tuple[np.ndarray, ChainedErrors]]:
-        """Positions among the used readings of every channel whose errors have a memory, and these errors."""
+        """For every channel, the positions among the used readings and their autocorrelated errors."""
         channel, out = self.used // (len(self.u) // len(self.channels)), []
         for k, found in enumerate(self.scatter.values()):
             own = np.flatnonzero(channel == k)
@@ -167,7 +167,7 @@ class Noise:
 
     @cached_property
     def _directions(self) -> SharedDirections:
-        """Of the shared changes, beside the structure."""
+        """Directions of the shared changes, after whitening for the structure."""
         if self.shared is None or not self.shared.shape[1]:
             return SharedDirections(slice(None), np.empty((len(self.used), 0)), np.empty(0))
         white = self._less_structure(self._independent(self.shared[self.used]))
@@ -177,7 +177,7 @@ class Noise:
         return SharedDirections(slice(None), axes, variance[some])
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
-        """Differences of used readings (m,) or (m, k), whitened without shared changes and structure."""
+        """Differences of used readings (m,) or (m, k), whitened for D and M only."""
         out: np.ndarray = (x.T / self.u[self.used]).T
         for own, errors in self._errors:
             if not errors.trivial:
@@ -185,31 +185,31 @@ class Noise:
         return out
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
-        """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
+        """Whitened differences (m,) or (m, k) of the used readings, from readings (c n,) or (c n, k)."""
         return self._directions.less(self._less_structure(self._independent(x[self.used])))
 
     def _less_structure(self, z: np.ndarray) -> np.ndarray:
-        """Whitened differences (m,) or (m, k) of which smooth structure explains a part, in units of the joint uncertainty."""
+        """Whitened differences (m,) or (m, k), whitened for smooth structure too."""
         out = z.copy() if self.structure else z
         for one in self.structure:
             out[one.rows] = one.less(z[one.rows])
         return out
 
     def unshared(self, x: np.ndarray) -> np.ndarray:
-        """The inverse of what shared changes and structure do to whitened differences (m,) or (m, k)."""
+        """Inverse of the whitening for structure and shared changes, applied to differences (m,) or (m, k)."""
         out = self._directions.more(x)
         for one in self.structure:
             out[one.rows] = one.more(out[one.rows])
         return out
 
     def back(self, x: np.ndarray) -> np.ndarray:
-        """The transposed of what shared changes and structure do to whitened differences (m,) or (m, k)."""
+        """Transpose of the whitening for structure and shared changes, applied to differences (m,) or (m, k)."""
         return self._less_structure(self._directions.less(x))
 
     def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """By how much the sum of squares (k,) of whitened differences (m, k) falls with shared changes and structure.
+        """Decrease of the sums of squares (k,) of whitened differences by the whitening for shared changes and structure.
 
-        Only the given ``rows`` of the differences, all in one channel, are not 0, and ``z`` has only these.
+        ``z`` has only the given ``rows`` of the differences, all in one channel; all other rows are 0.
         """
         fall = self._directions.power(self._directions_back[rows].T @ z)
         for one in self.structure:
@@ -219,7 +219,7 @@ class Noise:
 
     @cached_property
     def _directions_back(self) -> np.ndarray:
-        """Directions of shared changes beside structure, as sums over differences without it."""
+        """Directions of shared changes, multiplied by the transposed whitening for structure."""
         return self._less_structure(self._directions.axes)
 
     def only(self, channel: str) -> Noise:
@@ -238,7 +238,7 @@ class Noise:
         )
 
     def error_of_sum(self, rows: np.ndarray) -> float:
-        """Standard error of the sum of some used readings, by their position among the used ones."""
+        """Standard error of the sum of some used readings, given by their positions among the used ones."""
         chosen = np.zeros(len(self.used))
         chosen[rows] = 1.0
         chosen *= self.u[self.used]
@@ -259,7 +259,7 @@ class Noise:
         return replace(self, u=u, weight=weight, scatter=scatter)
 
     def at_least(self, misfit: np.ndarray) -> Noise:
-        """The noise, in every channel so large that a misfit (c n,) has at most its variance on average."""
+        """The noise, enlarged in every channel to at least the rms of a misfit (c n,)."""
         z = np.zeros(len(self.u))
         z[self.used] = misfit[self.used] / self.u[self.used]
         factors, scatter = [], dict(self.scatter)
@@ -276,6 +276,6 @@ class Noise:
         return replace(self, shared=None, structure=())
 
     def sharing(self, *columns: np.ndarray) -> Noise:
-        """The same scatter with these shared changes (c n, k), and no others."""
+        """The noise with these shared changes (c n, k) only, and without structure."""
         given = [c for c in columns if c.size]
         return replace(self, shared=np.column_stack(given) if given else None, structure=())

@@ -1,4 +1,4 @@
-"""Remarks of a diagnosis beside its findings: their facts, and the sentence that each of them is."""
+"""Remarks of a diagnosis in addition to its findings: facts and sentence of each."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class DiagnosisNote(Protocol):
 
     @property
     def sentence(self) -> str:
-        """It in words."""
+        """The remark in words."""
 
 
 def short(value: float) -> str:
-    """Three digits, but never a power of ten."""
+    """A number with three digits, without exponent for large numbers."""
     return f"{value:.3g}" if abs(value) < 999.5 else f"{value:.0f}"
 
 
@@ -35,7 +35,7 @@ def _with_u(value: float, u: float) -> str:
 
 
 def held_out(before: Gap, after: Gap) -> str:
-    """By how much every channel misses on left-out sweeps, in words."""
+    """The rms errors of every channel on left-out sweeps, before and after, in words."""
     return listed(
         [
             f"the {CHANNELS[name].word} misses by {short(rmse)} {CHANNELS[name].unit} instead of {short(before.rms(name))} "
@@ -55,7 +55,7 @@ class OneSweep:
 
 @dataclass(frozen=True, slots=True)
 class AnotherTyre:
-    """The model states other dimensions or nominal conditions than the configuration."""
+    """The model has other dimensions or nominal conditions than the configuration."""
 
     differences: tuple[
         tuple[str, float, float], ...
@@ -83,7 +83,7 @@ class AnotherTyre:
 
 @dataclass(frozen=True, slots=True)
 class TakenOff:
-    """An error of the rig that was taken off the readings before effects were looked for."""
+    """A rig error that was subtracted from the readings before the search for effects."""
 
     said: str
 
@@ -94,9 +94,9 @@ class TakenOff:
 
 @dataclass(frozen=True, slots=True)
 class WithoutNoise:
-    """The readings of some channels hardly scatter, as those of a simulation."""
+    """The readings of some channels hardly scatter, like those of a simulation."""
 
-    assumed: tuple[tuple[str, float], ...]  #: channel, and the noise that is assumed [N], [Nm]
+    assumed: tuple[tuple[str, float], ...]  #: channel, and its assumed noise [N], [Nm]
 
     @property
     def sentence(self) -> str:
@@ -110,12 +110,12 @@ class WithoutNoise:
 
 @dataclass(frozen=True, slots=True)
 class NoiseBeyondStated:
-    """The readings of a channel scatter far more than stated, which hides misfit that nothing explains."""
+    """The readings of a channel scatter far more than stated, and no effect explains it."""
 
     channel: str
-    noise: float  #: typical, [N] or [Nm]
-    stated: float  #: the same as stated
-    sweep: str = ""  #: the sweep that is off much further than all others, if any
+    noise: float  #: typical noise [N] or [Nm]
+    stated: float  #: typical stated noise [N] or [Nm]
+    sweep: str = ""  #: the sweep with far larger residuals than all others, if any
 
     @property
     def sentence(self) -> str:
@@ -129,11 +129,11 @@ class NoiseBeyondStated:
 
 @dataclass(frozen=True, slots=True)
 class OffsetsOrMemory:
-    """Errors of a channel that are correlated along sweeps may be offsets of runs; these data cannot separate them."""
+    """Autocorrelated errors of a channel may be offsets of runs; these data cannot separate the two."""
 
     channel: str
     memory: float  #: correlation from one point to the next
-    noise: float  #: typical, [N] or [Nm]
+    noise: float  #: typical noise [N] or [Nm]
     effects: tuple[Effect, ...]  #: offsets of runs that are as likely
 
     @property
@@ -147,9 +147,9 @@ class OffsetsOrMemory:
 
 @dataclass(frozen=True, slots=True)
 class NotVisible:
-    """Effects that the data cannot show."""
+    """Effects that the data cannot reveal."""
 
-    needs: tuple[str, ...]  #: what the data lack, keys of ``mffit.effects.NEEDS``
+    needs: tuple[str, ...]  #: missing properties of the data, keys of ``mffit.effects.NEEDS``
     effects: tuple[Effect, ...]
 
     @property
@@ -160,10 +160,10 @@ class NotVisible:
 
 @dataclass(frozen=True, slots=True)
 class HardlyThisTyre:
-    """The model is so wrong even with the best effects that naming one would be a guess."""
+    """Even with the best effects the model is so wrong that naming one would be a guess."""
 
-    misfit: float  #: in units of the noise
-    channel: str  #: "Fy" | "Mz", whichever fits better
+    misfit: float  #: misfit in units of the noise
+    channel: str  #: the channel that fits best
 
     @property
     def sentence(self) -> str:
@@ -175,7 +175,7 @@ class HardlyThisTyre:
 
 @dataclass(frozen=True, slots=True)
 class NoRepair:
-    """The best explanation raises the gap on left-out sweeps and is not written."""
+    """The best explanation increases the gap on left-out sweeps, so no repair is written."""
 
     effects: tuple[str, ...]  #: their names
     validation: Validation
@@ -191,9 +191,9 @@ class NoRepair:
 
 @dataclass(frozen=True, slots=True)
 class FileKept:
-    """The corrected property file without its rig and environment terms is worse than the given one, which is kept."""
+    """The given property file is kept, because the corrected one is worse without its rig and environment terms."""
 
-    terms: tuple[str, ...]  #: names of the effects that no file contains
+    terms: tuple[str, ...]  #: names of the effects that a property file cannot contain
     validation: Validation
 
     @property
@@ -208,7 +208,7 @@ class FileKept:
 
 @dataclass(frozen=True, slots=True)
 class ModelOfLastBuild:
-    """The model is a file of the last build, other than the one with the plain name."""
+    """The model is a file of the last build, but not the one with the plain name."""
 
     file: str
 
@@ -233,7 +233,7 @@ class ModelFittedFirst:
 
 @dataclass(frozen=True, slots=True)
 class DirectMethodRedone:
-    """eps_gamma with and without the rig's faults in the readings; None where it could not be measured."""
+    """eps_gamma before and after the rig's faults were removed from the readings; None if it could not be measured."""
 
     causes: tuple[str, ...]  #: names of the faults
     before: Quantity | None

@@ -1,4 +1,4 @@
-"""Effects judged by how well they predict left-out sweeps, for a model whose formulae cannot follow the points."""
+"""Selection of effects by prediction of left-out sweeps, for a model with smooth model error."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from mffit.left_out import Predicted, left_out_errors, needed_fall, predicted
 
 
 class LeftOutPrediction:
-    """Left-out sweeps predicted to first order, every number estimated again without them.
+    """Prediction of left-out sweeps to first order, with every number re-estimated without them.
 
-    ``problem`` has the weights of the readings, ``noise`` their scatter alone if it differs.
+    ``problem`` supplies the weights of the readings, ``noise`` their pure scatter if it differs.
     """
 
     def __init__(self, problem: DiagnosisProblem, inexact: Inexactness, noise: Noise | None = None) -> None:
@@ -36,16 +36,16 @@ class LeftOutPrediction:
         self.joint = problem.seen_through(problem.noise.sharing(columns))
 
     def of(self, hypothesis: Hypothesis, *more: np.ndarray) -> Predicted:
-        """The prediction with the numbers of a hypothesis free, and more changes of the readings (c n, k)."""
+        """The prediction with the numbers of a hypothesis free, and with further columns of changes (c n, k)."""
         C, r = self._whitened(hypothesis)
         if more:
             C = np.column_stack([C, self.problem.noise.whiten(np.column_stack(more))])
-        C = np.asfortranarray(C)  # readings of a sweep are taken out of every column
+        C = np.asfortranarray(C)  # left_out_errors selects rows of every column
         error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
         return predicted(error, self.sweep, self.channel, channels=len(self.problem.channels))
 
     def _whitened(self, hypothesis: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
-        """Changes (m, k) by the numbers of a hypothesis and its residual (m,), kept for the next question about it."""
+        """Whitened changes (m, k) by the numbers of a hypothesis, and its residual (m,); the last ones are cached."""
         if self._asked is None or self._asked[0] is not hypothesis:
             problem, state = self.problem, hypothesis.state
             columns = [self.inexact.columns(problem.points, state, problem.channels)]
@@ -54,18 +54,18 @@ class LeftOutPrediction:
         return self._asked[1:]
 
     def beyond_noise(self, predicted: Predicted) -> np.ndarray:
-        """Misfit (c,) that the noise does not explain, by channel."""
+        """By channel, misfit (c,) beyond the noise."""
         return np.maximum(predicted.chi2.sum(axis=0) - self.of_noise, 0.0)
 
     def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
-        """The hypothesis less one of its effects, fitted again."""
+        """The hypothesis without one of its effects, refitted."""
         return refitted(self.joint, chosen, chosen.others(effect))
 
 
 def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:
-    """Forward steps: add the effect that predicts left-out sweeps best, while they improve beyond chance.
+    """The effects found by forward selection: each step adds the one that predicts left-out sweeps best, if significantly.
 
-    An effect that predicts a channel clearly worse is never added. One that a later effect makes needless is dropped for good.
+    An effect that predicts a channel clearly worse is never added. An effect that a later one makes superfluous is dropped.
     """
     current, left = prediction.problem.null, list(candidates)
     needed = needed_fall(len(candidates))
@@ -87,10 +87,10 @@ def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Eff
 def _best_addition(
     prediction: LeftOutPrediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
 ) -> Effect | None:
-    """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance.
+    """The candidate that reduces the misfit of left-out sweeps most, if substantially and significantly; None without any.
 
-    A channel counts as predicted worse only from a loss as large as a gain must be: coefficients that are estimated beside an
-    effect of one channel change the others a little, and of some hundred sweeps all by the same amount.
+    A channel counts as predicted worse only if its loss is as large as a gain must be: an effect of one channel changes the
+    estimated coefficients, and with them the other channels, slightly but in all sweeps alike, which would be significant.
     """
     before = prediction.of(current)
     enough = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before)
@@ -106,21 +106,21 @@ def _best_addition(
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """The support that left-out sweeps give an effect that was chosen by them."""
+    """Support of an effect by left-out sweeps."""
 
     confidence: (
-        float  #: share of their misfit beyond the noise that it removes, in the channel where it removes most
+        float  #: share of the misfit beyond the noise that it removes, in the channel where it removes most
     )
-    tied: tuple[Hypothesis, ...]  #: with another effect in its place, no worse beyond chance
+    tied: tuple[Hypothesis, ...]  #: with another effect in its place, not significantly worse
 
 
 def judged(
     prediction: LeftOutPrediction, chosen: Hypothesis, effect: Effect, rivals: Sequence[Effect]
 ) -> Judged:
-    """Compare a chosen effect with its absence and with others in its place.
+    """The support of a chosen effect, from a comparison with its absence and with rivals in its place.
 
-    What is left in one channel says nothing against an effect that explains another: every channel has formulae of its own.
-    So a rival must be no worse in the channel that the effect explains most, too.
+    Every channel has its own formulae, so misfit in one channel is no evidence against an effect on another. A rival is tied only
+    if it is not significantly worse both in total and in the channel that the effect explains most.
     """
     without, present = prediction.without(chosen, effect), prediction.of(chosen)
     removed = np.maximum(np.sum(prediction.of(without).chi2 - present.chi2, axis=0), 0.0)

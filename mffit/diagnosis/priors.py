@@ -1,4 +1,4 @@
-"""What is known of the numbers of an effect beforehand: scale, prior, starting values, and the rig owner's declaration."""
+"""Prior knowledge of the numbers of an effect: scale, prior, starting values, and the declaration of the rig."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SWITCH = "turn_slip"
 
 
 def moving(effects: Sequence[Effect]) -> list[Free]:
-    """The numbers that effects free, each once with the prior of the first effect that frees it; a switch is none."""
+    """The numbers that effects free, each once with the prior of the first effect that frees it; without switches."""
     found: dict[str, Free] = {}
     for effect in effects:
         for free in effect.free:
@@ -40,12 +40,12 @@ def anchor(free: Free, start: Simulation, points: Points) -> tuple[float, float]
     current = start.number(free.name, points)
     if not free.relative:
         return current, 1.0
-    # A coefficient that the model has at zero gives no scale; the width of its usual range does.
+    # A coefficient that is zero in the model has no scale of its own; the width of its usual range supplies one.
     return current, abs(current) or constants.ZERO_COEFFICIENT_SCALE * COEFFICIENTS[free.name].width
 
 
 def number(free: Free, at: Mapping[str, float], start: Simulation, points: Points) -> FreeNumber:
-    """A number with its prior around the current value, starting from ``at`` if that holds it."""
+    """A free number with its prior around the current value, starting at its value in ``at`` if present."""
     current, unit = anchor(free, start, points)
     return FreeNumber(
         name=free.name,
@@ -60,7 +60,7 @@ def number(free: Free, at: Mapping[str, float], start: Simulation, points: Point
 def starts(
     effect: Effect, at: Mapping[str, float], start: Simulation, points: Points
 ) -> list[dict[str, float]]:
-    """Starting values of a fit: those known already, and those of every step of the effect's scan."""
+    """Starting values of a fit, one set per step of the effect's scan; values in ``at`` are kept."""
     trials = []
     for k in range(max(len(free.scan) for free in effect.free)):
         trial = dict(at)
@@ -74,7 +74,7 @@ def starts(
 
 
 def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, tuple[float, float]]) -> float:
-    """Log prior of a rig error against its declaration; never positive, as the spread is paid for already."""
+    """Change of a rig error's log prior by its declaration; never positive, so a declaration never favours an effect."""
     if known.name not in declared:
         return 0.0
     expected, u = declared[known.name]
@@ -87,7 +87,7 @@ def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, t
 def declared_priors(
     config: Config, points: Points, start: Simulation, channels: Collection[str] = SIDEWAYS
 ) -> dict[str, tuple[float, float]]:
-    """Declared rig errors that show in some channels: name -> (value in the simulation, standard uncertainty)."""
+    """Declared rig errors that act on these channels: name -> (value in the simulation, standard uncertainty)."""
     declared = declared_rig(config.rig, _cornering_stiffness(points, start))
     if not np.any(points.phi_t):
         declared.pop("path_radius_m", None)
@@ -105,14 +105,14 @@ def declared_priors(
 
 
 def zeros_of_setups(points: Points, channels: Collection[str] = SIDEWAYS) -> list[str]:
-    """Numbers of the zeros of every set-up, if there are several: they differ in any case, as far as is declared."""
+    """Names of the zeros of every set-up, if there are several; they always differ, within their declared uncertainty."""
     setups = points.used_setups
     zeros = [error.name for error in ZEROS if error.shows_in(channels)]
     return [number_of(name, setup) for name in zeros for setup in setups] if len(setups) > 1 else []
 
 
 def _cornering_stiffness(points: Points, start: Simulation) -> float:
-    """Cornering stiffness of the model at the median load and zero angles [N/rad]."""
+    """Cornering stiffness [N/rad] of the model at the median load and zero angles."""
     middle = points.select(np.array([np.argmin(np.abs(points.Fz - np.median(points.Fz)))]))
     _, slope = start.sensitivities(middle.replace(alpha=0.0, gamma=0.0), ["alpha_0_deg"])
     return float(np.degrees(slope.Fy[0, 0]))

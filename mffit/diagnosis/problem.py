@@ -1,4 +1,4 @@
-"""The data, their noise and the model to start from; fits hypotheses and weighs their evidence."""
+"""The data, their noise and the given model; fits hypotheses and computes their evidence."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ from mffit.rig import Simulation
 from tir.parameters import BY_NAME as COEFFICIENTS
 
 STEEPEST = 1e5
-"""Change of all readings by a usual change of a number, over their noise, beyond which sums of squares lose all else."""
+"""Upper limit of the norm of a scaled column in units of the noise, so that it does not swamp sums of squares."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearisedNumbers:
-    """Readings as linear functions of all numbers that an explanation frees."""
+    """Readings as linear functions of all free numbers of an explanation."""
 
     names: tuple[str, ...]  #: (k,)
-    slopes: np.ndarray  #: (c n, k) of the readings
-    white: np.ndarray  #: (m, k) the same in units of the joint uncertainty
-    residual: np.ndarray  #: (m,) simulated less measured in these units
-    information: np.ndarray  #: (k, k) of readings and priors
-    gradient: np.ndarray  #: (k,) zero at the solution
+    slopes: np.ndarray  #: (c n, k) derivatives of the readings
+    white: np.ndarray  #: (m, k) whitened derivatives
+    residual: np.ndarray  #: (m,) whitened residual, simulated less measured
+    information: np.ndarray  #: (k, k) information matrix of readings and priors
+    gradient: np.ndarray  #: (k,) half the gradient of the sum of squares, zero at the solution
 
     def moved_without(self, rows: np.ndarray) -> np.ndarray:
-        """Change (k,) of the numbers when some readings, by their positions among the used ones, are left out."""
+        """Change (k,) of the numbers if some readings, given by positions among the used ones, are left out."""
         return moved_without(self.white[rows], self.residual[rows], self.information, self.gradient)
 
 
 class DiagnosisProblem:
-    """Readings against a simulation.
+    """The comparison of readings with a simulation.
 
     ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
-    ``start`` is not at the centre of the coefficients' prior. ``beside`` is smooth structure that every hypothesis is weighed
-    with.
+    ``start`` is not at the mean of the coefficients' prior. ``beside`` is smooth structure that the evidence of every hypothesis
+    allows for.
     """
 
     def __init__(
@@ -78,11 +78,11 @@ class DiagnosisProblem:
         return state.predict(self.points, self.channels)
 
     def seen_through(self, noise: Noise) -> DiagnosisProblem:
-        """The same with another noise."""
+        """The problem with another noise, without smooth structure."""
         return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
 
     def at_amplitude(self, smooth: Smooth) -> DiagnosisProblem:
-        """The same with smooth structure in the covariance as it was found beside a hypothesis."""
+        """The problem with the amplitudes of smooth structure, as found with a hypothesis, in the covariance."""
         amplitude = smooth.amplitude if smooth.found else {}
         if self.beside is None or amplitude == self.beside.amplitude:
             return self
@@ -99,11 +99,11 @@ class DiagnosisProblem:
         return kept[key]
 
     def whitened(self, state: Simulation) -> np.ndarray:
-        """Measured minus simulated in units of the joint uncertainty (m,)."""
+        """Whitened residual (m,), measured minus simulated."""
         return self.noise.whiten(np.nan_to_num(self.measured - self.predict(state)))
 
     def evaluate(self, effects: Sequence[Effect], numbers: Mapping[str, float]) -> Hypothesis:
-        """A hypothesis at given numbers, not fitted."""
+        """A hypothesis at given numbers, without a fit."""
         state = self.start.with_numbers(numbers)
         residual = self.whitened(state)
         chi2 = float(residual @ residual)
@@ -127,10 +127,10 @@ class DiagnosisProblem:
     def refine(
         self, chosen: Hypothesis, inexact: Inexactness = EXACT
     ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
-        """The hypothesis with the model's coefficients estimated too, and these: name -> (value, standard error).
+        """The hypothesis estimated together with the model's coefficients, and these: name -> (value, standard error).
 
-        The prior of a coefficient that changes by more than usual is as wide as the change that was found, so that it does not
-        pull the answer back.
+        If an effect changes a coefficient by more than usual, its prior is widened to the change found, so that the prior does
+        not pull the estimate back.
         """
         usual = [number(free, chosen.numbers, self.start, self.points) for free in moving(chosen.effects)]
         numbers, prior = self._refined_numbers(chosen, inexact)
@@ -159,7 +159,7 @@ class DiagnosisProblem:
     def _refined_numbers(
         self, chosen: Hypothesis, inexact: Inexactness
     ) -> tuple[list[FreeNumber], Inexactness]:
-        """The numbers of the effects with their priors, and the prior of all other coefficients."""
+        """The numbers of the effects with widened priors, and the prior of all other coefficients."""
         frees = moving(chosen.effects)
         usual = [number(free, chosen.numbers, self.start, self.points) for free in frees]
         numbers = [
@@ -169,7 +169,7 @@ class DiagnosisProblem:
         return numbers, inexact.without(frozenset(free.name for free in frees))
 
     def linearised(self, refined: Hypothesis, inexact: Inexactness = EXACT) -> LinearisedNumbers:
-        """All numbers of a refined hypothesis as one linear model at its solution; those at a bound stay there."""
+        """The linear model of all numbers of a refined hypothesis at its solution; numbers at a bound are held."""
         numbers, prior = self._refined_numbers(refined, inexact)
         moved = [n for n in numbers if not touches(n.start, n.lower, n.upper)]
         precision = np.linalg.pinv(prior.root)
@@ -191,7 +191,7 @@ class DiagnosisProblem:
         )
 
     def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
-        """Candidates with their gain in log evidence to first order, best first."""
+        """The candidates with their gains of log evidence to first order, best first."""
         columns = self.columns(before.state, candidates)
         beside = self._beside_or_nothing
         numbers = [number(free, before.numbers, self.start, self.points) for free in moving(before.effects)]
@@ -207,7 +207,7 @@ class DiagnosisProblem:
         return self.beside or StructureBeside.nothing(self.noise)
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
-        """Changes of the readings (c n, k) by each effect at its usual size: to first order, and from each start."""
+        """By effect, changes of the readings (c n, k) at its usual size: by derivatives, and by finite steps to each start."""
         names = [free.name for free in moving(effects)]
         slopes = np.empty((len(self.measured), 0))
         if names:
@@ -226,7 +226,7 @@ class DiagnosisProblem:
         return out
 
     def _scanned(self, state: Simulation, free: Free, spread: float, here: np.ndarray) -> list[np.ndarray]:
-        """Changes of the readings (c n, 1) by finite steps to every start of a number, scaled to its usual size."""
+        """Changes of the readings (c n, 1) by finite steps to every start of a number, scaled to the usual size."""
         value, unit = state.number(free.name, self.points), anchor(free, self.start, self.points)[1]
         places = [float(np.clip(value + step * unit, free.lower, free.upper)) for step in free.scan if step]
         return [
@@ -236,7 +236,7 @@ class DiagnosisProblem:
         ]
 
     def _moved(self, state: Simulation, numbers: Mapping[str, float], here: np.ndarray) -> np.ndarray:
-        """Change of the readings (c n,) when some numbers change."""
+        """Change of the readings (c n,) by new values of some numbers."""
         return np.nan_to_num(self.predict(state.with_numbers(numbers))) - here
 
     def _fitted(self, effects: Sequence[Effect], start: Mapping[str, float]) -> Hypothesis:
@@ -268,9 +268,9 @@ class DiagnosisProblem:
         return self._weighed(hypothesis, numbers)
 
     def _weighed(self, fitted: Hypothesis, numbers: Sequence[FreeNumber]) -> Hypothesis:
-        """The hypothesis with the likeliest smooth structure beside it, in the linear model at its numbers.
+        """The hypothesis with evidence that allows for smooth structure, by the linear model at its numbers.
 
-        Structure is as improbable beforehand as ``STRUCTURE_EVIDENCE`` says.
+        The prior log odds against structure are ``STRUCTURE_EVIDENCE``.
         """
         if self.beside is None:
             return replace(fitted, alone=fitted.log_evidence)
@@ -284,13 +284,13 @@ class DiagnosisProblem:
         return replace(fitted, log_evidence=value, smooth=found, alone=alone)
 
     def _at_priors(self, fitted: Hypothesis, numbers: Sequence[FreeNumber]) -> tuple[np.ndarray, np.ndarray]:
-        """Changes (m, k) by one prior standard deviation of every number, and the residual (m,) at the centres of the priors.
+        """Changes (m, k) by one prior standard deviation of every number, and the residual (m,) at the prior means.
 
-        Both without the changes that readings share.
+        The whitening for changes that readings share is undone in both.
         """
         away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
         columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        # Infinite slopes, as of a root at zero, are no numbers to compute with.
+        # Limit nearly infinite derivatives, such as that of a square root at zero.
         size = np.linalg.norm(columns, axis=0)
         columns = columns * np.where(size > STEEPEST, STEEPEST / np.maximum(size, STEEPEST), 1.0)
         at_centre = fitted.residual - columns @ away
@@ -298,7 +298,7 @@ class DiagnosisProblem:
         return found[:, 1:], found[:, 0]
 
     def _standard_errors(self, found: Solution) -> dict[str, float]:
-        """By name, beyond those that the weights of outliers state as if they were known."""
+        """By name, standard errors that include the effect of estimated outlier weights."""
         slope, beyond = found.jacobian.copy(), self.noise.beyond_weights
         slope[: len(beyond)] *= beyond[:, None]  # rows of priors may follow
         pull = slope @ found.covariance
@@ -306,7 +306,7 @@ class DiagnosisProblem:
         return dict(zip(found.names, np.sqrt(variance).tolist(), strict=True))
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
-        """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
+        """The least-squares problem of the whitened residual, simulated minus measured, in the named numbers."""
         nothing = np.zeros(0)
 
         def at(x: np.ndarray) -> Simulation:
@@ -325,5 +325,5 @@ class DiagnosisProblem:
 
 
 def refitted(problem: DiagnosisProblem, chosen: Hypothesis, effects: Sequence[Effect]) -> Hypothesis:
-    """Some of the effects of a hypothesis, fitted again by themselves."""
+    """A hypothesis with only some of its effects, refitted from its own numbers."""
     return problem.fit(effects, chosen.numbers_of(effects)) if effects else problem.null

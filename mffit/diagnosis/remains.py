@@ -1,4 +1,4 @@
-"""What a fit leaves of the readings: what the formula misses, and the effect or the sweep that would explain it best."""
+"""Examination of a fit's residuals: model error, the effect that would explain them best, held numbers, left-out sweeps."""
 
 from __future__ import annotations
 
@@ -29,53 +29,53 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class OneStep:
-    """What one effect would explain, to first order beside all fitted numbers."""
+    """Score test of one effect, to first order, with all fitted numbers free."""
 
     effect: Effect
     log_chance: float
-    """Natural logarithm of the probability that residuals without the effect explain as much."""
+    """Natural logarithm of the p-value: the probability that the effect explains as much if it is absent."""
     numbers: dict[str, tuple[float, float]]
-    """Value and standard error by name, as the readings alone have them."""
-    share: float  #: of the sum of squares of the residuals that the effect removes
-    known: bool = False  #: whether the fit had its numbers with a prior, which they then contradict
+    """Value and standard error by name, from the readings alone."""
+    share: float  #: share of the residual sum of squares that the effect removes
+    known: bool = False  #: whether the fit has these numbers with a prior, which the readings then contradict
     change: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False, compare=False)
-    """(m,) of the residuals by these numbers, beside the fitted ones, in units of their weights"""
+    """(m,) change of the residuals by these numbers, less the part that fitted numbers follow, in units of their weights"""
 
 
 @dataclass(frozen=True, slots=True)
 class BestEffect:
-    """The effect that explains a remainder best, and how many were tried."""
+    """The effect that explains the residuals best, and the number of effects tried."""
 
     best: OneStep
-    rivals: tuple[OneStep, ...]  #: that explain it as well
+    rivals: tuple[OneStep, ...]  #: effects that explain them equally well
     tried: int
     gain: float = -math.inf
-    """Of log evidence if the best takes the place of a smooth miss of the formula and of differences of runs."""
-    missed: float = 0.0  #: log evidence of the smooth miss that it leaves
+    """Gain of log evidence if the best effect is added to a model with smooth model error and scatter of runs."""
+    missed: float = 0.0  #: log evidence for the smooth model error that remains with the effect
 
     @property
     def chance(self) -> float:
-        """Probability that any of the effects explains as much in the residuals of a sound fit, at most 1."""
+        """Probability that any of the tried effects explains as much in the residuals of a sound fit, at most 1."""
         return min(1.0, self.tried * math.exp(self.best.log_chance))
 
     @property
     def sigma(self) -> float:
-        """The same in standard deviations of a normal distribution, two-sided; 0 if it is likely."""
+        """This probability as two-sided standard deviations of a normal distribution; 0 if it is 1."""
         return _sigma(self.best.log_chance + math.log(self.tried))
 
     @property
     def significant(self) -> bool:
-        """Whether neither chance nor differences of runs explain it, and more is explained than left to the formula."""
+        """Whether chance and scatter of runs do not explain it, and it explains more than the remaining model error does."""
         enough = math.log(self.tried / PREDICTION_FALSE_ALARM)
         return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed)
 
 
 @dataclass(frozen=True, slots=True)
 class OddSweep:
-    """The sweep that contradicts all others most, and what it looks like."""
+    """The sweep that contradicts all others most, and its likely cause."""
 
     name: str
-    looks: str  #: the known mistake or the one number that explains it; empty if no known cause does
+    looks: str  #: the known mistake or single number that explains it; empty if no known cause does
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,18 +83,18 @@ class Remains:
     """The residuals of a fit, examined."""
 
     linear: LinearisedFit | None = None
-    effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none can be seen
+    effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none is visible
     sweep: OddSweep | None = None  #: the sweep that contradicts the others most
-    held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit
+    held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit, or held by hand
     left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
-    """By channel, prediction of left-out sweeps."""
+    """By channel, prediction errors of left-out sweeps."""
 
 
 NOTHING_REMAINS = Remains()
 
 
 def remains(fitted: Fitted, linear: LinearisedFit) -> Remains:
-    """The residuals of a fit at its solution, from the linear model of them."""
+    """The examination of a fit's residuals at its solution, from their linear model."""
     left = Left.of(fitted, linear)
     return Remains(
         linear=linear,
@@ -105,7 +105,7 @@ def remains(fitted: Fitted, linear: LinearisedFit) -> Remains:
 
 
 def left_out_sweeps(linear: LinearisedFit) -> dict[str, LeftOutSweeps]:
-    """By channel with several sweeps, how well they are predicted from all others by a fit without them."""
+    """By channel with several sweeps, the prediction errors of each sweep from all others."""
     out = {}
     for name, channel in linear.channels.items():
         if len(channel.model.groups) < 2:
@@ -126,9 +126,9 @@ class Left(NamedTuple):
     fitted: Fitted
     linear: LinearisedFit
     joint: JointFit
-    points: Points  #: (n,) that are looked at
+    points: Points  #: (n,) points in the linear model
     expected: Mapping[str, tuple[float, float]]
-    """Centre and spread of the prior of every uncertain number but the coefficients that the fit freed."""
+    """Prior mean and standard deviation of every uncertain number except the free coefficients."""
 
     @classmethod
     def of(cls, fitted: Fitted, linear: LinearisedFit) -> Left:
@@ -148,7 +148,7 @@ class Left(NamedTuple):
         )
 
     def test(self, change: np.ndarray) -> _Test | None:
-        """The score test of changes (c n, j); None where fitted numbers imitate all of them."""
+        """The score test of changes (c n, j); None if fitted numbers imitate all of them."""
         rows = np.zeros((len(self.joint.model.residual), change.shape[1]))
         rows[: len(change)] = np.nan_to_num(change) / self.joint.sigma.ravel()[:, None]
         found = self.joint.further(rows)
@@ -174,7 +174,7 @@ class Left(NamedTuple):
         )
 
     def by_channel(self, change: np.ndarray) -> dict[str, np.ndarray]:
-        """A change of the rows (m,), by channel at the readings that its linear model looks at."""
+        """By channel, a change of the rows (m,) at the readings of the channel's linear model, in its unit."""
         sigma, out = self.joint.sigma, {}
         parts = dict(zip(self.joint.channels, change[: sigma.size].reshape(sigma.shape), strict=True))
         for (name, part), u in zip(parts.items(), sigma, strict=True):
@@ -187,19 +187,19 @@ class Left(NamedTuple):
 class _Test(NamedTuple):
     """The score test of several changes."""
 
-    seen: np.ndarray  #: mask (j,) of those that fitted numbers do not imitate
-    amount: np.ndarray  #: of each of these
-    u: np.ndarray  #: their standard errors
-    log_chance: float
-    share: float  #: of the sum of squares that they explain
-    change: np.ndarray  #: (m,) of the rows, less the part that fitted numbers can follow
+    seen: np.ndarray  #: mask (j,) of the changes that fitted numbers do not imitate
+    amount: np.ndarray  #: estimated amounts of these changes
+    u: np.ndarray  #: standard errors of the amounts
+    log_chance: float  #: natural logarithm of the p-value
+    share: float  #: share of the sum of squares that they explain
+    change: np.ndarray  #: (m,) estimated change of the rows, less the part that fitted numbers follow
 
 
 def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
-    """The effect that explains most beyond chance; None if the readings show no effect that the fit does not follow.
+    """The effect with the smallest p-value; None if no effect is visible beyond the fitted numbers.
 
-    Each effect's change of the readings is compared with the residuals, without what fitted numbers can follow. A rig error that
-    is itself a number of the fit is compared with its declaration. What the formula misses counts as noise.
+    Each effect's change of the readings, less the part that fitted numbers follow, is compared with the residuals. A rig error
+    that is a number of the fit is compared with its declaration. Model error counts as noise.
     """
     best_of: dict[str, OneStep] = {}
     for step in sorted(_steps(left, effects), key=lambda step: step.log_chance):
@@ -208,7 +208,7 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
         return None
     best, *others = best_of.values()
     near = [other for other in others if _as_good(other, best)]
-    # The starts of one effect are nearly the same direction: each effect counts once.
+    # All starts of one effect change the readings in nearly the same direction, so each effect counts as one trial.
     found = BestEffect(best, tuple(near[: constants.MOST_RIVALS_NAMED]), len(best_of))
     if found.chance >= PREDICTION_FALSE_ALARM:
         return found
@@ -218,7 +218,7 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
 
 
 def _as_good(other: OneStep, best: OneStep) -> bool:
-    """Whether another effect explains the same residuals as well as the best one."""
+    """Whether another effect explains the same residuals about as well as the best one."""
     a, b = other.change, best.change
     if float(a @ b) ** 2 < constants.SAME_RESIDUALS * float(a @ a) * float(b @ b):
         return False
@@ -246,7 +246,7 @@ def _steps(left: Left, effects: Sequence[Effect]) -> Iterator[OneStep]:
 
 
 def _is_possible(step: OneStep, free: Free) -> bool:
-    """Whether the readings ask for a number that a rig or a tyre can have."""
+    """Whether the estimated number is within the bounds of a real rig or tyre."""
     value, _ = step.numbers.get(free.name, (free.lower, 0.0))
     return free.lower <= value <= free.upper
 
@@ -262,17 +262,17 @@ def _step(left: Left, effect: Effect, frees: Sequence[Free], found: _Test) -> On
 
 
 def _estimate(left: Left, free: Free, by: float, u: float) -> tuple[float, float]:
-    """Value and standard error of a number by the readings alone, from its step and that step's error in usual sizes."""
+    """Value and standard error of a number from the readings alone; its step ``by`` and error ``u`` are in usual sizes."""
     simulation = left.fitted.simulation
     unit = free.spread * anchor(free, simulation, left.points)[1]
-    if free.name in left.expected:  # its prior is part of the step's error
+    if free.name in left.expected:  # the error of the step contains the prior
         value, spread = left.expected[free.name]
         return value + by * unit, math.sqrt(max((u * unit) ** 2 - spread**2, 0.0))
     return simulation.number(free.name, left.points) + by * unit, u * unit
 
 
 def _sigma(log_chance: float) -> float:
-    """Standard deviations of a two-sided normal chance, also where the chance itself underflows."""
+    """Standard deviations of a two-sided normal p-value, even if the p-value itself underflows."""
     if log_chance >= 0.0:
         return 0.0
     if log_chance > -600.0:
@@ -281,7 +281,7 @@ def _sigma(log_chance: float) -> float:
 
 
 def held_numbers(left: Left) -> tuple[HeldNumber, ...]:
-    """The numbers that a bound, a physical limit or the engineer holds, and how far the readings contradict it."""
+    """The numbers held by a bound, a physical limit or by hand, with the significance of the readings' contradiction."""
     fitted, hand = left.fitted, left.fitted.hand
     names = sorted({*fitted.at_bound, *(name for name in hand.held if BY_NAME[name].stage)})
     if not names:
@@ -296,7 +296,7 @@ def held_numbers(left: Left) -> tuple[HeldNumber, ...]:
         value = fitted.simulation.number(name, left.points)
         lower, upper = bounds.get(name, (-math.inf, math.inf))
         if touches(value, lower, upper) and (found.amount[0] > 0.0) == (value - lower < upper - value):
-            continue  # the readings pull it back inside
+            continue  # the readings pull it away from the bound
         by_hand = name in hand.held or name in hand.bounded
         out.append(HeldNumber(name, _sigma(found.log_chance), found.share, by_hand))
     return tuple(out)

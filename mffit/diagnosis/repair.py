@@ -1,4 +1,4 @@
-"""The part of an explanation that is repaired in the model: effects that are likely, if left-out sweeps confirm them."""
+"""The repaired part of an explanation: likely effects that left-out sweeps confirm."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Repair:
     """The effects and coefficients with which the model and the readings are corrected."""
 
     explanation: Explanation
-    validation: Validation  #: of the repair, not of everything that is named
+    validation: Validation  #: validation of the repair, not of all named effects
     refused: NoRepair | FileKept | None
     keeps_file: bool
     """Whether the given property file is kept, because the corrected one without its rig and environment terms is worse."""
@@ -29,11 +29,11 @@ class Repair:
 def checked(
     found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
 ) -> tuple[Explanation, Validation, NoRepair | None]:
-    """An explanation if left-out sweeps confirm it, else nothing; their prediction, and what was refused.
+    """The explanation if left-out sweeps confirm it, else one without effects; its validation; and the refusal, if any.
 
-    ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
+    ``given`` has the pure scatter of the readings. ``seen``: the model was fitted to these points.
     """
-    # Refitting coefficients to points that they were fitted to repairs nothing.
+    # Without an effect, refitting coefficients to the points of their own fit repairs nothing.
     if seen and not found.chosen.effects:
         found = found.withdrawn()
     coefficients = inexact if found.coefficients else EXACT
@@ -55,10 +55,10 @@ def repair(
     seen: bool,
     every: bool,
 ) -> Repair:
-    """The repair of the ``named`` effects that are at least as likely as not, or of ``every`` one.
+    """The repair of the ``named`` effects that are likely, or of ``every`` one.
 
-    Effects that cannot be separated are one answer: it is likely if all of them together are. ``validation`` is that of all
-    named effects, ``alternatives`` are the confidences of the others by id. ``seen``: the model was fitted to these points.
+    Tied effects count as one answer, which is likely if all of them together are. ``validation`` is that of all named effects,
+    ``alternatives`` has the confidences of other effects by id. ``seen``: the model was fitted to these points.
     """
     likely = tuple(
         one.effect for one in named if every or one.confidence_of_tie(alternatives) >= constants.LIKELY_ANSWER

@@ -1,4 +1,4 @@
-"""The record of a diagnosis, and readings without the rig's errors that it found."""
+"""The record of a diagnosis, and readings corrected for the rig errors found."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from mffit.suspicion import SOUND, Outlier, Trust
 from tir import Tyre
 
 WITH_TERMS = "-with-terms.tir"
-"""Ending of the property file that is right only with terms beside it."""
+"""Ending of the name of the property file that is right only together with rig and environment terms."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +39,13 @@ class AcceptedEffect:
     effect: Effect
     confidence: float  #: weight of its evidence among all candidates, ties shared
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
-    before: Mapping[str, float]  #: the same as given
-    gap_after: Gap  #: with this and all earlier effects
-    tied: tuple[Effect, ...]  #: effects that explain the data as well in its place
-    separation: Separation | None  #: the run that separates them, if any is tied
+    before: Mapping[str, float]  #: name -> value in the given model
+    gap_after: Gap  #: gap with this and all earlier effects
+    tied: tuple[Effect, ...]  #: effects that explain the data equally well in its place
+    separation: Separation | None  #: the run that separates them; None without a tie
     T_ref: float | None = None  #: reference temperature of an effect of temperature [degC]
-    together: float = 0.0  #: confidence that it is this effect or a tied one that is no likelier
-    repaired: bool = True  #: whether model and readings are corrected for it; otherwise it is a suspicion
+    together: float = 0.0  #: confidence in this effect or one of the tied ones that are not likelier
+    repaired: bool = True  #: whether model and readings are corrected for it; otherwise it is only suspected
 
     @property
     def tied_with(self) -> tuple[str, ...]:
@@ -53,7 +53,7 @@ class AcceptedEffect:
         return tuple(effect.id for effect in self.tied)
 
     def confidence_of_tie(self, alternatives: Mapping[str, float]) -> float:
-        """Confidence that it is this effect or one of those it is tied with; ``alternatives`` are confidences by id."""
+        """Confidence in this effect or any tied one; ``alternatives`` has confidences of other effects by id."""
         listed = self.confidence + sum(alternatives.get(other, 0.0) for other in self.tied_with)
         return max(listed, self.together)
 
@@ -66,10 +66,10 @@ class Diagnosis(Brief):
     points: Points
     noise: Noise
     before: np.ndarray  #: readings of the given model (c n,), in the channels of ``noise``
-    after: np.ndarray  #: readings of the corrected model (c n,), with the effects that are repaired
-    gap_before: Gap  #: of the given model at all points, with nothing taken off the readings
-    gap_after: Gap  #: of the corrected model
-    gap_named: Gap  #: with all effects that are named, repaired or not
+    after: np.ndarray  #: readings of the corrected model (c n,), with the repaired effects
+    gap_before: Gap  #: gap of the given model at all points, with uncorrected readings
+    gap_after: Gap  #: gap of the corrected model
+    gap_named: Gap  #: gap with all named effects, repaired or not
     validation: Validation
     where: tuple[Region, ...]
     effects: tuple[AcceptedEffect, ...]
@@ -78,37 +78,37 @@ class Diagnosis(Brief):
     unexplained: bool
     unexplained_where: tuple[Region, ...]
     bump: Bump | None
-    smooth: Smooth | None  #: smooth structure without a name
+    smooth: Smooth | None  #: unnamed smooth structure
     outliers: tuple[Outlier, ...]
     coefficients: Mapping[str, tuple[float, float]]
-    """Inexact coefficients as estimated beside the effects: name -> (value, standard error)."""
-    limits: tuple[Limit, ...]  #: how large effects that were not named can be
-    given: Simulation  #: the simulation as given
+    """Coefficients estimated together with the effects: name -> (value, standard error)."""
+    limits: tuple[Limit, ...]  #: upper limits of the effects that were not named
+    given: Simulation  #: the given simulation
     state: Simulation  #: the simulation after all corrections
     signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
-    tyre: Tyre  #: the corrected property file, or the given one if that is better alone
+    tyre: Tyre  #: the corrected property file, or the given one if it is better without further terms
     notes: tuple[DiagnosisNote, ...]
     model_after: str  #: file name of the corrected model in the output folder
     with_terms: Tyre | None = None
-    """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""
+    """The corrected property file if it is right only with rig and environment terms; ``tyre`` is then the given one."""
     made: Made | None = None  #: set by the command
     lab: LabTable = field(default_factory=LabTable)  #: set by the command
-    left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules; set by the command
+    left_out: tuple[LeftOut, ...] = ()  #: readings left out by hand and by rules; set by the command
     trust: Trust = SOUND  #: the judgement of the corrected model
 
     @property
     def trusted(self) -> bool:
-        """Whether nothing speaks against the corrected model."""
+        """Whether there is no reason against trusting the corrected model."""
         return self.trust.trusted
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why it is not to be trusted, as sentences; empty for a sound one."""
+        """Reasons against trust, as sentences; empty for a sound model."""
         return self.trust.reasons
 
     @property
     def gap_examined(self) -> Gap:
-        """Of the given model at the points that were examined, without what was taken off them."""
+        """Gap of the given model at the examined points, after known errors were subtracted from the readings."""
         measured = np.concatenate([self.points.channel(name) for name in self.noise.channels])
         return gap(measured - self.before, self.noise)
 
@@ -124,12 +124,12 @@ class Diagnosis(Brief):
 
     @property
     def terms(self) -> tuple[AcceptedEffect, ...]:
-        """The repaired effects of rig and environment, which no property file contains."""
+        """The repaired effects of rig and environment, which a property file cannot contain."""
         return tuple(found for found in self.repaired if found.effect.kind != "tyre")
 
     @property
     def model_with_terms(self) -> str | None:
-        """File name of the property file that is right only with the terms of rig and environment; None without one."""
+        """Name of the property file that is right only with rig and environment terms; None without one."""
         return None if self.with_terms is None else self.model_after.removesuffix(".tir") + WITH_TERMS
 
     @property
@@ -143,16 +143,16 @@ class Diagnosis(Brief):
 
 
 def corrected_points(points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> Points:
-    """Points as a faultless rig at reference conditions would have reported them at the same readings of the angles.
+    """Points with the readings that a faultless rig at reference conditions would give at the same angle readings.
 
-    The influence of the faults on a reading is that of the diagnosed model. Shifting the angles instead would break the
-    mirror symmetry of the set-points.
+    The diagnosed model supplies the influence of the faults. The angles are not shifted, because that would break the mirror
+    symmetry of the set-points.
 
     Parameters
     ----------
     points : raw points (n,), angles as read
     state : the simulation after all corrections, backlash included
-    channels : those to correct
+    channels : channels to correct
     """
     channels = tuple(channels)
     faulty, faultless = state.readings(points, channels), state.faultless.readings(points, channels)

@@ -1,7 +1,7 @@
-"""How the readings really scatter: scale, growth with the reading, memory along sweeps, heavy tails.
+"""Estimation of the real scatter of the readings: scale, growth with the reading, autocorrelation along sweeps, heavy tails.
 
-Effects, inexact coefficients and smooth structure are integrated out with their priors, so that the scatter is what none of
-them explains. Descriptions of the errors are compared by their evidence, in which all their numbers are integrated out too.
+Effects, inexact coefficients and smooth structure are integrated out with their priors, so the scatter is the part that none of
+them explains. Models of the errors (descriptions) are compared by evidence, in which their parameters are integrated out too.
 """
 
 from __future__ import annotations
@@ -22,67 +22,65 @@ from mffit.linearised.chained import Chained, Memory, chains_of
 from mffit.scatter import rms
 
 LARGEST = math.log(1e4)
-"""Bound of the coordinates: log odds, or the logarithm of a size."""
+"""Bound of the coordinates, which are log odds or logarithms of sizes."""
 
 
 LARGEST_MEMORY = math.log(constants.LARGEST_MEMORY / (1.0 - constants.LARGEST_MEMORY))
-"""The same of a memory."""
+"""Upper bound of the log odds of an autocorrelation."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExplainingColumns:
-    """What could explain a residual, one prior standard deviation of each as a column (c n, k)."""
+    """Columns (c n, k) that could explain a residual, one prior standard deviation each."""
 
-    named: np.ndarray  #: effects, coefficients
-    runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
-    smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
-    withdrawn: bool = (
-        False  #: whether none of the effects that differ by run is there, however likely beside the memory
-    )
+    named: np.ndarray  #: effects and coefficients
+    runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of autocorrelated errors
+    smooth: np.ndarray  #: low-order structure, whose amplitude is estimated with the scatter
+    withdrawn: bool = False  #: whether effects that differ by run are excluded, however likely they are
 
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """Which numbers describe the errors of a channel: a scale, smooth structure beside them, and these."""
+    """A model of the errors of a channel: its parameters are a scale, an amplitude of smooth structure, and these."""
 
-    span: MemorySpan | None = None  #: of their memory; None without one
-    independent: bool = False  #: whether a part without memory is beside it
-    growth: bool = False
-    offsets: bool = False  #: of runs
-    probability: float = 1.0  #: before the readings
+    span: MemorySpan | None = None  #: chains of the autocorrelation; None without autocorrelation
+    independent: bool = False  #: whether there is also an independent part
+    growth: bool = False  #: whether the noise grows with the reading
+    offsets: bool = False  #: whether runs have offsets
+    probability: float = 1.0  #: prior probability
 
     @property
     def shapes(self) -> tuple[Callable[[float], tuple[float, float]], ...]:
-        """Log prior and its slope of every number behind the scale, as functions of its coordinate."""
+        """For every parameter after the scale, a function of its coordinate that returns the log prior and its derivative."""
         memory = [_arcsine] * (self.span is not None) + [_uniform] * self.independent
         return (*[_half_cauchy] * (1 + self.growth + self.offsets), *memory)
 
 
 class Numbers(NamedTuple):
-    """The numbers of a description."""
+    """The parameters of a description."""
 
     log_scale: float
     smooth: float  #: amplitude of smooth structure over the usual one
-    growth: float = 0.0  #: over the usual one
-    offsets: float = 0.0  #: of runs over the usual ones
+    growth: float = 0.0  #: growth over the usual one
+    offsets: float = 0.0  #: offsets of runs over the usual ones
     memory: Memory = Memory()
 
 
 def _half_cauchy(x: float) -> tuple[float, float]:
-    """Of a size about its usual one, by its logarithm."""
+    """Log prior and derivative of a size over its usual one, by its logarithm: half-Cauchy."""
     square = math.exp(2.0 * x)
     return math.log(2.0 / math.pi) + x - math.log1p(square), (1.0 - square) / (1.0 + square)
 
 
 def _arcsine(x: float) -> tuple[float, float]:
-    """Of a correlation between 0 and 1, by its log odds: Jeffreys' prior, for which long memories are no surprise."""
+    """Log prior and derivative of a correlation between 0 and 1, by its log odds: Jeffreys' prior, which allows values near 1."""
     share = _share(x)
     log = math.log(2.0 / math.pi) + math.log(share) + 0.5 * (math.log1p(-share) - math.log1p(share))
     return log, 1.0 - share - 0.5 * share - 0.5 * share * (1.0 - share) / (1.0 + share)
 
 
 def _uniform(x: float) -> tuple[float, float]:
-    """Of a share, by its log odds."""
+    """Log prior and derivative of a share, by its log odds: uniform."""
     share = _share(x)
     return math.log(share) + math.log1p(-share), 1.0 - 2.0 * share
 
@@ -93,30 +91,30 @@ def _share(log_odds: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Described:
-    """The most probable numbers of a description."""
+    """A description at its most probable parameters."""
 
     by: Description
-    x: np.ndarray  #: coordinates
-    log_probability: float  #: of description and readings, its numbers integrated out
+    x: np.ndarray  #: coordinates of the parameters
+    log_probability: float  #: log of prior probability times evidence
 
 
 @dataclass(frozen=True, eq=False)
 class ScatterOfChannel:
-    """The used readings (m,) of one channel, and what could explain them."""
+    """The used readings (m,) of one channel, and the columns that could explain them."""
 
-    stated: np.ndarray  #: standard uncertainty
+    stated: np.ndarray  #: stated standard uncertainty
     residual: np.ndarray  #: measured minus simulated
-    size: np.ndarray  #: readings in proportion to which the noise may grow
-    chains: Mapping[MemorySpan, Sequence[np.ndarray]]  #: along which errors may have a memory
+    size: np.ndarray  #: sizes of the readings, to which growing noise is proportional
+    chains: Mapping[MemorySpan, Sequence[np.ndarray]]  #: chains along which errors may be autocorrelated
     sweep: np.ndarray
-    named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
-    smooth: np.ndarray  #: (m, k) the same of smooth structure at its usual amplitude
+    named: np.ndarray  #: (m, k) changes by effects and coefficients, one prior standard deviation each
+    smooth: np.ndarray  #: (m, k) changes by smooth structure at its usual amplitude
     least: float  #: standard uncertainty that is always added, for readings without noise
     weight: np.ndarray
     runs: np.ndarray  #: (m, k) offsets of runs at their usual size, if a description has them
 
     def numbers(self, x: np.ndarray, by: Description) -> Numbers:
-        """The numbers at coordinates: logarithms of sizes, log odds of shares."""
+        """The parameters from coordinates, which are logarithms of sizes and log odds of shares."""
         log_scale, *rest = x.tolist()
         left = iter(rest)
         smooth = math.exp(next(left))
@@ -132,7 +130,7 @@ class ScatterOfChannel:
         return np.sqrt(self._squares(at).sum(axis=0) / self.weight)
 
     def _squares(self, at: Numbers) -> np.ndarray:
-        """Variances (3, m) at weight 1: as stated and scaled, growing, always there."""
+        """Components of the variances (3, m) at weight 1: scaled stated one, growing one, constant one."""
         stated = math.exp(at.log_scale) * self.stated
         growing = at.growth * constants.USUAL_GROWTH * self.size
         return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
@@ -142,12 +140,12 @@ class ScatterOfChannel:
         return np.repeat([1.0, at.smooth, at.offsets], counts)
 
     def _model(self, by: Description) -> Chained:
-        """The linear model; without a memory in no chains."""
+        """The linear model of a description."""
         columns = np.column_stack([self.named, self.smooth, self.runs])
         return Chained(self.residual, columns, self.chains[by.span or MemorySpan.SWEEP])
 
     def likeliest(self, by: Description, near: np.ndarray | None = None) -> Described:
-        """The numbers of a description and its probability (Laplace approximation); the search begins ``near`` if given."""
+        """A description at its most probable parameters, with evidence by Laplace approximation; ``near`` starts the search."""
         model, shapes = self._model(by), by.shapes
         wide = math.log(constants.STATED_NOISE_FACTOR)
         first, last = self.named.shape[1], self.named.shape[1] + self.smooth.shape[1]
@@ -191,13 +189,13 @@ class ScatterOfChannel:
         return Described(by, found.x, volume - float(found.fun) + math.log(by.probability))
 
     def standardised(self, found: Described) -> np.ndarray:
-        """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
+        """Error (m,) of every reading's prediction from all others, over its standard uncertainty at weight 1."""
         at = self.numbers(found.x, found.by)
         seen = self._model(found.by).foretold(self.uncertainty(at), self._sizes(at), at.memory)
         return seen.error / np.sqrt(seen.variance + (self.weight - 1.0) * seen.own)
 
     def select(self, rows: np.ndarray) -> ScatterOfChannel:
-        """Some of the readings, whole chains of each of them."""
+        """The channel with some of its readings only."""
         place = np.full(len(self.stated), -1)
         place[rows] = np.arange(len(rows))
         chains = {
@@ -220,12 +218,12 @@ class ScatterOfChannel:
         return replace(self, chains=chains, **parts)
 
     def with_runs(self, runs: np.ndarray) -> ScatterOfChannel:
-        """The same with offsets of runs (m, k) at their usual size."""
+        """The channel with columns of run offsets (m, k) at their usual size."""
         return replace(self, runs=runs)
 
     @property
     def sample(self) -> ScatterOfChannel:
-        """Every k-th sweep if there are more readings than scale, growth and memory need."""
+        """The channel thinned to every k-th sweep, if it has more readings than the estimation of scatter needs."""
         names = np.unique(self.sweep)
         most = max(len(names) // int(constants.FEWEST_SWEEPS_FOR_SCATTER), 1)
         stride = min(math.ceil(len(self.sweep) / constants.READINGS_FOR_SCATTER), most)
@@ -239,10 +237,7 @@ def learned(
     explained: ExplainingColumns,
     size: np.ndarray,
 ) -> Noise:
-    """The noise with the scatter that the residual shows.
-
-    It may grow in proportion to ``size`` (c n,).
-    """
+    """The noise with the scatter estimated from the residual (c n,); it may grow in proportion to ``size`` (c n,)."""
     u, weight, scatter = noise.u.copy(), np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}
     for name, rows in noise.by_channel(np.arange(len(residual))).items():
@@ -297,7 +292,7 @@ def _same(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> bool:
 
 
 def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Fewer columns that change as much: directions of hardly any change are left out."""
+    """Fewer equivalent columns, without directions of negligible change."""
     columns = columns[:, np.any(columns != 0.0, axis=0)]
     white = columns / u[:, None]
     power, turn = np.linalg.eigh(white.T @ white)
@@ -305,9 +300,9 @@ def _condensed(columns: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 
 def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
-    """The noise, with that of the best rigs in channels that hardly scatter, such as those of a simulation.
+    """The noise, replaced by an assumed one in channels that hardly scatter, such as those of a simulation.
 
-    Between two points of a sweep, errors with a memory change by their part without memory.
+    For autocorrelated errors the innovation from one point to the next is compared, not the total scatter.
     """
     assumed = {}
     for name, readings in noise.by_channel(size).items():
@@ -320,9 +315,10 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
 def _of_channel(
     channel: ScatterOfChannel, runs: Mapping[str, np.ndarray], needed: float
 ) -> tuple[Described, ScatterOfChannel, float, dict[str, RunOffsets]]:
-    """The description of a channel, its readings with their weights, their tails, and the offsets of runs by effect.
+    """The description of a channel, the channel with weights, its degrees of freedom, and offsets of runs by effect.
 
-    ``needed`` are log odds that offsets need. There are none if the readings show no memory: nothing else looks like them.
+    ``needed`` is the log Bayes factor that offsets need. Offsets are considered only if the errors are autocorrelated, because
+    only autocorrelation resembles them.
     """
     found, channel, tails = _weighted(channel)
     offsets: dict[str, RunOffsets] = {}
@@ -347,7 +343,7 @@ def _of_channel(
 def _weighted(
     channel: ScatterOfChannel, *, offsets: bool = False
 ) -> tuple[list[Described], ScatterOfChannel, float]:
-    """The descriptions, likeliest first, the readings with their weights, and the degrees of freedom, found in turn."""
+    """The descriptions, most likely first, the channel with weights, and its degrees of freedom, estimated in turn."""
     found, tails = _descriptions(channel, offsets=offsets), math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
         z = channel.standardised(found[0])
@@ -362,10 +358,9 @@ def _weighted(
 
 
 def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
-    """All descriptions of the errors, the likeliest first: a memory only if it is proven, along the shortest likely chains.
+    """All descriptions of the errors, the chosen one first: autocorrelation only if proven, along the shortest likely chains.
 
-    Those with a memory along several chains are equally probable beforehand; errors without one beside it are tried along the
-    likeliest.
+    The possible chains have equal prior probabilities. An additional independent part is tried for the most likely chains only.
     """
     some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES

@@ -1,4 +1,4 @@
-"""Effects that the data ask for: forward steps, exchange and backward check, by evidence."""
+"""Selection of effects by evidence: forward steps, each followed by a backward check."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Ids = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class ForwardStep:
-    """One forward step: every candidate beside the effects accepted before."""
+    """One forward step: every candidate in addition to the effects accepted before."""
 
     before: Hypothesis
     trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
-    threshold: float  #: gain of log evidence needed
-    start: Simulation  #: the simulation as given
+    threshold: float  #: required gain of log evidence
+    start: Simulation  #: the given simulation
 
     @property
     def best(self) -> Hypothesis:
@@ -38,7 +38,7 @@ class ForwardStep:
         return self.gain > self.threshold
 
     def weights(self) -> dict[str, float]:
-        """Posterior weight per effect id, "none" included; the prior of each effect is one over the number of effects."""
+        """Posterior weight by effect id, "none" included; the prior probability is divided equally among the effects."""
         logs = {}
         for trial in self.trials:
             newest, choice = trial.effects[-1], math.log(len(self.trials))
@@ -50,10 +50,9 @@ class ForwardStep:
 
 
 def log_prior(effect: Effect, start: Simulation) -> float:
-    """Log prior of an effect; it orders effects that the data hardly separate.
+    """Log prior of an effect, which ranks effects that the data hardly separate.
 
-    A coefficient that the given model has at exactly zero was never identified. It is likelier to be missing than one that
-    the model already has.
+    A coefficient that is exactly zero in the given model was never identified, so it is more likely to be missing than others.
     """
     if effect.kind != "tyre" or not all(name in BY_NAME for name in effect.parameters):
         return effect.prior
@@ -62,18 +61,18 @@ def log_prior(effect: Effect, start: Simulation) -> float:
 
 
 def price(candidates: int) -> float:
-    """Log evidence that an effect must add to be taken, and to be kept: the choice among all candidates, and a margin."""
+    """Log evidence that an effect must add to be accepted and kept: a penalty for the number of candidates, and a margin."""
     return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN
 
 
 def select(
     problem: DiagnosisProblem, candidates: Sequence[Effect]
 ) -> tuple[DiagnosisProblem, Hypothesis, list[ForwardStep]]:
-    """Forward steps until nothing passes; after each, an effect that became needless is dropped.
+    """The problem, the selected effects, and the steps: forward selection, dropping an effect that became superfluous.
 
-    A fit may end in a local optimum, so that a set can look better or worse when it is met again. A set that was replaced is
-    therefore never entered a second time, which ends the search. The problem that is returned has in its covariance the smooth
-    structure that is likeliest beside the effects.
+    A fit may end in a local optimum, so a set of effects may get different evidence when it is fitted again. A set that was
+    replaced is therefore never entered again, which makes the search end. The covariance of the returned problem contains the
+    most likely smooth structure for the selected effects.
     """
     problem = problem.at_amplitude(problem.null.smooth)
     current, steps, left = problem.null, [], set[Ids]()
@@ -92,7 +91,7 @@ def select(
 
 
 def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> ForwardStep:
-    """Every candidate beside the accepted effects; the best to first order are fitted in full."""
+    """Every candidate in addition to the accepted effects; the best ones to first order are fitted in full."""
     trials = []
     ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
     for rank, (effect, gain) in enumerate(ranked):

@@ -1,4 +1,4 @@
-"""Smooth structure without a name: low-order curves over all conditions, the global rival of every named effect."""
+"""Unnamed smooth structure: low-order curves over all conditions, the global rival of every named effect."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Smooth:
 
     amplitude: dict[
         str, float
-    ]  #: by channel, rms relative to that of the readings; 0 or no entry where there is none
-    gain: float  #: log evidence
+    ]  #: by channel, rms over the rms of the readings; 0 or no entry without structure
+    gain: float  #: gain of log evidence
 
     @property
     def found(self) -> bool:
@@ -43,11 +43,11 @@ NO_SMOOTH = Smooth({}, 0.0)
 def smooth_basis(
     points: Points, simulated: Readings, divisions: float = constants.DIVISIONS_BESIDE_NOISE
 ) -> np.ndarray:
-    """Smooth changes (c n, k) of the readings, separate for every channel, smaller the faster they change.
+    """Smooth changes (c n, k) of the readings, separate for every channel, with smaller variance for shorter lengths.
 
-    The shortest length along an angle is its range over ``divisions``.
-    At amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are proportional to the
-    ``simulated`` readings, because the measured ones contain the errors to be explained.
+    The shortest length along an angle is its range over ``divisions``. At amplitude 1 their joint rms is that of the channel's
+    readings. Changes of gain are proportional to the ``simulated`` readings, because the measured ones contain the errors to be
+    explained.
     """
     angles, others = _conditions(points)
     shapes = _functions({**angles, **others}, divisions)
@@ -61,7 +61,7 @@ def smooth_basis(
 
 
 def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """The angles, and all other conditions over which structure may be smooth, by name; those that vary."""
+    """The varying angles, and the other varying conditions over which structure may be smooth, by name."""
     angles = {"alpha": points.alpha, "gamma": points.gamma}
     others = {name: getattr(points, name).astype(float) for name in ("p", "T", "V", "t", "direction")}
     varying = [
@@ -72,7 +72,7 @@ def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.nda
 
 
 def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.ndarray:
-    """Smooth functions (n, k) of some conditions, the constant first; where a condition is not known it is in the middle."""
+    """Smooth functions (n, k) of some conditions, the constant first; unknown values are replaced by the middle of the range."""
     inputs, at = [], []
     for name, x in conditions.items():
         lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
@@ -95,15 +95,15 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.nda
 
 @dataclass(frozen=True, eq=False)
 class SmoothStructure:
-    """Smooth structure that may stand beside any hypothesis; all rows (m,) are independent readings of unit variance."""
+    """Smooth structure that may be added to any hypothesis; all rows (m,) are whitened readings."""
 
     channels: tuple[str, ...]  #: (c,)
     shared: np.ndarray  #: (m, p) changes that readings share, one standard deviation each
-    directions: tuple[SharedDirections, ...]  #: of every channel's structure at amplitude 1
+    directions: tuple[SharedDirections, ...]  #: by channel, directions of the structure at amplitude 1
 
     @classmethod
     def over(cls, basis: np.ndarray, noise: Noise) -> SmoothStructure:
-        """Of a basis (c n, k) with as many columns for every channel, beside the shared changes of a noise."""
+        """The structure of a basis (c n, k) with equally many columns for every channel, and the shared changes of a noise."""
         alone, n = noise.alone(), len(noise.u) // len(noise.channels)
         ends = np.searchsorted(noise.used, n * np.arange(len(noise.channels) + 1))
         directions = []
@@ -129,11 +129,11 @@ class SmoothStructure:
         return nothing.with_columns(self.shared)
 
     def beside(self, columns: np.ndarray, residual: np.ndarray) -> BesideColumns:
-        """The structure beside columns (m, j) of unit prior variance that may explain a residual (m,)."""
+        """The structure together with columns (m, j) of unit prior variance that may explain a residual (m,)."""
         return self._alone.with_columns(np.column_stack([residual, columns]))
 
     def at(self, amplitude: Mapping[str, float]) -> tuple[SharedDirections, ...]:
-        """The structure of the channels that have an amplitude."""
+        """The directions of the channels with an amplitude, scaled to it."""
         found = zip(self.channels, self.directions, strict=True)
         return tuple(
             one._replace(variance=amplitude[name] ** 2 * one.variance)
@@ -143,15 +143,15 @@ class SmoothStructure:
 
 
 class BesideColumns(NamedTuple):
-    """What the evidence of any amplitude needs: products of a residual and of columns, and their parts along the structure."""
+    """Products from which the evidence for any amplitude of structure is computed."""
 
     structure: SmoothStructure
     rows: np.ndarray  #: (m, p + 1 + j) the shared changes, the residual, the columns
-    products: np.ndarray  #: (p + 1 + j, p + 1 + j)
-    along: tuple[np.ndarray, ...]  #: (k, p + 1 + j) for every channel
+    products: np.ndarray  #: (p + 1 + j, p + 1 + j) products of ``rows``
+    along: tuple[np.ndarray, ...]  #: by channel, projections (k, p + 1 + j) of ``rows`` on its directions
 
     def with_columns(self, columns: np.ndarray) -> BesideColumns:
-        """The same with further columns (m, i)."""
+        """The record extended by further columns (m, i)."""
         across = self.rows.T @ columns
         return BesideColumns(
             self.structure,
@@ -164,7 +164,7 @@ class BesideColumns(NamedTuple):
         )
 
     def evidence(self, amplitude: Mapping[str, float]) -> float:
-        """Log evidence with the columns and with structure of given amplitudes by channel, less a constant."""
+        """Log evidence with the columns and with structure of given amplitudes by channel, up to a constant."""
         products, log = self.products, self.improbable(amplitude)
         for name, along, one in zip(
             self.structure.channels, self.along, self.structure.directions, strict=True
@@ -173,18 +173,18 @@ class BesideColumns(NamedTuple):
                 size = amplitude[name] ** 2 * one.variance
                 products = products - along.T @ ((size / (1.0 + size))[:, None] * along)
                 log += 0.5 * float(np.sum(np.log1p(size)))
-        r = self.structure.shared.shape[1]  # place of the residual
+        r = self.structure.shared.shape[1]  # index of the residual
         others = np.delete(np.arange(len(products)), r)
         root = cholesky(np.eye(len(others)) + products[np.ix_(others, others)], lower=True)
         found = solve_triangular(root, products[others, r], lower=True)
         return -0.5 * float(products[r, r] - found @ found) - float(np.sum(np.log(np.diag(root)))) - log
 
     def improbable(self, amplitude: Mapping[str, float]) -> float:
-        """By how much amplitudes are less probable beforehand than none, as a logarithm."""
+        """Negative log prior of the amplitudes, relative to none."""
         return 0.5 * sum((size / constants.USUAL_MISS_OF_A_FORMULA) ** 2 for size in amplitude.values())
 
     def best(self) -> Smooth:
-        """The likeliest amplitudes, with the price of their search."""
+        """The most likely amplitudes; the gain is reduced by a penalty for the search."""
         channels = self.structure.channels
         size, without = dict.fromkeys(channels, 0.0), self.evidence({})
         paid, gain = len(channels) * math.log(len(AMPLITUDES)), 0.0
@@ -199,30 +199,30 @@ class BesideColumns(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class StructureBeside:
-    """Structure that is weighed with every hypothesis of a problem, and the part of it that is in the covariance."""
+    """Structure that the evidence of every hypothesis of a problem allows for, and its amplitudes in the covariance."""
 
-    scatter: Noise  #: with the other changes that readings share
+    scatter: Noise  #: noise with the other changes that readings share, without structure
     structure: SmoothStructure
-    amplitude: Mapping[str, float] = field(default_factory=dict)  #: by channel, in the covariance
+    amplitude: Mapping[str, float] = field(default_factory=dict)  #: by channel, amplitude in the covariance
 
     @classmethod
     def over(cls, basis: np.ndarray, noise: Noise) -> StructureBeside:
-        """None of it in the covariance."""
+        """The structure of a basis, with none of it in the covariance."""
         return cls(noise, SmoothStructure.over(basis, noise))
 
     @classmethod
     def nothing(cls, noise: Noise) -> StructureBeside:
-        """No structure at all."""
+        """The empty structure."""
         return cls.over(np.zeros((len(noise.u), 0)), noise)
 
     @cached_property
     def half_log_determinant(self) -> float:
-        """Half the logarithm of the determinant of the covariance, over that without structure."""
+        """Half the log determinant of the covariance, less that without structure."""
         rows = len(self.structure.shared)
         model = self.structure.beside(np.zeros((rows, 0)), np.zeros(rows))
         return model.evidence({}) - model.evidence(self.amplitude) - model.improbable(self.amplitude)
 
     @property
     def noise(self) -> Noise:
-        """The covariance."""
+        """The noise with structure of these amplitudes."""
         return replace(self.scatter, structure=self.structure.at(self.amplitude))

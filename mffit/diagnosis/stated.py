@@ -1,4 +1,4 @@
-"""The noise as stated with the readings, or as neighbouring points show it where nothing is stated."""
+"""The noise stated with the readings, or estimated from neighbouring points if none is stated."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def with_uncertainties(
 
 
 def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:
-    """Independent noise of some channels as the points state it, with the chains along which errors may be correlated."""
+    """The stated independent noise of some channels, with the chains along which errors may be correlated."""
     scatter = {name: Scatter() for name in CHANNELS if name in set(channels)}
     u = np.concatenate([points.u(name) for name in scatter])
     sweeps = 1 + int(points.sweep.max(initial=0))
@@ -49,9 +49,9 @@ def stated_noise(points: Points, origin: Origin | None = None, channels: Iterabl
 
 
 def _in_time(points: Points) -> tuple[np.ndarray, dict[MemorySpan, np.ndarray]]:
-    """Order (n,) in which the points were taken, and the chains (n,) longer than a sweep that were not interrupted.
+    """Order (n,) in which the points were taken, and uninterrupted chains (n,) longer than a sweep.
 
-    The order is that of their times; within a file, and where times are unknown, that of the lines.
+    The order follows from the times or, if times are unknown, from the lines of the files.
     """
     when = np.where(np.isfinite(points.t), points.t, points.time)
     timed = bool(np.all(np.isfinite(when)))
@@ -74,9 +74,9 @@ def _in_time(points: Points) -> tuple[np.ndarray, dict[MemorySpan, np.ndarray]]:
 def _of_channel(
     points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
 ) -> tuple[np.ndarray, Origin | None]:
-    """Uncertainty (n,) of one channel; inf where it was not measured.
+    """Standard uncertainty (n,) of one channel, inf where it was not measured; and its origin.
 
-    It is at least so large that readings without noise can be recognised.
+    A small lower limit keeps readings without noise recognisable.
     """
     measured = np.isfinite(values)
     if not np.any(measured):
@@ -95,7 +95,7 @@ def _of_channel(
 
 
 def _neighbour_noise(points: Points, values: np.ndarray) -> float:
-    """Noise of a channel as its neighbours show it; a share of the span where sweeps are too short to show it."""
+    """Noise of a channel estimated from neighbouring points; a share of the span if sweeps are too short."""
     noise = neighbour_noise(points, values)
     if np.isnan(noise):
         noise = constants.NOISE_SHARE_OF_SPAN * float(np.ptp(values[np.isfinite(values)]))

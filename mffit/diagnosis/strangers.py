@@ -1,4 +1,4 @@
-"""Whether model and points belong together."""
+"""Checks that model and points belong together."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def refuse_strangers(
 
 
 def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
-    """What the model states otherwise than ``tyre.toml`` about the tyre; None if they agree or the model is silent."""
+    """Differences between the model and ``tyre.toml`` in dimensions and nominal conditions; None without any."""
     given, dimension, reference = config.tyre, constants.SAME_TYRE_DIMENSION, constants.SAME_TYRE_REFERENCE
     stated = (
         ("UNLOADED_RADIUS", given.unloaded_radius, dimension),
@@ -84,7 +84,7 @@ def without_noise(noise: Noise) -> WithoutNoise | None:
 
 
 def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
-    """The channels that scatter far more than stated beside the explanation, and the sweep that does most of it."""
+    """The channels that scatter far more than stated even with the explanation, each with the sweep that scatters most."""
     noise, points = found.scatter, found.problem.points
     if noise.origin is not Origin.STATED:
         return []
@@ -106,7 +106,7 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
 def offsets_or_memory(
     noise: Noise, candidates: Sequence[Effect], named: Collection[str]
 ) -> list[OffsetsOrMemory]:
-    """The channels whose correlated errors may as well be offsets of runs, if none of these (ids) is ``named``."""
+    """The channels whose autocorrelated errors may as well be offsets of runs, if none of these effects is ``named`` (ids)."""
     found = []
     for channel in noise.channels:
         scatter = noise.scatter[channel]

@@ -1,4 +1,4 @@
-"""Heavy tails of the scatter: the t distribution of the residuals, and the readings that lose their weight with it."""
+"""Heavy tails of the scatter: Student's t distribution of the residuals, and the weights of the readings that follow."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mffit.scatter import rms, robust
 
 def heavy_tails(z: np.ndarray) -> tuple[float, float]:
     """Degrees of freedom and width of Student's t that standardised residuals (m,) follow; infinite if they are normal."""
-    from scipy.stats import norm, t  # loads in a third of a second, which other commands save
+    from scipy.stats import norm, t  # takes a third of a second to load, so it is imported only on use
 
     width = rms(z)
     best = float(np.sum(norm.logpdf(z, scale=width))) + constants.SURPRISING_LOG_ODDS
@@ -35,10 +35,10 @@ def weights(z: np.ndarray, tails: float, width: float) -> np.ndarray:
 
 
 def beyond_weights(z: np.ndarray, tails: float) -> float:
-    """Standard error of what weighted readings determine, over that which their weights state as if these were known.
+    """Ratio of the standard error of an estimate from weighted readings to the one computed with weights taken as known.
 
-    ``z`` (m,) are standardised residuals of width 1. The weights follow from the residuals, so that a reading which keeps much of
-    its weight pulls less than it states (Huber, Robust Statistics, 1981, section 7.6).
+    ``z`` (m,) are standardised residuals of width 1. The weights depend on the residuals, so readings carry less information than
+    their weights suggest (Huber, Robust Statistics, 1981, section 7.6).
     """
     if math.isinf(tails):
         return 1.0
@@ -48,7 +48,7 @@ def beyond_weights(z: np.ndarray, tails: float) -> float:
 
 
 def outlying(noise: Noise) -> np.ndarray:
-    """Indices of readings that lost nearly all their weight."""
+    """Indices of the readings with nearly zero weight."""
     if noise.weight is None:
         return np.empty(0, dtype=int)
     n = len(noise.weight) // len(noise.channels)

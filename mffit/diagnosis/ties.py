@@ -49,18 +49,18 @@ class Separation:
 
     run: SeparatingRun
     load: float  #: of the run [N]
-    chi2: float  #: expected between the explanations as fitted
+    chi2: float  #: expected chi2 between the two fitted explanations
 
     @property
     def worthwhile(self) -> bool:
-        """Whether the run would decide between them."""
+        """Whether the run is expected to decide between the two."""
         return self.chi2 >= constants.SEPARATING_CHI2
 
 
 def separation(points: Points, a: Hypothesis, b: Hypothesis, noise: Mapping[str, float]) -> Separation:
-    """The candidate run at which two refitted explanations differ most.
+    """The candidate run in which two refitted explanations differ most.
 
-    ``noise`` is the standard uncertainty of a reading by channel; NaN where it was not measured.
+    ``noise`` is the standard uncertainty of a reading by channel; NaN for channels that were not measured.
     """
     found = []
     for run, added in candidate_runs(points):
@@ -124,7 +124,7 @@ def _line(
     gamma: np.ndarray | float = 0.0,
     kappa: np.ndarray | float = 0.0,
 ) -> Points:
-    """Steady points along one angle or the slip, everything else as at the point nearest the load."""
+    """Steady points along one angle or the slip; all other settings are those of the point nearest the load."""
     n = max(np.size(alpha), np.size(gamma), np.size(kappa))
     nearest = int(np.argmin(np.abs(points.Fz - load)))
     line = points.select(np.full(n, nearest))

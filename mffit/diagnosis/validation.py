@@ -1,4 +1,4 @@
-"""The gap on left-out sweeps: it must shrink where the effects were not fitted."""
+"""The gap on left-out sweeps: effects must reduce it on sweeps to which they were not fitted."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Gap:
     chi2_per_dof: float
 
     def rms(self, channel: str) -> float:
-        """Of one channel, in its unit."""
+        """Rms gap of one channel, in its unit."""
         return self.rmse[channel]
 
 
@@ -34,17 +34,17 @@ class Gap:
 class Validation:
     """The gap on left-out sweeps."""
 
-    folds: int  #: sweeps, or parts of every run, left out in turn
+    folds: int  #: number of groups left out in turn: sweeps, or parts of every run
     gap_before: Gap
     gap_after: Gap
     gap_file: Gap
-    """After, with the rig and environment as in the given simulation: what the corrected property file does alone."""
+    """Gap of the corrected property file alone, with rig and environment as in the given simulation."""
     raised: tuple[str, ...] = ()
-    """Channels whose gap grows by more than numbers fitted to mere noise would raise it by chance."""
+    """Channels whose gap grows by more than numbers fitted to pure noise would raise it by chance."""
     raised_by_file: tuple[str, ...] = ()
-    """The same channels for the property file alone."""
+    """Channels whose gap grows in this way with the corrected property file alone."""
     within_runs: bool = False
-    """Whether parts of every run were left out instead of whole sweeps, because numbers of single runs were to be checked."""
+    """Whether parts of every run were left out instead of whole sweeps, because some effects have numbers for every run."""
 
     @property
     def helps(self) -> bool:
@@ -53,27 +53,27 @@ class Validation:
 
     @property
     def file_helps(self) -> bool:
-        """The same for the corrected property file alone."""
+        """Whether the gap shrinks, and grows in no channel, with the corrected property file alone."""
         return self.gap_file.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised_by_file
 
     def without_repair(self) -> Validation:
-        """The check of the model as given."""
+        """The validation of the given model, without a repair."""
         return Validation(
             self.folds, self.gap_before, self.gap_before, self.gap_before, within_runs=self.within_runs
         )
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
-    """Gap of residuals (c n,), channel after channel; chi2 without correlations, as the gap in newtons is."""
+    """Gap of residuals (c n,), channel by channel; chi2 without correlations, like the rms."""
     z = residual[noise.used] / noise.u[noise.used]
     rmse = {name: rms(rows) for name, rows in noise.by_channel(residual).items()}
     return Gap(rmse, chi2_per_dof=float(z @ z) / max(len(z), 1))
 
 
 def raw_gap(points: Points, given: Simulation, judged: np.ndarray, noise: Noise) -> Gap:
-    """Gap of a simulation at all points (n,) as they were read.
+    """Gap of a simulation at all points (n,) with uncorrected readings.
 
-    ``noise`` is that of the ``judged`` ones (mask (n,)); the others have the typical one of their channel.
+    ``noise`` is the noise of the ``judged`` points (mask (n,)); for the others the typical noise of the channel is used.
     """
     residual, z, n = {}, [], len(points)
     for name, read in given.readings(points, noise.channels).items():
@@ -95,12 +95,12 @@ def validate(
     weights: Noise | None = None,
     seen: bool = False,
 ) -> Validation:
-    """Predict each group of sweeps from all others, to first order from one fit of all.
+    """The gap if each group of points is predicted from all others, to first order from one fit.
 
-    Numbers of single runs say nothing about other runs: with such an effect, successive parts of every run are left out in turn.
-    ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. ``weights``: another noise for
-    the fit. If the model was fitted to these points (``seen``), its coefficients are estimated without the group for the gap
-    before too, which it would otherwise predict from itself.
+    Groups are sweeps. With an effect that has numbers for every run, successive parts of every run are left out instead, because
+    its numbers do not carry over to other runs. ``problem`` has the pure scatter of the readings; ``weights`` is another noise
+    for the fit. If the model was fitted to these points (``seen``), its coefficients are re-estimated without the group for the
+    gap before too, as the model would otherwise be tested on its own data.
     """
     points = problem.points
     before = problem.measured - problem.predict(problem.start)
@@ -127,7 +127,7 @@ def validate(
 def _left_out(
     problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness, group: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Measured less predicted (c n,) where each group (n,) is predicted from all others; the same for the file alone."""
+    """Measured less predicted (c n,), with each group (n,) predicted from all others; and this for the property file alone."""
     found, state = problem.linearised(hypothesis, inexact), hypothesis.state
     plain = file_alone(state, problem.start)
     after, alone = (problem.measured - problem.predict(one) for one in (state, plain))
@@ -147,13 +147,13 @@ def _left_out(
 
 
 def file_alone(state: Simulation, given: Simulation) -> Simulation:
-    """The simulation with the corrected property file, its rig and environment as ``given``."""
+    """The simulation with the corrected property file, and with rig and environment of ``given``."""
     tyre = {error.name: state.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
     return replace(state, faults=given.faults.replace(**tyre), of_parts=given.of_parts)
 
 
 def _part_of_run(file: np.ndarray) -> np.ndarray:
-    """Number (n,) of the part of its run that each point belongs to; successive points are in one part."""
+    """Index (n,) of the part of its run to which each point belongs; parts are successive points."""
     out = np.zeros(len(file), dtype=int)
     for k in np.unique(file):
         rows = np.flatnonzero(file == k)
@@ -162,9 +162,9 @@ def _part_of_run(file: np.ndarray) -> np.ndarray:
 
 
 def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
-    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much.
+    """Channels whose chi2 rises by more than chance: fitting ``numbers`` to pure noise raises that of left-out sweeps, too.
 
-    Correlated errors raise a plain sum of squares by more than that, so the residuals are whitened.
+    Residuals are whitened, because correlated errors would raise a plain sum of squares further.
     """
     change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
     channel = noise.used // (len(before) // len(noise.channels))

@@ -30,12 +30,12 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of the programme in which one channel is off on average."""
+    """A region of the programme in which the mean residual of a channel differs from zero."""
 
     channel: str
     region: dict[str, Range]
     bias: float  #: mean of measured minus simulated [N] or [Nm]
-    z: float  #: in standard errors, correlations included
+    z: float  #: bias in standard errors, correlations included
 
 
 def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, ...]:
@@ -50,9 +50,9 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
     Returns
     -------
     tuple of Region
-        Up to twelve, the most significant first, without those that only repeat the points of a more significant one.
+        The most significant first; regions that mostly repeat the points of a more significant one are left out.
     """
-    from scipy.stats import false_discovery_control  # loads in a third of a second, which other commands save
+    from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
 
     found = list(_tested(points, residual, noise))
     if not found:
@@ -65,7 +65,7 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
 
 
 def _tested(points: Points, residual: np.ndarray, noise: Noise) -> Iterator[tuple[Region, frozenset[int]]]:
-    """Every cell and channel with its mean residual, and the readings in it."""
+    """Every cell and channel with its mean residual, and the indices of its readings."""
     position = np.full(len(residual), -1)
     position[noise.used] = np.arange(len(noise.used))
     for region, mask in _cells(points):
@@ -80,7 +80,7 @@ def _tested(points: Points, residual: np.ndarray, noise: Noise) -> Iterator[tupl
 
 
 def _distinct(ranked: list[tuple[Region, frozenset[int]]]) -> tuple[Region, ...]:
-    """The first regions that do not repeat the readings of one before them."""
+    """The first regions that do not mostly repeat the readings of an earlier one."""
     kept: list[tuple[Region, frozenset[int]]] = []
     for region, members in ranked:
         if all(

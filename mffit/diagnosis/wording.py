@@ -24,20 +24,20 @@ TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
     "environment": "keep it constant, or use the corrected points, from which it is removed; a property file cannot contain it",
 }
-"""What to do about effects that are not the rig's."""
+"""By kind of effect, what to do about effects of tyre and environment."""
 
 NOT_REPAIRED = {
     "tyre": "nothing at the rig; the property file is as given, and --repair-all would correct it",
     "environment": "keep it constant; the readings are as measured, and --repair-all would correct them",
 }
-"""The same for effects that are suspected only."""
+"""By kind of effect, what to do about effects that are only suspected."""
 
 THROUGH = {MemorySpan.SWEEP: "a sweep", MemorySpan.FILE: "a file", MemorySpan.PROGRAMME: "the programme"}
-"""The chains of a memory in words."""
+"""The chains of an autocorrelation in words."""
 
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The answer in one sentence, after those about a model of another tyre, and about what is not in the readings any more."""
+    """The answer in one sentence, preceded by a warning about another tyre and sentences on corrected or left-out readings."""
     other = next((remark for remark in diagnosis.notes if isinstance(remark, AnotherTyre)), None)
     warned = "" if other is None else f"Warning: {other.sentence} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
@@ -52,7 +52,7 @@ def headline(diagnosis: Diagnosis) -> str:
 
 
 def verdict(diagnosis: Diagnosis) -> str:
-    """The answer without numbers and full stop."""
+    """The answer without numbers and without full stop."""
     effects = diagnosis.repaired or diagnosis.effects
     if effects:
         names = listed([_with_ties(found) for found in effects])
@@ -72,7 +72,7 @@ def verdict(diagnosis: Diagnosis) -> str:
 
 
 def _taken_off(diagnosis: Diagnosis) -> list[str]:
-    """Sentences, without full stop, about errors that were taken off the readings before effects were looked for."""
+    """Sentences, without full stop, about errors that were subtracted from the readings before the search for effects."""
     return [remark.said for remark in diagnosis.notes if isinstance(remark, TakenOff)]
 
 
@@ -96,14 +96,14 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
 
 
 def _as_read(diagnosis: Diagnosis, channel: str) -> str:
-    """The misfit of all readings as they were read, for a sentence; empty if nothing was taken off them or left out."""
+    """The misfit of all uncorrected readings, for a sentence; empty if no reading was corrected or left out."""
     if not (_taken_off(diagnosis) or any(isinstance(remark, Misread) for remark in diagnosis.notes)):
         return ""
     return f"{short(diagnosis.gap_before.rms(channel))} {CHANNELS[channel].unit} as read, "
 
 
 def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
-    """Zeros of single set-ups that were estimated beside the effects: value and standard error by number."""
+    """By name, value and standard error of the zeros of single set-ups, estimated together with the effects."""
     errors = {name: error_of(name) for name in diagnosis.coefficients}
     return {
         n: diagnosis.coefficients[n] for n, error in errors.items() if error is not None and error.of_setup
@@ -138,7 +138,7 @@ def _named(diagnosis: Diagnosis) -> str:
 
 
 def _suspicions(diagnosis: Diagnosis) -> str:
-    """What is named but not repaired, and why; empty if everything is repaired."""
+    """A sentence on effects that are named but not repaired; empty if all are repaired."""
     found = diagnosis.suspected
     if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
         return ""
@@ -177,7 +177,7 @@ def source(noise: Noise) -> str:
 
 
 def scatter(noise: Noise) -> list[str]:
-    """The noise that was found beside the stated one, a sentence per channel."""
+    """Sentences on the estimated noise and the stated one, one per channel."""
     out = []
     for name, unit, found in _measured(noise):
         part = noise.scatter[name]
@@ -207,7 +207,7 @@ def outlier(found: Outlier) -> str:
 
 
 def separation(found: Separation | None) -> str:
-    """The run that separates two explanations; empty without a tie."""
+    """The run that separates two explanations, in words; empty without a tie."""
     if found is None:
         return ""
     run = found.run.value.format(load=found.load)
@@ -217,14 +217,14 @@ def separation(found: Separation | None) -> str:
 
 
 def method(validation: Validation) -> str:
-    """The way in which sweeps were left out."""
+    """The method of leaving sweeps out, in words."""
     if validation.within_runs:
         return f"{validation.folds} parts of every run left out in turn"
     return f"each of {validation.folds} sweeps left out in turn"
 
 
 def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
-    """What to do about an effect; numbers in the rig's own axes."""
+    """What to do about an effect, in words; numbers are in the rig's own axes."""
     effect = found.effect
     if effect.switches:
         return "switch the simulation's turn slip on"
@@ -241,7 +241,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
 
 
 def _is_significant(found: AcceptedEffect, name: str) -> bool:
-    """Whether a number of an effect differs from its value before."""
+    """Whether a number of an effect differs significantly from its value before."""
     value, u = found.parameters[name]
     return abs(value - found.before[name]) > constants.TWO_SIGMA * u
 
@@ -258,17 +258,17 @@ def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -
 
 
 def status(effect: Effect, before: float, stderr: float) -> str:
-    """The reason of a coefficient, for its comment in the corrected property file."""
+    """The reason for a coefficient's value, for its comment in the corrected property file."""
     return f"diagnosed, {effect.name}, was {before:.6g}, +- {stderr:.2g}"
 
 
 def adjusted(before: float, stderr: float) -> str:
-    """The reason of an inexact coefficient that was estimated beside the effects."""
+    """The comment of a coefficient that was estimated together with the effects."""
     return f"adjusted with the diagnosis, was {before:.6g}, +- {stderr:.2g}"
 
 
 def place(region: Mapping[str, tuple[float, float]]) -> list[str]:
-    """The ranges of a region in words; none for the whole programme."""
+    """The ranges of a region in words; empty for the whole programme."""
     return [_range(name, *limits) for name, limits in region.items()]
 
 
@@ -285,7 +285,7 @@ def _around(bump: Bump) -> str:
 
 
 def best_effect(found: BestEffect) -> str:
-    """The effect that explains residuals best, with its numbers and its significance."""
+    """A clause on the effect that explains residuals best, with its numbers and its significance."""
     step = found.best
     numbers = [_number(name, value, u) for name, (value, u) in step.numbers.items()]
     listed = f" ({', '.join(numbers)})" if len(numbers) <= constants.MOST_NUMBERS_IN_SENTENCE else ""
@@ -299,7 +299,7 @@ def best_effect(found: BestEffect) -> str:
 
 
 def _number(name: str, value: float, u: float) -> str:
-    """A number of an effect in words: one of the rig by its value alone, as the effect bears its name."""
+    """A number of an effect in words; a rig number without its name, because the effect has the same name."""
     if error_of(name) is None:
         return f"{name} = {to_uncertainty(value, u)} +- {to_uncertainty(u, u)}"
     value, u, unit = shown(name, value, u)

@@ -1,4 +1,4 @@
-"""Points and direct measurements to an MF-6.2 tyre with standard errors."""
+"""Fit of an MF-6.2 tyre, with standard errors, to points and direct measurements."""
 
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient

@@ -29,7 +29,7 @@ class Agreement:
 
 
 def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
-    """The agreement of a channel (n,); points where it was not measured do not count."""
+    """The agreement of a channel (n,); points without a measured value are ignored."""
     used = np.isfinite(model) & np.isfinite(measured)
     difference, measured = (model - measured)[used], measured[used]
     if not len(measured):
@@ -52,7 +52,7 @@ def with_points(readings: Readings, points: Points) -> dict[str, Agreement]:
 
 
 def with_odd_part(values: Mapping[str, Any], points: Points, parts: Parts) -> dict[str, Agreement]:
-    """By channel, the agreement of a file for turn slip off with the odd part, which holds no odd shift terms."""
+    """By channel, the agreement of a file for turn slip off with the odd part, both without odd shift terms."""
     straight = points.replace(
         alpha=parts.alpha_odd, phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction)
     )

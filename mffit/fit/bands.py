@@ -1,4 +1,4 @@
-"""How wide the 95 % bands are where the sweeps are, and where they are not: other pressures, other sideslips."""
+"""Widths of the 95 % bands inside the test plan and outside it: at other pressures and other sideslips."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from mffit.scatter import rms
 
 @dataclass(frozen=True, slots=True)
 class BandBesideSweeps:
-    """Rms half widths of a band over the tested loads, at the one sideslip that was run and where none was."""
+    """Rms half widths of a band over the tested loads, at the sideslip that was run and at one that was not."""
 
     channel: str
-    sideslip: float  #: that was run [rad]
-    half_at: float  #: there [N]
+    sideslip: float  #: sideslip that was run [rad]
+    half_at: float  #: half width at it [N]
     beside: float  #: sideslip that was not run [rad]
-    half_beside: float  #: there [N]
+    half_beside: float  #: half width at that one [N]
 
     @property
     def wider(self) -> bool:
-        """Whether the fit knows the force clearly less well where no sweep is."""
+        """Whether the band is clearly wider at the sideslip that was not run."""
         return self.half_beside > constants.WIDER_BANDS * self.half_at
 
 
@@ -38,16 +38,16 @@ class Bands:
     """Rms half width of the 95 % bands of Fy over the tested angles and loads, and what widens them."""
 
     main: float  #: pressure of most sweeps [Pa]
-    half: float  #: at it [N]
+    half: float  #: half width at the main pressure [N]
     others: tuple[float, ...] = ()  #: the other pressures that were run, and the nominal one [Pa]
-    half_of_others: float = 0.0  #: at these [N]; 0 without others
+    half_of_others: float = 0.0  #: half width at the other pressures [N]; 0 without others
     unseen: str = ""
-    """The coefficient without effect in these sweeps with more than half of the variance there; empty without one."""
-    share: float = 0.0  #: its share
+    """The held coefficient that causes more than half of the variance at the other pressures; empty if there is none."""
+    share: float = 0.0  #: largest share of that variance by one held coefficient
     half_of_exact_zeros: float = 0.0
-    """Half width at the pressure of most sweeps if the zeros of the rig were exactly known [N]."""
-    combined: BandBesideSweeps | None = None  #: of Fx, where slip was run at one sideslip only
-    other_side: BandBesideSweeps | None = None  #: of Fy, where sideslip was run to one side only
+    """Half width at the main pressure if the zeros of the rig were exactly known [N]."""
+    combined: BandBesideSweeps | None = None  #: of Fx, if slip was run at one sideslip only
+    other_side: BandBesideSweeps | None = None  #: of Fy, if sideslip was run to one side only
 
     @property
     def wider(self) -> bool:
@@ -62,9 +62,9 @@ def bands(
     points: Points,
     exact_zeros: Predictor | None = None,
 ) -> Bands:
-    """The bands of a fitted tyre on a straight path, in which readings of a new run lie.
+    """The 95 % bands for readings of a new run of the fitted tyre on a straight path.
 
-    ``held`` names the coefficients that the fit took as exact; ``exact_zeros`` is what would be known with the zeros of the rig.
+    ``held`` names the coefficients that the fit took as exact; ``exact_zeros`` predicts with exactly known zeros of the rig.
     """
     main = float(np.median(points.p[main_pressure(points)]))
     pressures = [*levels.level_values(points.p, levels.PRESSURE), float(tyre.values["NOMPRES"])]
@@ -86,7 +86,7 @@ def bands(
 
 
 def _beside_sweeps(known: Predictor, tyre: Simulation, points: Points) -> Iterator[BandBesideSweeps]:
-    """The bands of Fx halfway to the only sideslip with slip, and of Fy opposite to the only side that was run."""
+    """The bands of Fx at half the only sideslip with longitudinal slip, and of Fy on the side that was not run."""
     found = []
     run = [alpha for alpha in sideslips_with_slip(points) if abs(alpha) > STRAIGHT.rad]
     if run and "Fx" in known.channels and len(set(levels.nearest_labels(np.abs(run), levels.SIDESLIP))) == 1:
@@ -105,7 +105,7 @@ def _half(known: Predictor, tyre: Simulation, where: Points, channel: str = "Fy"
 
 
 def _widest(known: Predictor, held: Collection[str], tyre: Simulation, where: Points) -> tuple[str, float]:
-    """The held coefficient that, if it were exactly known, would narrow the band of Fy most, and its share of the variance."""
+    """The held coefficient whose exact value would narrow the band of Fy most, and its share of the variance."""
     covariance = known.channels["Fy"].covariance
     slopes = tyre.sensitivities(where, known.names, ("Fy",))[1].Fy
     across = np.mean((slopes @ covariance) ** 2, axis=0) / np.maximum(np.diag(covariance), 1e-300)

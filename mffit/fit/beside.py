@@ -1,4 +1,4 @@
-"""Coefficients that come from elsewhere than the points: radii, rolling resistance, relaxation, a sister tyre."""
+"""Coefficients determined outside the main fit: from radii, rolling resistance, relaxation or a sister tyre."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class BesideNumbers:
-    """Coefficients that were found after the others, from readings or files of their own."""
+    """Coefficients determined separately from the main fit, from their own readings or files."""
 
     values: Mapping[str, float] = field(default_factory=dict)  #: (k,)
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
-    """(k, k) from their own readings, where the others are exact."""
-    leans_on: tuple[str, ...] = ()  #: (m,) coefficients of the fit that their values follow
+    """(k, k) with the coefficients of the main fit taken as exact."""
+    leans_on: tuple[str, ...] = ()  #: (m,) coefficients of the main fit on which these values depend
     slope: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  #: (k, m) derivatives by these
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """The coefficients with the standard uncertainties from their own readings."""
+        """The coefficients with the standard uncertainties of ``covariance``."""
         u = np.sqrt(np.diag(self.covariance)).tolist()
         return {n: Quantity(x, s, BY_NAME[n].unit) for (n, x), s in zip(self.values.items(), u, strict=True)}
 
     def only(self, names: Collection[str]) -> BesideNumbers:
-        """Some of them."""
+        """The record with the named coefficients only."""
         rows = [i for i, name in enumerate(self.values) if name in names]
         return replace(
             self,

@@ -1,4 +1,4 @@
-"""What ``[coefficients]`` of tyre.toml sets, as the fit uses it: held values, bounds, priors and starting values."""
+"""Settings of ``[coefficients]`` in tyre.toml, as the fit uses them: held values, bounds, priors and starting values."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from tir.parameters import BY_NAME
 
 Bounds = tuple[float, float]
 HELD_BY_HAND = "held in [coefficients] of tyre.toml"
-"""Why a coefficient is held that the data would determine."""
+"""Reason given for a held coefficient that the data may well determine."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hand:
-    """Coefficients that the engineer decided on; empty by default."""
+    """Coefficients that the engineer set; empty by default."""
 
     held: Mapping[str, float] = field(default_factory=dict)  #: value of every held coefficient
-    from_base: frozenset[str] = frozenset()  #: those of them that have the base file's value
+    from_base: frozenset[str] = frozenset()  #: coefficients held at the base file's value
     bounded: Mapping[str, Bounds] = field(default_factory=dict)
     priors: Mapping[str, Prior] = field(default_factory=dict)
     starts: Mapping[str, float] = field(default_factory=dict)
@@ -35,7 +35,7 @@ class Hand:
         return tuple(dict.fromkeys([*self.held, *self.bounded, *self.priors, *self.starts]))
 
     def bounds(self, name: str) -> Bounds:
-        """The bounds that the fit keeps."""
+        """The bounds of a coefficient: those set by hand, else those of the table."""
         return self.bounded.get(name, BY_NAME[name].bounds)
 
     def inside(self, name: str, value: float) -> float:
@@ -47,7 +47,7 @@ class Hand:
         return min(max(value, lower + margin), upper - margin)
 
     def within(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The values with those beyond a bound moved to it."""
+        """The values, clipped to the bounds set by hand."""
         found = {name: values[name] for name in self.bounded if name in values}
         return {
             **values,
@@ -55,15 +55,15 @@ class Hand:
         }
 
     def starting(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The starting values, those set by hand in their places."""
+        """The starting values, replaced by those set by hand and clipped to the bounds set by hand."""
         return self.within({**values, **self.starts})
 
     def without_held(self, names: Any) -> list[str]:
-        """The names of coefficients that are not held."""
+        """The names without those of held coefficients."""
         return [name for name in names if name not in self.held]
 
     def mark(self, name: str) -> str:
-        """What was set, in two or three words; empty if nothing was."""
+        """What is set for a coefficient, in a few words; empty if nothing is."""
         if name in self.from_base:
             return "base value held by hand"
         if name in self.held:
@@ -73,7 +73,7 @@ class Hand:
         return f"{' and '.join(found)} by hand" if found else ""
 
     def said(self, name: str) -> str:
-        """What was set, with its numbers."""
+        """What is set for a coefficient, in words with numbers."""
         if name in self.held:
             return f"{name} held at {self.held[name]:.6g}{' (base file)' if name in self.from_base else ''}"
         parts = []
@@ -92,7 +92,7 @@ NO_HAND = Hand()
 
 
 def hand_of(config: Config, base: Tyre | None) -> Hand:
-    """What the configuration sets; an InputError if the base file lacks a value that is to come from it."""
+    """The settings of ``[coefficients]``; raises InputError if the base file lacks a value that is to come from it."""
     entries = config.coefficients
     held = {}
     for name, entry in entries.items():

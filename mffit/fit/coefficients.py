@@ -1,4 +1,4 @@
-"""One record per coefficient: its value, its uncertainty and where both come from."""
+"""One record per coefficient: its value, its uncertainty and their origin."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Coefficient:
     fixed: bool
     at_bound: bool
     status: str  #: its origin, as the table of docs/files.md names it
-    correlated_with: str = ""  #: the coefficient with the largest correlation, if this is strong
+    correlated_with: str = ""  #: the coefficient with the largest correlation, if it is strong
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held
     origin: str = ""  #: as the file's comment states it
-    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
+    by_hand: str = ""  #: its settings in [coefficients], in words; empty if there are none
     held: bool = False  #: held by hand at ``value``
     bounds: tuple[float, float] | None = None  #: set by hand
     prior: Prior | None = None  #: set by hand
@@ -39,9 +39,9 @@ class Coefficient:
 def coefficient_records(
     known: Known, fitted: Fitted, fitted_after: Mapping[str, Quantity]
 ) -> dict[str, Coefficient]:
-    """The record of every number of the fitted model.
+    """The record of every numeric coefficient of the fitted model.
 
-    ``fitted_after`` are coefficients that were fitted after the others.
+    ``fitted_after`` has the coefficients that were determined after the main fit.
     """
     stderr = {name: fitted.stderr[name] for name in fitted.values} | {n: q.u for n, q in fitted_after.items()}
     out, hand = {}, known.hand
@@ -69,7 +69,7 @@ def coefficient_records(
 
 
 def _interval(value: float, u: float) -> tuple[float, float]:
-    """The 95 % interval from the curvature of the sum of squares."""
+    """The 95 % interval of a normal distribution."""
     return value - COVERAGE_FACTOR_95 * u, value + COVERAGE_FACTOR_95 * u
 
 
@@ -80,7 +80,7 @@ def _within(interval: tuple[float, float], hand: Hand, name: str) -> tuple[float
 
 
 def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> dict[str, Coefficient]:
-    """The records of the file for a use, which has values of its own where it is derived from the fitted model."""
+    """The coefficient records of the file for one use; those refitted for this file have no standard error."""
     tyre = files.by_use[use].tyre
     derived = files.changed.get(use, ())
     out = {}

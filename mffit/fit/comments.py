@@ -1,4 +1,4 @@
-"""Comments of the property file: where each value comes from and how uncertain it is."""
+"""Comments of the property file: origin and uncertainty of each value."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TIED = "tied to its expected value"
 HELD = "held by hand"
 BORROWED = "from sister, scaled"
 FROM_DATA = ("measured", "fitted", "regularised")
-"""Origins of values that these data decided."""
+"""Origins of values that the data determine."""
 WORDS = {
     "base": "from base",
     CONVERTED: "from base, converted",
@@ -37,7 +37,7 @@ WORDS = {
 def file_comments(
     files: Files, origin: Mapping[str, str], coefficients: Mapping[str, Coefficient]
 ) -> dict[str, dict[str, str]]:
-    """By use of each file, the comment of every value: origin, standard uncertainty, meaning if it is not a coefficient."""
+    """By use of a file, the comment of every value: origin, standard uncertainty, and meaning if it is not a coefficient."""
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
     comments |= {
@@ -63,12 +63,12 @@ def file_comments(
 
 
 def _held_comment(coefficient: Coefficient) -> str:
-    """The comment of a value that the engineer holds."""
+    """The comment of a value held by hand."""
     return f"{WORDS[coefficient.status]}, {HELD}" if coefficient.status in FROM_BASE else HELD
 
 
 def _derived_comment(use: str, coefficient: Coefficient | None) -> str:
-    """The comment of a value that only the file for this use has."""
+    """The comment of a value that was refitted for the file of this use."""
     bounded = coefficient is not None and coefficient.bounds is not None
     return DERIVED.get(use, "") + (", bounds by hand" if bounded else "")
 
@@ -83,7 +83,7 @@ def _comment(row: Parameter, origin: str, tested: Mapping[str, float]) -> str:
 
 
 def _data_comment(coefficient: Coefficient) -> str:
-    """The comment of a value that these data decided."""
+    """The comment of a value that the data determine."""
     text = TIED if coefficient.status == "regularised" else coefficient.status
     if coefficient.stderr is not None and not coefficient.fixed:
         text += f" +- {coefficient.stderr:.2g}"
@@ -92,5 +92,5 @@ def _data_comment(coefficient: Coefficient) -> str:
 
 
 def whole_words(text: str, longest: int = constants.COMMENT_LENGTH) -> str:
-    """The text, cut between words if it is too long for a line."""
+    """The text, cut between words if it is longer than ``longest``."""
     return text if len(text) <= longest else text[: longest + 1].rsplit(" ", 1)[0].rstrip(",:")

@@ -1,4 +1,4 @@
-"""Physical limits that the fitted model keeps over the whole range of the file, not only at the points."""
+"""Physical limits that the fitted model keeps over the whole tested range, not only at the points."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Envelope(NamedTuple):
     gamma: float  #: largest |camber| [rad]
     alpha: float  #: largest |sideslip| [rad]
     pressure: tuple[float, float]  #: [Pa]
-    kappa: float = 0.0  #: largest |longitudinal slip|; 0 where none was run, and the limits of forces under slip do not apply
+    kappa: float = 0.0  #: largest |longitudinal slip|; 0 if none was run, which switches off the limits on forces under slip
 
     @property
     def size(self) -> int:
@@ -32,7 +32,7 @@ class Envelope(NamedTuple):
 
 
 def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndarray) -> list[np.ndarray]:
-    """Friction and stiffness over load [-], lateral and, of a file that has them, longitudinal."""
+    """Friction and stiffness over load [-], lateral and, if the file has them, longitudinal."""
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
     found = (
         stiffness.lateral_friction(p, q, gamma),
@@ -49,7 +49,7 @@ def violations(p: Any, envelope: Envelope) -> np.ndarray:
 
 
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
-    """Every limit at every condition and slip of the envelope (k,), above 0 where broken, and its derivatives (k, m).
+    """Every limit at every condition and slip of the envelope (k,), positive where violated, and its derivatives (k, m).
 
     ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
@@ -63,11 +63,11 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
 
 
 def _rows(p: Any, envelope: Envelope) -> list[Any]:
-    """Each limit at the conditions of the envelope (n,), dimensionless: above 0 where it is broken.
+    """Each limit at the conditions of the envelope (n,), dimensionless: positive where it is violated.
 
-    Limits: mu_y > 0, cornering stiffness < 0, load of its peak > 0 (at 0 the stiffness jumps to the other sign, which stops a
-    search), E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides, trail at zero slip not negative; where
-    longitudinal slip was run, those of :func:`_longitudinal` and :func:`_under_slip` too.
+    Limits: mu_y > 0, cornering stiffness < 0, load of its peak > 0 (at 0 the stiffness changes sign abruptly, which stops a
+    search), E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides, trail at zero slip not negative. If
+    longitudinal slip was run, the limits of :func:`_longitudinal` and :func:`_under_slip` follow.
     """
     Fz, gamma, pressure = grid(envelope)
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
@@ -99,10 +99,10 @@ def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
 
 
 def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any]:
-    """Limits at the ends of the slips, driven and braked, to either side.
+    """Limits at the largest longitudinal slips and sideslips of either sign.
 
-    A driven wheel pushes and a braked one pulls; the weights G_xa and G_yk lie between 0 and a little above 1, their slope
-    factors are positive, and their curvature factors at most 1.
+    Fx has the sign of kappa; the weights G_xa and G_yk lie between 0 and a little above 1, their slope factors are positive, and
+    their curvature factors are at most 1.
     """
     k, a = constants.BEYOND_TESTED * envelope.kappa, max(constants.WRITTEN_ALPMAX.rad, envelope.alpha)
     q = _with_slips(p, conditions, [(k, 0.0), (-k, 0.0)])
@@ -116,16 +116,16 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     ):
         G = weight(p, _with_slips(p, conditions, [*corners, *ends]))
         of = factors(p, _with_slips(p, conditions, [(0.0, 0.0)]))
-        over_peak = cos(magic_angle(of.B, of.C, of.E, of.S_H))  # the weight is 1 at zero slip
+        over_peak = cos(magic_angle(of.B, of.C, of.E, of.S_H))  # weights are 1 at zero slip
         rows += [-G, 1.0 / constants.LARGEST_WEIGHT - over_peak]
         rows += [(constants.LEAST_SLOPE_FACTOR - of.B) / 10.0, of.E - 1.0]
     return rows
 
 
 def _dents(p: Any, envelope: Envelope) -> list[Any]:
-    """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse has a dent.
+    """Concavity of the curve of Fy over Fx along longitudinal slip, both over load: positive where the ellipse has a dent.
 
-    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven.
+    Evaluated from three neighbouring slips of the upright wheel, on a grid of loads, sideslips of either sign and slips.
     """
     if not (envelope.kappa > 0.0 and envelope.alpha > 0.0):
         return []
@@ -148,7 +148,7 @@ def _dents(p: Any, envelope: Envelope) -> list[Any]:
 def _with_slips(
     p: Any, conditions: Sequence[np.ndarray], slips: Sequence[tuple[float, float]]
 ) -> normalise.Inputs:
-    """Every condition (load, camber and pressure, (n,) each) at every longitudinal slip and sideslip [rad]."""
+    """Inputs of every condition (load, camber and pressure, (n,) each) at every pair of longitudinal slip and sideslip [rad]."""
     Fz, gamma, pressure = (np.tile(x, len(slips)) for x in conditions)
     kappa, alpha = (np.repeat(x, len(conditions[0])) for x in zip(*slips, strict=True))
     return normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)

@@ -1,4 +1,4 @@
-"""Which coefficients the data determine, and what is missing for the others."""
+"""Coefficients that the data determine, and the data that the other coefficients need."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class StageCoverage:
     supported: bool
     free: tuple[str, ...]
     held: tuple[str, ...]
-    missing: tuple[str, ...]  #: what the data lack for the held ones, as sentences
-    by_hand: tuple[str, ...] = ()  #: those of the held ones that the engineer holds
+    missing: tuple[str, ...]  #: why coefficients are held, as sentences
+    by_hand: tuple[str, ...] = ()  #: coefficients that the engineer holds
 
 
 LACKING = {
@@ -43,15 +43,15 @@ LACKING = {
     "pressure_loads": "pressures were run at {where} only, which does not separate the pressure effect on cornering stiffness "
     "from that on the load of its peak",
 }
-"""By the word of a need in the table of parameters, the sentence where it is not met."""
+"""By a need's word in the parameter table, the sentence that says that the data do not meet it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """What was run."""
+    """The test plan that was run, as far as it decides what is identifiable."""
 
     run: Mapping[str, int]
-    """How often each need of the table is met: levels of a set-point, or 0 and 1."""
+    """By need of the parameter table, the number of levels that were run; 0 or 1 for needs without levels."""
     both_flanks: bool  #: sideslip towards both flanks of the tyre: to both sides, or with the tyre turned on its rim or backwards
     measured: tuple[str, ...]  #: channels with readings
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
@@ -59,10 +59,10 @@ class Design:
 
 
 def design(points: Points, side: str) -> Design:
-    """What was run, of a tyre of a side."""
+    """The test plan of a tyre of this side."""
     curved = bool(np.any(points.phi_t != 0.0))
     held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
-    # A wheel that only rolls straight on shows radii over load and pressure, and no stiffness.
+    # Points of an upright wheel rolling straight show radii, not stiffnesses, so their pressures do not count here.
     load = np.where(_straight_on(points), levels.NO_LEVEL, held)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_ways = bool(
@@ -95,28 +95,28 @@ def design(points: Points, side: str) -> Design:
 
 
 def _both_signs(signs: np.ndarray) -> bool:
-    """Whether signs (n,) are positive and negative."""
+    """Whether more than one of the signs (n,) -1, 0 and 1 occurs."""
     return len(np.unique(signs)) > 1
 
 
 def side_run(points: Points) -> bool:
-    """Whether sideslip was run, and to one side only."""
+    """Whether sideslip was run to exactly one side."""
     seen = points.alpha[np.abs(points.alpha) > STRAIGHT.rad]
     return len(np.unique(np.sign(seen))) == 1
 
 
 def _straight_on(points: Points) -> np.ndarray:
-    """Mask (n,) of an upright wheel that rolls freely straight on: radii depend on its load and pressure, stiffnesses do not."""
+    """Mask (n,) of the points at which the upright wheel rolls freely on a straight path without sideslip."""
     upright = np.abs(points.gamma) < UPRIGHT.rad
     straight = (np.abs(points.alpha) < STRAIGHT.rad) & (points.phi_t == 0.0)
     return np.asarray(upright & straight & points.free_rolling)
 
 
 def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
-    """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
+    """The coverage matrix: per stage the free coefficients, the held ones, and what the data lack for these.
 
-    Those named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels other than Fy
-    and Mz are listed where there are such data.
+    Coefficients named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels other
+    than Fy and Mz are listed only if there are such data.
     """
     seen = design(points, side)
     rows = []
@@ -150,12 +150,12 @@ def _listed(stage: Stage, seen: Design) -> bool:
 
 
 def why_held(name: str, points: Points, side: str) -> str:
-    """What the data lack for a coefficient; empty if they determine it, and without a name."""
+    """What the data lack for a coefficient; empty if they determine it or if ``name`` is empty."""
     return _missing(BY_NAME[name], design(points, side)) if name else ""
 
 
 def _missing(row: Parameter, seen: Design) -> str:
-    """Why these data do not determine the coefficient; empty if they do."""
+    """Why these data do not determine a coefficient; empty if they do."""
     if row.channel not in ("", "Fy", *seen.measured):
         return f"{row.channel} was not measured"
     if row.shift and not seen.shifts:
@@ -176,6 +176,9 @@ def _missing(row: Parameter, seen: Design) -> str:
 
 
 def _side_known(row: Parameter, seen: Design) -> bool:
-    """Whether sideslip to one side shows an asymmetry: conicity towards both flanks; on a disc a small prior decides it."""
+    """Whether a coefficient of asymmetry is determined although sideslip was run to one side only.
+
+    On a disc its prior is narrow; elsewhere, conicity is determined if sideslip was run towards both flanks of the tyre.
+    """
     small = bool(seen.run["curvature"]) and row.disc_spread is not None
     return small or (row.conicity and seen.both_flanks)

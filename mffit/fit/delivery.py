@@ -1,4 +1,4 @@
-"""The property files of a fit, from its numbers and from what is known otherwise."""
+"""The property files of a fit, from fitted, measured, borrowed and estimated values."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ NO_ZERO = Declaration(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """What determines coefficients beside the least squares of the points."""
+    """Sources of coefficients other than the main fit."""
 
     radii: Vertical  #: from loaded radius and wheel speed
-    steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by the setting that steps
+    steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by stepped setting
     sister: Sister | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Delivered:
-    """What a fit writes."""
+    """The files of a fit and the records behind them."""
 
     known: Known  #: every value of the property file, with its origin
     coefficients: dict[str, Coefficient]
     files: Files
-    lent: Lent | None  #: what a sister tyre gave
+    lent: Lent | None  #: coefficients from a sister tyre
     relaxation: tuple[Relaxation, ...]  #: one per direction
-    posterior: Posterior  #: of all of them
-    zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
+    posterior: Posterior  #: of all coefficients and rig errors
+    zeros: Mapping[str, tuple[float, float]]  #: zeros of My, with standard errors
 
 
 def deliver(
@@ -59,7 +59,7 @@ def deliver(
     beside: Beside,
     only: str | None = None,
 ) -> Delivered:
-    """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
+    """The files of a fit and the records of their coefficients; ``only`` limits the files to one use."""
     held = {name: fitted.simulation.values[name] for name in fitted.held}
     known = known_after_fit(known, fitted.values, fitted.regularised, held, base)
     rolling = _rolling_resistance(config, known, points)
@@ -87,7 +87,7 @@ def deliver(
 
 
 def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:
-    """Rolling resistance from the measured moment My; where that is missing, from Fx of the wheel that coasts."""
+    """Rolling resistance from the measured moment My or, without My, from Fx of the coasting wheel."""
     declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
     hand, side = known.hand.held, config.tyre.side
     if np.any(np.isfinite(points.My)):
@@ -99,4 +99,4 @@ def _rolling_resistance(config: Config, known: Known, points: Points) -> Resista
     u_gain = math.hypot(config.rig.u("gain_Fx"), config.rig.u("gain_Fz"))
     coasted = coasting(points, known.values)
     found = rolling_resistance(known.values, coasted, of_moment, hand, side, u_gain)
-    return replace(found, zeros={})  # that of Fx is a number of the fit
+    return replace(found, zeros={})  # the zero of Fx is already a number of the main fit

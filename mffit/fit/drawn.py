@@ -1,4 +1,4 @@
-"""Tyres drawn from what a fit leaves uncertain."""
+"""Random tyres drawn from the posterior of a fit."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tir.parameters import BY_NAME
 def ensemble(found: FitResult, count: int, *, seed: int = 0) -> list[dict[str, float]]:
     """Coefficients of ``count`` tyres drawn from the joint posterior, each within its bounds and the physical limits.
 
-    A tyre is drawn again until it keeps the limits; after many draws nearer and nearer to the best one.
+    A tyre is drawn again until it keeps the limits; after many rejected draws, closer and closer to the best tyre.
 
     Parameters
     ----------
     found : the result of the fit
     count : number of members
-    seed : of the random numbers; the same seed gives the same members
+    seed : seed of the random numbers; the same seed gives the same members
     """
     assert found.search is not None
     random, posterior, best = np.random.default_rng(seed), found.posterior, found.tyre.values
@@ -45,7 +45,7 @@ def ensemble(found: FitResult, count: int, *, seed: int = 0) -> list[dict[str, f
 
 
 def _is_possible(best: Mapping[str, Any], drawn: Mapping[str, float], envelope: Envelope | None) -> bool:
-    """Whether drawn stiffnesses are positive, and the limits hold over the envelope of the data."""
+    """Whether the drawn structural stiffnesses are positive and the limits hold over the envelope."""
     if not all(x > 0.0 for name, x in drawn.items() if name.endswith("STIFFNESS")):
         return False
     p = SimpleNamespace(**{**best, **drawn})

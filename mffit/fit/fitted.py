@@ -1,4 +1,4 @@
-"""The record of a finished search: values, errors and weights at the solution; and the same with PECP1 free."""
+"""The record of a finished fit: values, uncertainties and weights at the solution."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """Values and errors of the free numbers after the polish."""
+    """Values and uncertainties of the free numbers after the joint fit."""
 
-    values: Mapping[str, float]  #: coefficients
+    values: Mapping[str, float]  #: fitted coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
     problem: FitProblem  #: at the solution, with the final weights
-    numbers: tuple[FreeNumber, ...]  #: that were free in the end
+    numbers: tuple[FreeNumber, ...]  #: numbers that were free in the last search
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
-    held_rig: Mapping[str, float]  #: the same of rig errors that it took as absent
+    held_rig: Mapping[str, float]  #: standard uncertainty of rig errors that the fit took as exact
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
-    at_limit: frozenset[str]  #: those of them that only a physical limit holds
-    regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
-    left: float  #: fall of the sum of squares that a step still promises: 0 at its minimum
-    hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
+    at_limit: frozenset[str]  #: numbers at a physical limit and not at their own bound
+    regularised: frozenset[str]  #: coefficients that depend on their priors as much as on the points
+    left: float  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
+    hand: Hand = NO_HAND  #: entries of [coefficients]
 
     @property
     def simulation(self) -> Simulation:
@@ -42,7 +42,7 @@ class Fitted:
 
     @property
     def rig_stated(self) -> dict[str, tuple[float, float]]:
-        """The rig errors, and the conditions from which they count."""
+        """The rig errors, and the reference conditions relative to which they are defined."""
         errors = (error_of(name) for name in self.rig)
         references = {error.counts_from for error in errors if error is not None and error.counts_from}
         return {**self.rig, **{name: (self.problem.value(name), 0.0) for name in sorted(references)}}
@@ -54,17 +54,17 @@ class Fitted:
 
     @property
     def inner(self) -> list[FreeNumber]:
-        """The numbers that are at no bound, with their values as starting values."""
+        """The numbers inside their bounds, with their values as starting values."""
         return self.problem.starting_here([n for n in self.numbers if n.name not in self.at_bound])
 
     @property
     def taken_as_exact(self) -> dict[str, float]:
-        """Standard uncertainty of all numbers that the fit took as exact and that have one."""
+        """Standard uncertainty, where positive, of all numbers that the fit took as exact."""
         return {name: u for name, u in {**self.held, **self.held_rig}.items() if u > 0.0}
 
 
 def uncertain(number: FreeNumber) -> Uncertain:
-    """A number at its start with its prior; one without has half the width of the values that tyres have."""
+    """The number's prior relative to its starting value; without a prior, its spread is half the usual width among tyres."""
     if np.isfinite(number.spread):
         return Uncertain(number.name, number.expected - number.start, number.spread)
     width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
@@ -77,9 +77,10 @@ def left_by(
     without: np.ndarray | None = None,
     near: LinearisedFit | None = None,
 ) -> LinearisedFit:
-    """What a fit leaves of its points, as one linear model; or of all points of a problem, ``without`` rows of which it was made.
+    """The linear model of the fit's residuals at its own points, or at the points of the problem ``of``.
 
-    A coefficient at a bound stays there. The search for the components begins at those ``near``, if there are any.
+    ``without`` are rows that the fit did not use. Coefficients at a bound are held there. The search for the variance components
+    starts at those of ``near``, if given.
     """
     free = fitted.problem.starting_here(fitted.numbers)
     numbers = [uncertain(n) for n in free if error_of(n.name) or n.name not in fitted.at_bound]
@@ -91,10 +92,10 @@ def left_by(
 def told_by_readings(
     fitted: Fitted, left: LinearisedFit, names: Sequence[str]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Information (k, k) of all readings about numbers, and the pull (k,) on them where they are; without priors.
+    """Information matrix (k, k) of all readings about the named numbers, and the score (k,) at their values; without priors.
 
-    The errors of the readings are those of the linear model of what the fit leaves: what the formula misses is common to all
-    runs, and each run has its own, so that runs count and not readings.
+    Errors of the readings follow the linear model of the residuals ``left``: a model error common to all runs, and one per run.
+    Repeating readings within a run therefore adds little information.
     """
     problem = fitted.problem
     residual, by_radii = problem.radii_rows(names)
@@ -107,10 +108,10 @@ def told_by_readings(
 
 
 def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
-    """The fit with the uncertainty of its numbers by errors of the readings as the linear model of what it leaves describes them.
+    """The fit with a posterior for correlated errors of the readings, as the linear model of its residuals describes them.
 
-    The fit weighs its readings as independent. That its numbers are not the most probable ones of that model counts as an error
-    of this size.
+    The fit itself weighs readings as independent, so its solution differs from the most probable one of that model. The
+    difference is added to the covariance.
     """
     held = {**fitted.held, **fitted.held_rig}
     numbers = [uncertain(number) for number in fitted.problem.starting_here(fitted.numbers)]
@@ -127,7 +128,10 @@ def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
 
 
 def with_errors_around(fitted: Fitted, best: Fitted) -> Fitted:
-    """A fit that took up influences for which a better one has numbers: as uncertain as that, and as far as it is from it."""
+    """The fit with the covariance of ``best`` plus the squared distance between the two solutions.
+
+    For a fit that does not model influences which ``best`` models, so that its coefficients absorb them.
+    """
     names = fitted.posterior.names
     rows = [best.posterior.names.index(name) for name in names]
     moved = [fitted.problem.value(name) - best.problem.value(name) for name in names]
@@ -142,10 +146,10 @@ def _with_posterior(fitted: Fitted, posterior: Posterior) -> Fitted:
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:
-    """The simulation refitted from its solution with PECP1 free.
+    """The simulation refitted from the solution with PECP1 free.
 
-    If PECP1 is held at a value that is a little off, the other spin coefficients compensate for it, which distorts the effect of
-    finite spin on the slopes of the model.
+    If PECP1 is held at a slightly wrong value, the other spin coefficients compensate for it, which distorts the effect of finite
+    spin on the slopes of the model.
     """
     name, problem = "PECP1", fitted.problem
     if any(number.name == name for number in fitted.numbers):

@@ -1,4 +1,4 @@
-"""``fit``: from points and direct measurements to the property files."""
+"""``fit``: property files from points and direct measurements."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def fit(
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
 ) -> FitResult:
-    """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
+    """The fit of MF 6.2 to raw points with turn slip on; directly measured values are held.
 
     Parameters
     ----------
@@ -71,9 +71,9 @@ def fit(
     points : raw points, angles as read
     parts : their odd and even parts
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
-    base : property file with the values that are not fitted, if there is one
+    base : property file that supplies the values that are not fitted, if any
     progress : called with a sentence before each step
-    steps : samples of steps of the sideslip angle and of slip, by the setting that steps
+    steps : samples of step tests, by the stepped setting: sideslip angle or longitudinal slip
 
     Raises
     ------
@@ -106,7 +106,7 @@ def fit(
     else:
         left_by_file, fitted = left_by_formula, full
     found = replace(found, plain=fitted, full=full)
-    # No file holds what is beside it.
+    # A property file has no coefficient for these effects, so they are switched off.
     delivered = fitted.simulation.with_numbers(
         {e.name: e.undisturbed for e in BESIDE if e.name in fitted.rig}
     )
@@ -188,8 +188,10 @@ def fit(
 def _fitted_and_judged(
     config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> tuple[NuisanceFit, LinearisedFit, tuple[Doubt, ...]]:
-    """The fits to all points, what the full one leaves, and the sweeps that contradict the others; one beyond plausibility ends
-    the build."""
+    """The fits to all points, the linear model of the full fit's residuals, and the sweeps that contradict the others.
+
+    An InputError ends the build if a sweep contradicts the others beyond plausibility.
+    """
 
     found = fit_with_nuisances(config, problem, start, plan, progress)
     progress(PREDICTING)

@@ -24,9 +24,9 @@ from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
 
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
-"""Values that the build itself decides."""
+"""Keys whose values the build sets itself."""
 DETERMINED = ("measured", "fitted", "regularised")
-"""Origins of what points decide, which no estimate replaces."""
+"""Origins of values that points determine; estimates never replace them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Known:
     hand: Hand = NO_HAND
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
-        """The same with some values replaced, except those held by hand; without ``origin`` they keep theirs."""
+        """The record with some values and their ``origin`` replaced; held values stay, and "" keeps the old origin."""
         replaced = {name: value for name, value in found.items() if name not in self.hand.held}
         words = dict.fromkeys(replaced, origin) if origin else {}
         return Known({**self.values, **replaced}, {**self.origin, **words}, self.hand)
@@ -53,7 +53,7 @@ def known_before_fit(
     fleet: Mapping[str, Prior],
     hand: Hand = NO_HAND,
 ) -> Known:
-    """Every value before the fit; those held by hand stay as they are from here on."""
+    """Every value before the fit, with its origin; values held by hand never change afterwards."""
     template = Tyre.from_values({}) if base is None else base
     known = Known(
         values={**template.values, **hand.held},
@@ -71,7 +71,7 @@ def known_before_fit(
     given = given_values(config.tyre)
     assumed = {name: x for name, x in given.items() if not _is_stated(config.tyre, name)}
     known = known.having(given, "given").having(assumed, "default")
-    if base is None:  # already here, because the vertical terms among them decide the rolling radius
+    if base is None:  # before the radii, because the estimated vertical terms affect the rolling radius
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
     known = known.having(covered_ranges(points), "range")
@@ -113,16 +113,16 @@ def known_after_fit(
     held: Mapping[str, float],
     base: Tyre | None,
 ) -> Known:
-    """The values with the fitted ones in their place, and the estimates that follow from these.
+    """The values after the fit, with the estimates that follow from the fitted ones.
 
-    A fitted coefficient that belongs to no stage keeps its origin; ``regularised`` ones are decided by the priors as much as by
-    the points. ``held`` ones have the values of the fit, some of them starts that were read off the points.
+    A fitted coefficient that belongs to no stage keeps its origin. ``regularised`` coefficients depend on their priors as much
+    as on the points. ``held`` has the coefficients that the fit took as exact, some at starting values read off the points.
     """
     known = known.having({name: x for name, x in held.items() if x != known.values[name]}, "estimate")
     for name, value in fitted.items():
         origin = "regularised" if name in regularised else "fitted" if BY_NAME[name].stage else ""
         known = known.having({name: value}, origin)
-    if base is None:  # again, because friction and stiffness among them follow the fitted ones
+    if base is None:  # again, because some estimates scale with the fitted friction and stiffness
         found = estimates(known.values)
         known = known.having(
             {name: v for name, v in found.items() if known.origin[name] not in DETERMINED}, "estimate"
@@ -131,7 +131,7 @@ def known_after_fit(
 
 
 def _is_stated(tyre: Any, name: str) -> bool:
-    """Whether ``[tyre]`` states a value itself, rather than by the default of its key."""
+    """Whether ``[tyre]`` states a value, rather than its key's default."""
     return name not in KEYS_OF_TYRE or KEYS_OF_TYRE[name] in tyre.model_fields_set
 
 
@@ -167,14 +167,14 @@ ESTIMATED_SHAPES = {
     "QSX3": 0.03,
     "QSY1": 0.01,
 }
-"""Shapes that are common to road tyres: estimates that complete the file, so that a simulation can run."""
+"""Shape coefficients usual for road tyres, which complete the file so that a simulation can run."""
 
 
 def estimates(values: Mapping[str, Any]) -> dict[str, float]:
-    """Vertical, longitudinal, combined-slip, rolling and structural coefficients, scaled from what is known.
+    """Vertical, longitudinal, combined-slip, rolling and structural coefficients, scaled from known values.
 
-    The static deflection at nominal load is 5 % of the unloaded radius, the longitudinal peak the lateral one, the longitudinal
-    slip stiffness 1.3 times the cornering stiffness, and the arm of the load half the width per radian of camber.
+    The static deflection at nominal load is 5 % of the unloaded radius; the longitudinal peak equals the lateral one; the
+    longitudinal slip stiffness is 1.3 times the cornering stiffness; the arm of the load is half the width per radian of camber.
     """
     v = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     R0 = v["UNLOADED_RADIUS"]

@@ -28,19 +28,19 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class FitPlan:
-    """The free numbers of a fit, their priors, and the numbers that are held."""
+    """The free numbers of a fit with their priors, and the held numbers."""
 
     cover: tuple[StageCoverage, ...]
     expected: Mapping[str, float]  #: centre of every coefficient's prior
-    scatter: Mapping[str, float]  #: its standard deviation
-    rig: tuple[FreeNumber, ...] = ()  #: rig errors, free in the polish
-    channels: tuple[str, ...] = tuple(SIDEWAYS)  #: that the fit uses
-    extra: tuple[str, ...] = ()  #: coefficients that are free in the polish only
+    scatter: Mapping[str, float]  #: standard deviation of every coefficient's prior
+    rig: tuple[FreeNumber, ...] = ()  #: free rig errors
+    channels: tuple[str, ...] = tuple(SIDEWAYS)  #: channels that the fit uses
+    extra: tuple[str, ...] = ()  #: free coefficients that belong to no stage
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
     held_rig: Mapping[str, float] = field(default_factory=dict)
-    """The same of declared rig errors."""
-    hand: Hand = NO_HAND  #: bounds that replace those of the table, and what is held as exact
+    """Standard uncertainty of declared rig errors that the fit takes as exact."""
+    hand: Hand = NO_HAND  #: bounds, priors and held values from [coefficients]
 
     @property
     def free(self) -> list[str]:
@@ -48,7 +48,7 @@ class FitPlan:
         return [name for row in self.cover for name in row.free]
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
-        """The named coefficients from their current values, with their bounds and priors."""
+        """The named coefficients with their bounds and priors, starting at their current values."""
         return [
             FreeNumber(
                 name=name,
@@ -62,10 +62,10 @@ class FitPlan:
         ]
 
     def _spread(self, name: str, value: float) -> float:
-        """Standard deviation of the normal prior that pulls at a value as the prior of a coefficient does.
+        """Standard deviation of the normal prior that pulls a value as hard as the coefficient's own prior does.
 
-        A spread that n published tyres show is uncertain itself: of a further tyre they tell Student's t with n - 1 degrees of
-        freedom, whose pull fades where the points show a value far from theirs.
+        A spread estimated from n published tyres is itself uncertain, so a further tyre follows Student's t with n - 1 degrees
+        of freedom. The pull of this prior fades at values far from those of the published tyres.
         """
         spread, row = self.scatter.get(name, math.inf), BY_NAME[name]
         if spread != row.tyres_spread:
@@ -73,14 +73,14 @@ class FitPlan:
         return spread * math.sqrt((row.tyres - 1 + ((value - self.expected[name]) / spread) ** 2) / row.tyres)
 
     def numbers(self, problem: FitProblem) -> list[FreeNumber]:
-        """All free coefficients and rig errors, from their current values."""
+        """All free coefficients and rig errors, starting at their current values."""
         return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 
 
 def fitted_channels(cover: Iterable[StageCoverage], points: Points) -> tuple[str, ...]:
-    """Channels that a fit uses: those of every test, and measured ones for which a stage frees a coefficient.
+    """Channels that a fit uses: Fy, Mz, and every other measured channel for which a stage frees a coefficient.
 
-    A channel for which nothing is free would take time and change no number.
+    A channel without a free coefficient would cost time and change no result.
     """
     fitted = {channel for row in cover if row.free for channel in BY_STAGE[row.stage].channels}
     wanted = {*SIDEWAYS, *(fitted.intersection(points.measured))}
@@ -88,7 +88,7 @@ def fitted_channels(cover: Iterable[StageCoverage], points: Points) -> tuple[str
 
 
 def channels_of(points: Points) -> tuple[str, ...]:
-    """Channels that a fit of these points would use."""
+    """Channels that a fit to these points would use."""
     return fitted_channels(coverage(points, "left"), points)
 
 
@@ -101,9 +101,9 @@ def fit_plan(
     fleet: Mapping[str, Prior],
     turning: TurningZeros | None = None,
 ) -> FitPlan:
-    """The plan for these points.
+    """The plan of the fit to these points.
 
-    ``turning`` are zeros that determine PECP1 where eps_gamma was not measured.
+    ``turning`` holds the turn-slip zeros that determine PECP1 where eps_gamma was not measured.
     """
     cover = coverage(points, config.tyre.side, known.hand.held)
     channels = fitted_channels(cover, points)
@@ -144,7 +144,7 @@ def fit_plan(
 
 
 def _by_hand(plan: FitPlan, hand: Hand) -> FitPlan:
-    """The plan with what [coefficients] sets: the last word on what is free, on bounds and on priors."""
+    """The plan with the entries of [coefficients], which override free numbers, bounds and priors."""
     priors = hand.priors
     return replace(
         plan,

@@ -28,10 +28,11 @@ from tir.parameters import BY_NAME
 
 
 def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) -> Fitted:
-    """The polish, after a pass in which only coefficients of the upright wheel on a straight path are free, and one with all.
+    """The joint fit, started from two passes over thinned points.
 
-    With every number free at once, a search can end where limits hold the curvature of a curve that camber or spin bent. Both
-    passes have the weights of the start: those of an upright fit would count what it lacks as outliers.
+    The first pass frees only coefficients of the upright wheel on a straight path, the second all of them. With every number
+    free at once, a search can end with a curvature factor at its limit. Both passes use the weights at the starting values:
+    with weights from the first pass, effects of camber and spin would count as outliers.
     """
     _require_enough_points(problem.points, plan.free)
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
@@ -49,10 +50,10 @@ def first_fit(problem: FitProblem, start: Mapping[str, float], plan: FitPlan) ->
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
-    """The joint fit with its errors, those of the quadratic form around it.
+    """The joint fit, with uncertainties from the quadratic form around the solution.
 
-    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution, with weights as stated;
-    readings that state no uncertainty get that of their misfit.
+    Weights are balanced between the channels and reduced for outliers. ``stated`` is near the solution and has the stated
+    weights; readings without a stated uncertainty are assigned the scatter of their misfit.
     """
     near = _approached(stated, plan)
     expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
@@ -64,18 +65,18 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
 def with_known_zeros(
     fitted: Fitted, stated: FitProblem, plan: FitPlan
 ) -> tuple[Fitted, FitPlan, LinearisedFit]:
-    """The fit with the zeros of a flat track as they are beside what the formula misses, the plan that holds them so, and what
-    the fit without left.
+    """The fit with zeros of a flat track held at their estimates, its plan, and the linear model of the first fit's residuals.
 
-    No reading of one set-up tells a zero from an asymmetry that the formula misses: a free zero takes it up, tens of standard
-    uncertainties from the readings at zero slip. As the fit was if nothing is missed for certain.
+    One set-up cannot separate a zero from an asymmetry that the formula misses: a free zero absorbs the asymmetry, tens of
+    standard uncertainties away from the readings at zero slip. The zeros are therefore estimated together with the model error.
+    If no model error is proven, the fit and the plan are returned unchanged.
     """
     left = left_by(fitted)
     if not any(channel.is_proven for channel in left.channels.values()):
         return fitted, plan, left
     found = left.zeros
     spread = {n.name: n.spread for n in plan.rig if n.name in found}
-    # What is known with the coefficients as they are, and what these leave open, but no more than was declared.
+    # Uncertainty with fixed coefficients, plus that caused by the coefficients, but at most the declared one.
     u = {n: min(math.hypot(own, fitted.stderr[n]), spread[n]) for n, (_, own) in found.items()}
     plan = replace(
         plan, rig=tuple(n for n in plan.rig if n.name not in found), held_rig={**plan.held_rig, **u}
@@ -86,7 +87,10 @@ def with_known_zeros(
 
 
 def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
-    """The same numbers fitted to other points, from where a fit ended; weights are found anew, twice as these may be far away."""
+    """The same numbers fitted to other points, starting at the values of ``fitted``.
+
+    Weights are computed twice, because the first solution may be far from those values.
+    """
     here = stated.with_values({n.name: fitted.problem.value(n.name) for n in fitted.numbers})
     weighted = here.with_noise_of_misfit().reweighted()
     numbers = weighted.starting_here(fitted.numbers)
@@ -95,7 +99,7 @@ def refitted(fitted: Fitted, stated: FitProblem) -> Fitted:
 
 
 def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan | Fitted) -> Fitted:
-    """The fit of some numbers, begun at the values of ``problem``; ``given`` says what is held."""
+    """The fit of some numbers, started at the values of ``problem``; ``given`` names the held numbers."""
     numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers)
     problem = problem.with_values(solution.values)
@@ -130,7 +134,7 @@ def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan |
 
 
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
-    """The problem near its solution, by passes over more and more of its points."""
+    """The problem near its solution, after passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted().thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest

@@ -1,4 +1,4 @@
-"""The uncertainty of a fit: one joint covariance of all numbers that were fitted or held with a known spread."""
+"""The uncertainty of a fit: joint covariance of all numbers that were fitted or held with a known standard uncertainty."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from mffit.rig_errors import error_of
 class Posterior(Brief):
     """Joint covariance of tyre and rig, to first order around the best values."""
 
-    names: tuple[str, ...]  #: coefficients and rig errors: the fitted ones, then those held with a spread
+    names: tuple[str, ...]  #: coefficients and rig errors: the fitted ones, then the held ones
     covariance: np.ndarray  #: (k, k)
 
     @property
@@ -32,7 +32,7 @@ class Posterior(Brief):
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
 
     def with_numbers(self, beside: BesideNumbers) -> Posterior:
-        """The posterior with numbers that were fitted beside the others; those that it already has stay as they are."""
+        """The posterior extended by separately determined coefficients; numbers that it already has are unchanged."""
         new = [i for i, name in enumerate(beside.values) if name not in self.names]
         names = [list(beside.values)[i] for i in new]
         slope = np.zeros((len(new), len(self.names)))
@@ -43,12 +43,12 @@ class Posterior(Brief):
         return Posterior((*self.names, *names), np.block([[self.covariance, across.T], [across, own]]))
 
     def without(self, names: Collection[str]) -> Posterior:
-        """The posterior of the other numbers, which contains the uncertainty of these."""
+        """The marginal posterior of all numbers except the named ones."""
         rows = [i for i, name in enumerate(self.names) if name not in names]
         return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)])
 
     def given(self, names: Collection[str]) -> Posterior:
-        """The posterior of the other numbers if these were exactly known."""
+        """The conditional posterior of the other numbers, with the named ones exactly known."""
         known = [i for i, name in enumerate(self.names) if name in names]
         rows = [i for i, name in enumerate(self.names) if name not in names]
         across = self.covariance[np.ix_(rows, known)]
@@ -56,10 +56,10 @@ class Posterior(Brief):
         return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)] - part)
 
     def band(self, tyre: Simulation, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
-        """Half width (n,) of the 95 % band of some channels at any conditions (n,), if only the coefficients were uncertain.
+        """Half width (n,) of the 95 % band of some channels at any conditions (n,), from the coefficients' uncertainty alone.
 
-        For channels that were not measured, of which nothing else is known. Of ``points`` only the set-points are used; ``tyre``
-        has no rig errors.
+        Meant for channels without measurements, for which no model error can be estimated. Only the set-points of ``points``
+        are used; ``tyre`` must have no rig errors.
         """
         rows = [i for i, name in enumerate(self.names) if error_of(name) is None]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows], channels)[1]
@@ -71,10 +71,10 @@ class Posterior(Brief):
 
 
 def joint(problem: FitProblem, solution: Solution, held: Mapping[str, float]) -> Posterior:
-    """The posterior of the fitted numbers and of those held at a value with a known spread.
+    """The posterior of the fitted numbers and of the numbers held with a known standard uncertainty.
 
-    An error of a held number shifts the fitted ones, to first order by ``-C J^T J_held`` times the error. ``problem`` is at the
-    solution.
+    An error of a held number shifts the fitted numbers, to first order by ``-C J^T J_held`` times the error. ``problem`` must be
+    at the solution.
     """
     covariance, names = solution.covariance, list(held)
     if not names:
@@ -92,9 +92,10 @@ def beside_held(
 
     Parameters
     ----------
-    free : names (k,) of the numbers of the covariance (k, k), which takes the held ones as exact
-    held : standard uncertainty of the others (m,)
-    shared : (k, m) ``J^T J_held``, the mixed block of the information of the data
+    free : names (k,) of the free numbers
+    covariance : (k, k) of the free numbers with the held ones exact
+    held : standard uncertainty of the held numbers (m,)
+    shared : (k, m) ``J^T J_held``, the mixed block of the information matrix of the data
     """
     shift = -covariance @ shared
     known = np.diag(np.array(list(held.values())) ** 2)
@@ -103,12 +104,12 @@ def beside_held(
 
 
 def spread_through(slopes: np.ndarray, covariance: np.ndarray) -> np.ndarray:
-    """Standard deviation (n,) of quantities with derivatives (n, k) by numbers with covariance (k, k)."""
+    """Standard uncertainty (n,) of quantities whose derivatives by numbers with ``covariance`` (k, k) are ``slopes`` (n, k)."""
     return np.asarray(np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", slopes, covariance, slopes), 0.0)))
 
 
 def strongest_correlations(posterior: Posterior, of: Sequence[str]) -> dict[str, tuple[str, float]]:
-    """For each of the named numbers the one with the largest correlation, if this is strong, and its value."""
+    """By named number, the number with the strongest correlation to it and the correlation; weak correlations are left out."""
     rows = [posterior.names.index(name) for name in of]
     covariance = posterior.covariance[np.ix_(rows, rows)]
     size = np.sqrt(np.diag(covariance))

@@ -1,4 +1,4 @@
-"""Prior knowledge of the coefficients: from similar tyres, from the table's default, from a fleet."""
+"""Priors of the coefficients: from similar tyres, from the table's defaults, or from a fleet."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from mffit.fit.stages import SMALL_ON_A_DISC
 from tir.parameters import BY_NAME
 
 CONVERTED = "converted"
-"""Origin of a value that a conversion of the base file gave, and the first word of its comment there."""
+"""Origin of a base file's value that comes from a conversion, and the first word of its comment in that file."""
 NOT_MEASURED = ("default", "estimate")
-"""First words of the comment of a value that nobody measured."""
+"""First words of the comments of values that were not measured."""
 FROM_BASE = ("base", CONVERTED)
-"""Origins of what the base file states."""
+"""Origins of values that the base file states."""
 
 
 class Prior(NamedTuple):
@@ -29,10 +29,10 @@ class Prior(NamedTuple):
 
 
 def scatter(name: str, expected: float, *, from_base: bool, curved: bool, unseen_side: bool = False) -> float:
-    """Standard deviation of this tyre's coefficient around the expected value.
+    """Standard deviation of this tyre's coefficient around its expected value.
 
-    A base file's 0 counts as not stated. An asymmetry of which the data show one side only (``unseen_side``) is one of this
-    tyre alone, on which the base file says nothing.
+    A base file's 0 counts as not stated. With ``unseen_side`` the data show one side of an asymmetry only; asymmetries differ
+    from tyre to tyre, so the base file does not narrow them.
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]
@@ -55,7 +55,7 @@ def scatters(
 
 
 def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str, Prior]) -> dict[str, Any]:
-    """Content of the priors file that a fleet gives to later builds; ``nominal`` has FNOMIN [N] and NOMPRES [Pa]."""
+    """Content of the priors file that a fleet writes for later builds; ``nominal`` has FNOMIN [N] and NOMPRES [Pa]."""
     return {
         "about": "What tyres like these have in common, for later builds: name this file as [tyre] priors in tyre.toml.",
         "tyres": tyres,
@@ -65,9 +65,12 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
 
 
 def of_fleet(config: Config) -> dict[str, Prior]:
-    """The prior of each coefficient from the fleet that ``[tyre] priors`` names; empty if none is named.
+    """The prior of each coefficient from the file that ``[tyre] priors`` names; empty without that key.
 
-    An InputError says that no fleet wrote the file, or that the fleet has another nominal load or pressure.
+    Raises
+    ------
+    InputError
+        The file is missing, was not written by a fleet, or holds at another nominal load or pressure.
     """
     path = config.priors_path
     if path is None:
@@ -99,7 +102,7 @@ def of_fleet(config: Config) -> dict[str, Prior]:
 
 
 def _read(path: Path) -> tuple[dict[str, float], dict[str, Prior]]:
-    """Nominal load and pressure, and the priors, of a file of :func:`fleet_content`."""
+    """Nominal load and pressure, and the priors, from a file with :func:`fleet_content`."""
     content = json.loads(path.read_text(encoding="utf-8"))
     nominal = {name: float(value) for name, value in content["nominal"].items()}
     priors = {

@@ -1,4 +1,4 @@
-"""The least-squares problem of the fit: readings of the simulation against the measured points."""
+"""The least-squares problem of the fit: simulated minus measured readings."""
 
 from __future__ import annotations
 
@@ -30,26 +30,27 @@ from tir.derivatives import gradient, plain, traced
 
 @dataclass(frozen=True, slots=True)
 class FitProblem:
-    """Points with their weights and a simulation; residuals for any choice of free numbers."""
+    """Points with weights, and a simulation: gives the residuals for any choice of free numbers."""
 
     points: Points
-    simulation: Simulation  #: from whose numbers a search starts
+    simulation: Simulation  #: its numbers are the starting values of a search
     sigma: Mapping[str, np.ndarray]
     """By channel, standard uncertainty (n,) used as weight [N] or [Nm]; inf where the channel is not used."""
-    envelope: Envelope | None = None  #: over which the physical limits hold
+    envelope: Envelope | None = None  #: ranges over which the physical limits must hold
     radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
-    speed: float = 1.0  #: at which they were measured [m/s]
+    speed: float = 1.0  #: at which the radii were measured [m/s]
     nominal: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """By channel, nominal uncertainty (n,) over ``sigma`` where that is of the misfit: an outlier is far in units of both."""
+    """By channel, nominal uncertainty over ``sigma`` (n,) where ``sigma`` was estimated from the misfit: an outlier must be far
+    away in units of both."""
 
     def select(self, index: np.ndarray) -> FitProblem:
-        """The problem of some points (m,)."""
+        """The problem restricted to the points with these indices (m,)."""
         sigma = {name: u[index] for name, u in self.sigma.items()}
         nominal = {name: share[index] for name, share in self.nominal.items()}
         return replace(self, points=self.points.select(index), sigma=sigma, nominal=nominal)
 
     def thinned(self, stride: int) -> FitProblem:
-        """The problem of every ``stride``-th point, each counted that often so that priors keep their relative weight."""
+        """The problem with every ``stride``-th point, each counted ``stride`` times so that priors keep their relative weight."""
         if stride == 1:
             return self
         part = self.select(np.arange(0, len(self.points), stride))
@@ -69,10 +70,10 @@ class FitProblem:
         return [replace(n, start=self.value(n.name)) for n in numbers]
 
     def reweighted(self) -> FitProblem:
-        """The problem with weights from its own misfit.
+        """The problem with weights enlarged to its own misfit.
 
-        A channel that the model misses by more than the noise must not dominate the other one. Readings beside the turns of
-        moving sweeps that depart from their legs count by their own scatter.
+        A channel that the model misses by more than its noise must not dominate the other channels. Readings that depart from
+        their sweep where it turns back are weighted by their own scatter.
         """
         sigma, misfit = {}, self.misfit()
         for name, turning in self.turning(misfit).items():
@@ -87,15 +88,15 @@ class FitProblem:
         """By channel, mask (n,) of the readings that depart from their sweep because it turns back there."""
         reversals, misfit = reversals_of(self.points), self.misfit() if misfit is None else misfit
         return {
-            # A reading without weight has an infinite sigma.
+            # An unused reading has an infinite sigma.
             name: reversals.off(np.where(self._used(name), z, np.nan) * self.sigma[name])
             for name, z in misfit.items()
         }
 
     def with_noise_of_misfit(self) -> FitProblem:
-        """The problem whose readings that state no uncertainty have one no larger than the scatter of their misfit.
+        """The problem in which readings without stated uncertainty are assigned at most the scatter of their misfit.
 
-        A fit takes up some of the noise: neighbouring readings show all of it.
+        The scatter of neighbouring readings is the lower limit, because a fit absorbs some of the noise.
         """
         readings, sigma, nominal = self.readings(), dict(self.sigma), dict(self.nominal)
         neighbours = estimated_noise(self.points, readings)
@@ -118,7 +119,7 @@ class FitProblem:
         return tuple(self.sigma)
 
     def readings(self) -> Readings:
-        """What the simulation reads at the points, in the channels of the fit."""
+        """The simulated readings at the points, in the channels of the fit."""
         return self.simulation.readings(self.points, self.sigma)
 
     def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
@@ -151,9 +152,9 @@ class FitProblem:
         return LeastSquaresProblem(residual, linear)
 
     def blocks(self, names: Sequence[str]) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Rows (m,) of the points, block after block, with their residuals (c m,) and derivatives (c m, k).
+        """Indices (m,) of the points, block by block, with their residuals (c m,) and derivatives (c m, k).
 
-        As :meth:`mffit.rig.Simulation.in_blocks`, channel after channel; rows that are not used are 0.
+        Blocks are those of :meth:`mffit.rig.Simulation.in_blocks`. Within a block, channel follows channel; unused rows are 0.
         """
         for rows, readings, by_channel in self.simulation.in_blocks(self.points, names, self.sigma):
             c, m, which = len(self.sigma), len(rows), successive(rows)
@@ -166,7 +167,7 @@ class FitProblem:
             yield rows, data.ravel(), slopes.reshape(len(names), -1).T
 
     def rows(self, names: Sequence[str], every: int = 1) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals (c m + r,) and derivatives of each ``every``-th point, channel after channel, and of the measured radii."""
+        """Residuals (c m + r,) and derivatives of every ``every``-th point, channel by channel, then of the measured radii."""
         c, n = len(self.sigma), len(range(0, len(self.points), every))
         data, slopes = np.empty((c, n)), np.empty((c, n, len(names)))
         for rows, residual, slope in self.blocks(names):
@@ -181,9 +182,9 @@ class FitProblem:
         return np.asarray(np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel)))
 
     def radii_rows(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals of the measured effective radii and their derivatives.
+        """Residuals (r,) of the measured effective radii and their derivatives (r, k).
 
-        A radius that was measured over a path length is proportional to the path radius.
+        A radius measured over a path length is proportional to the path radius.
         """
         if not self.radii:
             return np.zeros(0), np.zeros((0, len(names)))
@@ -200,7 +201,7 @@ class FitProblem:
         return np.broadcast_to(plain(out), len(load)), slope
 
     def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals of the physical limits, above 0 where they are broken, and their derivatives."""
+        """Residuals of the physical limits, positive where a limit is violated, and their derivatives."""
         if self.envelope is None:
             return np.zeros(0), np.zeros((0, len(names)))
         values = self.simulation.values
@@ -220,9 +221,9 @@ def fit_problem(
     values: Mapping[str, Any],
     channels: Iterable[str] = SIDEWAYS,
 ) -> FitProblem:
-    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known.
+    """The problem before the fit: points as read, weights from stated uncertainties, rig errors at their known values.
 
-    Without Fx among the ``channels`` nothing of longitudinal slip is free, so driven and braked points have no weight.
+    Without Fx among the ``channels`` no coefficient of longitudinal slip is free, so driven and braked points have no weight.
     """
     disc = config.rig.on_disc
     used = np.ones(len(points), dtype=bool) if "Fx" in channels else points.free_rolling

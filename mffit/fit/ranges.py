@@ -1,4 +1,4 @@
-"""The ranges of a tyre: those that the data cover, and those that the written file allows."""
+"""Ranges of load, pressure, sideslip and camber: those of the data, and those written to the file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NAMES = ("PRESMIN", "PRESMAX", "FZMIN", "FZMAX", "ALPMIN", "ALPMAX", "CAMMIN", "
 
 
 def tested_ranges(points: Points) -> dict[str, float]:
-    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points, and KPU where longitudinal slip was run."""
+    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points, and KPU limits if longitudinal slip was run."""
     driven = not np.all(points.free_rolling)
     slip = {"KPUMIN": float(np.min(points.kappa)), "KPUMAX": float(np.max(points.kappa))} if driven else {}
     alpha, gamma = float(np.max(np.abs(points.alpha))), float(np.max(np.abs(points.gamma)))
@@ -36,7 +36,7 @@ def tested_ranges(points: Points) -> dict[str, float]:
 
 
 def sideslips_with_slip(points: Points) -> tuple[float, ...]:
-    """Sideslips [rad] at which longitudinal slip was run, rising; empty where none was."""
+    """Sideslips [rad] at which longitudinal slip was run, in rising order; empty if none was run."""
     held = levels.level_values(points.alpha[~points.free_rolling], levels.SIDESLIP)
     return tuple(np.unique(held[np.isfinite(held)]).tolist())
 
@@ -52,7 +52,7 @@ def single_load(ranges: Mapping[str, float]) -> bool:
 
 
 def covered_ranges(points: Points) -> dict[str, float]:
-    """The tested ranges for the fit's own limits; a single pressure is widened to either side."""
+    """The tested ranges over which the fit keeps the physical limits; a single pressure is widened to both sides."""
     ranges = tested_ranges(points)
     if single_pressure(ranges):
         ranges["PRESMIN"] *= 1.0 - constants.AROUND_A_SINGLE_VALUE
@@ -61,7 +61,7 @@ def covered_ranges(points: Points) -> dict[str, float]:
 
 
 def envelope(ranges: Mapping[str, float]) -> Envelope:
-    """The same ranges for the physical limits of the fit."""
+    """Ranges by file key, as the envelope for the physical limits."""
     return Envelope(
         Fz=(ranges["FZMIN"], ranges["FZMAX"]),
         gamma=ranges["CAMMAX"],
@@ -74,13 +74,14 @@ def envelope(ranges: Mapping[str, float]) -> Envelope:
 def plausible_ranges(
     values: Mapping[str, Any], tested: Mapping[str, float], *, turn_slip: bool
 ) -> dict[str, float]:
-    """The ranges to write: as far beyond the tested ones as the model stays plausible.
+    """The ranges to write: the tested ranges, extended as far as the model stays plausible.
 
-    Simulations hold their inputs to the ranges of the file or fade forces out beyond them: with the tested ranges, forces would
-    stop following the sideslip at 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
-    load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
-    degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end goes
-    as far as the limits of :mod:`mffit.fit.constraints` hold and no characteristic changes faster than in public tyres.
+    Simulations clip their inputs to the ranges of the file, or fade forces out beyond them: with the tested ranges, forces would
+    stop following the sideslip at 8 degrees, for example. The targets are a tenth of the smallest and one and a half of the
+    largest load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
+    degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end moves
+    towards its target as long as the limits of :mod:`mffit.fit.constraints` hold and no characteristic changes faster than in
+    public tyres.
     """
     model = SimpleNamespace(**values)
     ranges = dict(tested)
@@ -104,10 +105,10 @@ def with_room(
     *,
     turn_slip: bool = False,
 ) -> tuple[dict[str, float], dict[str, str]]:
-    """The ranges to write, none of them empty; and where those that the sweeps do not vary come from, by quantity.
+    """The ranges to write, none of them empty, and the origin of each range that the sweeps do not vary, by quantity.
 
-    ``stated`` are the ranges that the base states. A simulation holds its inputs to the range of the file, so that an empty one
-    would fix them. What was not varied gets the range of the base if the model stays plausible in it, else a small one.
+    A simulation clips its inputs to the range of the file, so an empty range would fix them. A camber or sideslip that was not
+    varied gets the base file's range (``stated``) if the model stays plausible in it, else a small range.
     """
     model = SimpleNamespace(**values)
     ranges, origin = dict(written), {}
@@ -155,7 +156,7 @@ def _with_end(ranges: Mapping[str, float], name: str, value: float) -> dict[str,
 
 
 def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
-    """The largest violation of a physical limit, tested on a grid for each half of the load range."""
+    """The largest violation of a physical limit, on one grid for each half of the load range."""
     low, high = ranges["FZMIN"], ranges["FZMAX"]
     middle = 0.5 * (low + high)
     halves = ((low, middle), (middle, high))
@@ -167,8 +168,8 @@ def _as_in_public_tyres(
 ) -> bool:
     """Whether grip and stiffness over load, and the side force over sideslip, change no faster than those of public tyres.
 
-    Tested in steps from ``begin`` to the end ``name`` of the ranges, over the grid of the others. A step is one of the logarithm
-    of load or pressure, or of an angle in radians. With sideslip only a fall counts: a force may rise to its peak.
+    Compared in steps from ``begin`` to the range's end ``name``, on a grid of the other ranges. Steps are in the logarithm of
+    load or pressure, or in an angle [rad]. Over sideslip only a falling force counts, because a force may rise to its peak.
     """
     if ranges[name] == begin:
         return True

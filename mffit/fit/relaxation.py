@@ -1,9 +1,9 @@
-"""Stiffnesses of the carcass from steps of the sideslip angle and of slip: the relaxation lengths are slip stiffness over them.
+"""Carcass stiffnesses from step tests of sideslip or longitudinal slip; relaxation length = slip stiffness / carcass stiffness.
 
 A property file of FITTYP 62 holds sigma_y as K_ya / C_y with C_y = LATERAL_STIFFNESS (1 + PCFY1 dfz + PCFY2 dfz^2)(1 + PCFY3 dpi)
 (A9), and sigma_x as K_xk / C_x likewise, with LONGITUDINAL_STIFFNESS and PCFX1-3 (A8). The force of the fitted tyre follows the
-angle or the slip over this length; its offset, gain and ripple per turn are free in every run of steps, so that only the delay
-counts.
+angle or the slip over this length. Offset, gain and ripple per turn of the force are free in every run, so only its delay
+determines the length.
 """
 
 from __future__ import annotations
@@ -39,25 +39,25 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class Direction:
-    """A relaxation length of the tyre, and what determines it."""
+    """A relaxation length of the tyre, and the test that determines it."""
 
-    setting: str  #: that steps, one of ``STEPPED``
-    word: str  #: for it
-    sigma: str  #: the length, as tir names it
-    K: str  #: the slip stiffness over which it counts, as tir names it
+    setting: str  #: the stepped setting, one of ``STEPPED``
+    word: str  #: its name in sentences
+    sigma: str  #: tir's name of the relaxation length
+    K: str  #: tir's name of the slip stiffness
     slip_stiffness: Callable[[Any, Any], Any]  #: of coefficients and inputs of the upright wheel
     names: tuple[
         str, str, str, str
-    ]  #: carcass stiffness, its linear and quadratic terms over load, and that over pressure
+    ]  #: carcass stiffness, its linear and quadratic terms over load, and its linear term over pressure
     zero: str  #: rig error that shifts the setting
-    unit: float  #: of the zero, in that of the setting
+    unit: float  #: unit of the zero, in units of the setting
     stage: str  #: word for the row of the coverage matrix
     title: str
-    run: str  #: what is missing without steps, and the run that measures it
+    run: str  #: sentence for data without steps: what is missing, and the run that measures it
 
     @property
     def force(self) -> str:
-        """The channel that follows the setting."""
+        """The force channel that responds to the setting."""
         return STEPPED[self.setting].force
 
 
@@ -98,31 +98,31 @@ DIRECTIONS = (
     ),
 )
 SPREAD_OF_UNIFORM = 1.0 / math.sqrt(12.0)
-"""Standard deviation of a number that is anywhere between 0 and 1."""
+"""Standard deviation of the uniform distribution on [0, 1]."""
 UNCLEAR = "the steps of {what} do not show the relaxation length beyond their noise: hold each of them longer, or step further"
 
 
 @dataclass(frozen=True, slots=True)
 class StepLength:
-    """The relaxation length that one run of steps shows."""
+    """The relaxation length from one run of steps."""
 
     file: str
     load: float  #: [N]
     pressure: float  #: [Pa]
     length: Quantity  #: [m]
-    stiffness: Quantity  #: of the carcass [N/m], where the slip stiffness is exact
-    written: float = math.nan  #: relaxation length of the file there [m]
+    stiffness: Quantity  #: carcass stiffness [N/m], with the slip stiffness taken as exact
+    written: float = math.nan  #: relaxation length of the written file at this load and pressure [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """What steps in one direction determine."""
+    """The carcass coefficients that steps in one direction determine."""
 
     direction: Direction
     runs: tuple[StepLength, ...] = ()
     found: Mapping[str, Quantity] = field(default_factory=dict)
     beside: BesideNumbers = field(default_factory=BesideNumbers)  #: the same with their covariance
-    missing: str = ""  #: why the others, or all, are held
+    missing: str = ""  #: why coefficients are held
 
     @property
     def coverage(self) -> StageCoverage:
@@ -149,10 +149,10 @@ def relaxation(
 
     Parameters
     ----------
-    steps : samples of the runs of steps, one sweep each, by the setting that steps
+    steps : samples of the runs of steps, one sweep each, by the stepped setting
     simulation : the fitted tyre on its rig
-    posterior : of the fit
-    held : coefficients that stay, by hand
+    posterior : posterior of the fit
+    held : coefficients held by hand
     """
     return tuple(
         _of_direction(one, steps.get(one.setting), simulation, posterior, held) for one in DIRECTIONS
@@ -194,7 +194,7 @@ def _of_direction(
 
 
 def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> StepLength:
-    """The relaxation length at which the fitted tyre, lagging, follows the readings best."""
+    """The relaxation length with which the lagged force of the fitted tyre fits the readings of one run best."""
     samples = samples.select(np.isfinite(samples.channel(direction.force)))
     load, pressure = float(np.mean(samples.Fz)), float(np.mean(samples.p))
     state = Tyre.from_values(simulation.values).state(
@@ -217,7 +217,7 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
     free += [FreeNumber(f"beside{k}", value) for k, value in enumerate(known.tolist())]
 
     def model(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Readings (n,) and their derivatives (n, k) by the numbers."""
+        """Model readings (n,) and their derivatives (n, k) by the free numbers."""
         count = 1 + len(ends)
         shares = dict(zip(ends, x[1:count].tolist(), strict=True))
         response, slope = _response(direction, samples, simulation, x[0], shares)
@@ -247,13 +247,16 @@ def _of_run(direction: Direction, samples: Points, simulation: Simulation) -> St
 
 
 def _turned(samples: Points, Re: float) -> np.ndarray:
-    """Angle (n,) by which the wheel has turned [rad]: a tyre that is not round moves the force once per turn."""
+    """Angle (n,) by which the wheel has turned [rad], for the once-per-turn ripple of a tyre that is not round."""
     speed = np.where(np.isfinite(samples.omega), samples.omega, (1.0 + samples.kappa) * samples.V / Re)
     return rolled_distance(samples.time, speed)
 
 
 def _ends_of_steps(direction: Direction, samples: Points, radius: float) -> list[int]:
-    """The samples before the first and the last move of every step: when in between the setting moved is not known."""
+    """Indices of the samples before the first and before the last move of every step.
+
+    The instant of these moves between two samples is unknown, so the fit estimates it.
+    """
     moved = np.diff(getattr(samples, direction.setting))
     rows = np.flatnonzero(np.abs(moved) > constants.LEAST_MOVE_OF_A_STEP * np.max(np.abs(moved), initial=0.0))
     rolled = rolled_distance(samples.time, samples.V)
@@ -267,9 +270,10 @@ def _ends_of_steps(direction: Direction, samples: Points, radius: float) -> list
 def _response(
     direction: Direction, samples: Points, simulation: Simulation, sigma: float, shares: Mapping[int, float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Force (n,) [N] that follows the setting over a length [m], and its derivatives (n, 1 + k) by the length and the shares.
+    """Force (n,) [N] lagged by the length ``sigma`` [m], and its derivatives (n, 1 + k) by the length and the shares.
 
-    ``shares`` has, by the sample before, the k moves that go all at once, and where in between; the others go evenly.
+    ``shares`` holds the k abrupt moves: by index of the sample before the move, its position in the interval, 0 to 1. All other
+    moves are linear between samples.
     """
     follows, by_sigma = lagged_setting(samples, sigma, direction.setting)
     by = [by_sigma]
@@ -285,14 +289,14 @@ def _response(
 
 
 class _Noise(NamedTuple):
-    """Noise of readings in their order, in which each remembers those before it."""
+    """Autoregressive noise of a series of readings."""
 
-    memory: np.ndarray  #: shares (k,) of the readings before that the next one keeps
-    size: float  #: standard deviation of what is new in a reading
+    memory: np.ndarray  #: autoregression coefficients (k,)
+    size: float  #: standard deviation of the innovations
 
     @classmethod
     def of(cls, residual: np.ndarray, numbers: int, within: int = 1) -> _Noise:
-        """The noise in what so many fitted numbers leave, larger if it still shows over ``within`` samples."""
+        """The noise of residuals after a fit of some ``numbers``; enlarged if means over ``within`` samples scatter too much."""
         memory, new = autoregression(residual - residual.mean())
         white = cls(memory, math.sqrt(new) or 1.0).whitened(residual)
         blocks = white[: len(white) // within * within].reshape(-1, within).mean(axis=1)
@@ -301,7 +305,7 @@ class _Noise(NamedTuple):
         return cls(memory, math.sqrt(new * excess * len(residual) / freedom) or 1.0)
 
     def whitened(self, x: np.ndarray) -> np.ndarray:
-        """Series (n - k,) or (n - k, m) in units of the noise, less what the readings before explain of it."""
+        """Whitened series (n - k,) or (n - k, m): prediction errors of the autoregression in units of the innovations."""
         k, n = len(self.memory), len(x)
         before = sum(share * x[k - j : n - j] for j, share in enumerate(self.memory, 1))
         return np.asarray((x[k:] - before) / self.size)
@@ -310,7 +314,7 @@ class _Noise(NamedTuple):
 def _problem(
     model: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], read: np.ndarray, noise: _Noise
 ) -> LeastSquaresProblem:
-    """The problem of a model of readings (n,) with a noise."""
+    """The least-squares problem of a model for readings (n,) with autoregressive noise."""
     none = np.zeros(0)
 
     def linear(x: np.ndarray) -> Linear:
@@ -340,7 +344,10 @@ def _fitted(
     runs: Sequence[StepLength],
     posterior: Posterior,
 ) -> BesideNumbers:
-    """The coefficients that fit the carcass stiffnesses of the runs; they follow the slip stiffness of the fit."""
+    """The coefficients that fit the carcass stiffnesses of the runs, with derivatives by the coefficients of the fit.
+
+    A run measures the relaxation length, so its carcass stiffness is proportional to the fitted slip stiffness.
+    """
     if not names:
         return BesideNumbers()
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
@@ -348,7 +355,7 @@ def _fitted(
     nominal, *terms = direction.names
     numbers = {name: FreeNumber(name, 0.0) for name in terms}
     for name, spread in zip(terms, constants.CARCASS_TERM_SPREAD, strict=True):
-        if name not in names:  # not shown by these runs, and yet not exactly as in the file
+        if name not in names:  # not determined by these runs: its prior contributes to the uncertainty
             numbers[name] = replace(numbers[name], start=values[name], expected=values[name], spread=spread)
     middle = float(np.median(measured))
     numbers = {nominal: FreeNumber(nominal, middle, 0.1 * middle, 10.0 * middle), **numbers}

@@ -33,10 +33,10 @@ from tir import Tyre
 class FitResult(Brief):
     """The fitted tyre and everything that the report needs."""
 
-    tyre: Tyre  #: the fitted model, meant for turn slip on
+    tyre: Tyre  #: the fitted model: for turn slip on if the rig is a disc
     written: Tyre  #: the .tir with the plain name: the fitted model or the file for turn slip off
     coefficients: Mapping[str, Coefficient]  #: of ``written``
-    channels: Mapping[str, Agreement]  #: of ``tyre`` with the raw points, turn slip on
+    channels: Mapping[str, Agreement]  #: of the model's readings with the raw points
     odd: Mapping[str, Agreement]  #: of the file for turn slip off with the odd part, turn slip off
     simulation: Simulation  #: ``tyre`` on the rig as fitted
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
@@ -50,28 +50,28 @@ class FitResult(Brief):
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
     left_by_formula: LinearisedFit | None = field(
         default=None, repr=False
-    )  #: of the readings by the full fit
+    )  #: linear model of the full fit's residuals
     prediction: Predictor | None = field(default=None, repr=False)  #: of forces at any conditions
-    outliers: tuple[Outlier, ...] = ()  #: single readings without weight
+    outliers: tuple[Outlier, ...] = ()  #: single readings with zero weight
     at_turns: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
-    """By channel, mask (n,) of the readings where sweeps turn back, which count by their own scatter."""
-    search: Fitted | None = None  #: the end of the search, from which tyres are drawn
-    full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
-    bands: Bands | None = None  #: where the 95 % bands are narrow
+    """By channel, mask (n,) of the readings where sweeps turn back, which are weighted by their own scatter."""
+    search: Fitted | None = None  #: the fit of the plain file, from whose posterior tyres are drawn
+    full: Fitted | None = None  #: the fit with every modelled influence, temperature included
+    bands: Bands | None = None  #: widths of the 95 % bands
     files: Files | None = None  #: every written file and its misfit
-    temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
-    confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
-    relaxation: tuple[Relaxation, ...] = ()  #: what steps of the sideslip angle and of slip determine
-    lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
-    runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
+    temperature: AtTemperature | None = None  #: the model with temperature terms, if modelled
+    confounded: tuple[Confounding, ...] = ()  #: settings that are correlated with temperature
+    relaxation: tuple[Relaxation, ...] = ()  #: carcass stiffnesses from steps of sideslip and of slip
+    lent: Lent | None = None  #: coefficients from a sister tyre, for a tyre measured only sideways
+    runs: BetweenRuns | None = None  #: random effects of the runs, if modelled
     choice: NuisanceChoice | None = (
-        None  #: what was modelled beside coefficients and declared rig errors, and why
+        None  #: influences modelled in addition to coefficients and declared rig errors, with reasons
     )
-    radii: Vertical = field(default_factory=Vertical)  #: loaded radius and wheel speed of the rolling wheel
+    radii: Vertical = field(default_factory=Vertical)  #: from loaded radius and wheel speed
 
     @property
     def left(self) -> float:
-        """Fall of the sum of squares that a step from the end of the search still promises, of the fit where it is larger."""
+        """Predicted decrease of the sum of squares by one more step, of the less converged fit; 0 at the minimum."""
         return max((fit.left for fit in (self.search, self.full) if fit is not None), default=0.0)
 
     @property

@@ -1,4 +1,4 @@
-"""Signs that change no force: coefficients that change sign together, and the one form that mffit writes."""
+"""Coefficients whose signs can change together without changing any force, and the signs that mffit writes."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ SAME_CURVE = (
     ("QCRP2",),
     ("QBRP1",),
 )
-"""Coefficients whose sign, alone or together, changes no force: factors within an even function, or two that divide out."""
+"""Groups of coefficients whose common change of sign changes no force: factors inside an even function, or pairs that cancel."""
 
 
 def in_one_form(values: Mapping[str, Any]) -> dict[str, float]:
-    """Coefficients with the other sign, where that brings more of those that go together inside the limits of the table."""
+    """Coefficients to replace by their negatives: groups of which more members are then inside the bounds of the table."""
     found: dict[str, float] = {}
     for group in SAME_CURVE:
         here = {name: found.get(name, float(values[name])) for name in group}
@@ -64,7 +64,7 @@ def _outside(values: Mapping[str, float]) -> int:
 
 
 def tyre_in_one_form(tyre: Tyre) -> Tyre:
-    """The tyre with the signs that the table allows and the same forces."""
+    """The tyre with the signs that the table's bounds allow, and the same forces."""
     changed = in_one_form(tyre.values)
     status = {**tyre.status, **dict.fromkeys(changed, f"{CONVERTED} to the usual signs")}
     values = {**tyre.values, **changed}

@@ -13,9 +13,9 @@ class Stage:
 
     name: str  #: the word in the table's ``stage`` column
     title: str
-    channels: tuple[str, ...]  #: measured channels that show them
-    where_measured: bool = False  #: listed only where its channels were measured
-    where_run: bool = False  #: listed only where longitudinal slip was run
+    channels: tuple[str, ...]  #: measured channels that determine the coefficients
+    where_measured: bool = False  #: listed only if its channels were measured
+    where_run: bool = False  #: listed only if longitudinal slip was run
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -45,8 +45,8 @@ BY_STAGE = {stage.name: stage for stage in STAGES}
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 """Coefficients that are zero for a tyre of perfect mirror symmetry."""
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
-"""Prior standard deviation, from road tyres, of coefficients that a disc shows only together with a larger effect: conicity with
-the turn-slip force, ply-steer with the zero of the sideslip axis."""
+"""Prior standard deviation, from road tyres, of coefficients that a disc cannot separate from a larger effect: conicity from the
+turn-slip force, ply-steer from the zero of the sideslip axis."""
 OF_CAMBER_OR_SPIN = frozenset(
     row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled", "curvature")
 )

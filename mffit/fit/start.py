@@ -31,15 +31,15 @@ NONZERO_STARTS = {
     "RVY5": 1.5,
     "RVY6": 10.0,
 }
-"""Starting values instead of zero, where all derivatives vanish at zero and no step would leave it."""
+"""Starting values for coefficients at which a search would be stuck at zero, because all derivatives vanish there."""
 SHAPES_OF_FX: Sequence[Mapping[str, float]] = ({"PCX1": 1.2, "PEX1": -0.5}, {"PCX1": 1.8, "PEX1": 0.4})
-"""Further starts of the longitudinal force, whose shape factor can have several minima."""
+"""Further starting values of the longitudinal force, because its sum of squares can have several minima."""
 
 
 def starting_values(
     values: Mapping[str, Any], points: Points, measured: Measured, held: Collection[str] = ()
 ) -> dict[str, float]:
-    """The values with those improved that can be read off the data directly, and with those ``held`` by hand as they are."""
+    """The starting values: those that can be read off the data are replaced, those ``held`` by hand stay."""
     start = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     for name, value in NONZERO_STARTS.items():
         if abs(start[name]) < 1e-9 and name not in held:
@@ -53,7 +53,7 @@ def starting_values(
         loads, K_ya = np.array(list(C_alpha)), np.array(list(C_alpha.values()))
         start |= nearest(start, ("PKY1", "PKY2"), lambda v: sideways(v, loads, main)[1], K_ya, held)
     if C_gamma:
-        # With turn slip on, camber acts through the rolling spin: the force is that of K_yg0 times R0 / r_e.
+        # With turn slip on, camber acts through the rolling spin, so the slope is K_yg0 times R0 / r_e.
         rolling = 1.0
         if measured.r_e is not None and np.any(points.phi_t):
             rolling = measured.r_e.value / start["UNLOADED_RADIUS"]

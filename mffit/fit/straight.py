@@ -1,4 +1,4 @@
-"""Cornering stiffness without spin, by the fitted model beside the measured one."""
+"""Cornering stiffness on a straight path, from the fitted model and the measured stiffness on the disc."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
 
     Parameters
     ----------
-    fitted : the model and what is uncertain in it
-    points : of the campaign, whose usual path, pressure and speed count
-    row : the measurement at its load
+    fitted : the fitted model and its posterior
+    points : points of the campaign, which give the usual path, pressure and speed
+    row : the direct measurement at one load
 
     Notes
     -----
-    It is the slope of the model, which all points determine, at no turn slip. Its uncertainty is that of the posterior, with a
-    share of the correction for the formula of the model, and whatever the model's slope on the path differs from the measured
-    one beyond the uncertainty of both.
+    The value is the model's slope without turn slip. Three components make up its uncertainty: the posterior, a share of the
+    correction from the curved to the straight path, and the part of the difference between the model's and the measured slope on
+    the curved path that exceeds both uncertainties.
     """
     phi_t = main_path(points)
     if row.C_alpha is None or phi_t == 0.0:
@@ -44,7 +44,7 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
     covariance = posterior.covariance[np.ix_(rows, rows)]
     straight, curved = (_slope(tyre, points, row.load, path, names) for path in (0.0, phi_t))
     u, u_curved = (float(spread_through(x.by_coefficient[None], covariance)[0]) for x in (straight, curved))
-    # The measured slope is over the angle as read, which a steering that yields changes.
+    # The measured slope is over the angle as read, which the compliance of the steering changes.
     yielding = tyre.with_numbers({COMPLIANCE: fitted.simulation.faults[COMPLIANCE]})
     as_read = _slope(yielding, points, row.load, phi_t, names).slope
     gap = (as_read - row.C_alpha.value) ** 2 - u_curved**2 - row.C_alpha.u**2

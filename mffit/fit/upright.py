@@ -1,4 +1,4 @@
-"""Stiffnesses of the upright wheel on a straight path, traced by the coefficients, and coefficients read off measured values."""
+"""Friction and stiffness of the upright wheel on a straight path, and coefficients solved from measured values of these."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def nearest(
     measured: np.ndarray,
     held: Collection[str] = (),
 ) -> dict[str, float]:
-    """The coefficients with which a characteristic (n,) of the tyre passes through measured values (n,), or nearest to them.
+    """The coefficients with which a characteristic ``of`` the tyre (n,) fits measured values (n,) best.
 
-    At most one per value changes, in the order of ``names``, and none that is ``held`` by hand.
+    At most n coefficients change, the first of ``names``; those ``held`` by hand do not.
     """
     free = [name for name in names if name not in held][: len(measured)]
     numbers = [FreeNumber(n, BY_NAME[n].inside(float(values[n])), *BY_NAME[n].bounds) for n in free]

@@ -1,8 +1,7 @@
-"""Weights of the points: from their uncertainty, from the misfit of the model, and from outliers.
+"""Weights of the points: from their stated uncertainty, the misfit of the model, and outlier rejection.
 
-Two kinds of residual lose weight. Residuals beyond the Huber threshold pull with a constant force instead of a growing one,
-because a model may miss a stretch of a sweep by more than the noise. An outlier, a single reading far from the model and from its
-neighbours in the sweep, is a mistake of the measurement: its weight is zero.
+Residuals beyond the Huber threshold get a reduced weight, because a model may miss a stretch of a sweep by more than the noise.
+An outlier, a single reading far from both the model and its neighbours in the sweep, is a measurement error: its weight is zero.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from mffit.scatter import robust
 
 
 def stated_or_nominal(u: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Uncertainty (n,) of each point: as stated, else a share of the channel's range; inf where the channel is missing."""
+    """Standard uncertainty (n,) of each point: as stated, else a share of the channel's range; inf without a reading."""
     measured = np.isfinite(values)
     nominal = constants.NOMINAL_NOISE_SHARE * np.ptp(values[measured]) if np.any(measured) else 1.0
     u = np.where(np.isfinite(u) & (u > 0), u, max(nominal, 1e-9))
@@ -24,7 +23,7 @@ def stated_or_nominal(u: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def robust_scale(residual: np.ndarray) -> float:
-    """Standard deviation of the residuals' core, from the median absolute value; zeros do not count."""
+    """Standard deviation of the core of the residuals, from the median absolute value; zeros are ignored."""
     residual = residual[residual != 0.0]
     return robust(residual) if len(residual) else 1.0
 
@@ -39,7 +38,7 @@ def enlarged(residual: np.ndarray, sweep: np.ndarray, least: np.ndarray | float 
     """Factor (n,) on the uncertainty of each point, infinite for outliers.
 
     Residuals are in units of the uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's sweep.
-    ``least`` (n,) is the smallest scale by which a reading counts as an outlier.
+    ``least`` (n,) is the smallest scale used to detect outliers.
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
@@ -61,7 +60,7 @@ def outlying(
     scale, least = (np.broadcast_to(x, len(residual))[used] for x in (scale, least))
     apart = residual[used] - _expected_from_neighbours(residual[used], sweep[used])
     known = np.isfinite(apart)
-    # At least the stated uncertainty: among points without noise every tiny difference would count as an outlier.
+    # At least the stated uncertainty: without noise, every tiny difference would count as an outlier.
     local = np.maximum(robust_scale(apart[known]), least)
     far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
@@ -69,10 +68,10 @@ def outlying(
 
 
 def _expected_from_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-    """Residual (n,) that the neighbours in the sweep suggest; NaN where there are fewer than two.
+    """Residual (n,) expected from the neighbours in the sweep; NaN with fewer than two neighbours.
 
-    It is their median, or the straight line through two of them if that is nearer: along a stretch that the model misses the
-    residuals follow a line, and at the end of a sweep all neighbours lie on one side.
+    It is their median, or the line through two of them if it is closer to the point's own residual: along a stretch that the
+    model misses, residuals follow a line, and at the end of a sweep all neighbours lie on one side.
     """
     n, offsets = len(residual), constants.OUTLIER_NEIGHBOURS
     beside = np.full((n, len(offsets)), np.nan)

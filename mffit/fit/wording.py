@@ -33,13 +33,13 @@ from tir.errors import listed
 from tir.parameters import BY_NAME
 
 RARE = "the range of usual tyres"
-"""How sentences call the usual range of the table of parameters."""
+"""Name in sentences of the usual range in the table of parameters."""
 
 
 def explanations(
     config: Config, files: Files, values: Mapping[str, Any], measured: Measured, hand: Hand = NO_HAND
 ) -> list[str]:
-    """Everything that the report explains about the files, the most important first."""
+    """The report's sentences about the files, most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if hand.names:
@@ -54,7 +54,7 @@ def explanations(
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
-    """Which file (``names``, by use) is for which use, how far it is from the fitted model, and what was tested."""
+    """Sentences on each file (``names``, by use): its use, its misfit to the fitted model, and the tested ranges."""
     mode = {use: int(file.tyre["USE_MODE"]) for use, file in files.by_use.items()}
     normal = names["normal"]
     if not files.lacking:
@@ -98,7 +98,7 @@ def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
 
 
 def ranges_sentence(files: Files) -> str:
-    """What was tested and what the files allow."""
+    """A sentence on the tested ranges and the ranges of the files."""
     tested, written = files.tested, files.written
     low, high = (f"{tested[name] / 1e3:.0f}" for name in ("PRESMIN", "PRESMAX"))
     pressures = f"{low} kPa only" if single_pressure(tested) else f"{low} to {high} kPa"
@@ -120,7 +120,7 @@ def ranges_sentence(files: Files) -> str:
 
 
 def _at_sideslips(sideslips: Sequence[float]) -> str:
-    """At which sideslips [rad] longitudinal slip was run, in words."""
+    """The sideslips [rad] at which longitudinal slip was run, in words."""
     degrees = [round(float(np.degrees(alpha)), 1) + 0.0 for alpha in sideslips]
     if not any(degrees):
         return "without sideslip"
@@ -131,7 +131,7 @@ def _at_sideslips(sideslips: Sequence[float]) -> str:
 
 
 def beside_sentence(band: BandBesideSweeps) -> str:
-    """How well a force is known where no sweep is, and what to run; empty where that is harmless."""
+    """A sentence on a band outside the test plan and the run that would narrow it; empty if the band is not wider there."""
     at, beside = (round(float(np.degrees(alpha)), 1) for alpha in (band.sideslip, band.beside))
     what, unknown = "sideslip was run to one side only", "what only both sides show"
     if band.channel == "Fx":
@@ -153,13 +153,13 @@ PECP1_IS = {
     "slightly from the measured one",
     "model": "the joint estimate of tyre and rig; the directly measured eps_gamma is {measured:.4f}",
 }
-"""By ``spin.pecp1`` of tyre.toml, where PECP1 comes from."""
+"""By ``spin.pecp1`` of tyre.toml, the origin of PECP1 in words."""
 
 
 def bands_sentence(bands: Bands, held: Mapping[str, float], values: Mapping[str, Any], why: str) -> str:
-    """Where the bands hold; ``held`` are standard uncertainties, ``why`` is what the sweeps lack for the widening coefficient.
+    """A sentence on bands that are wider at other pressures; empty if they are about equal.
 
-    Empty where they are about as narrow at all pressures.
+    ``held`` has standard uncertainties of held coefficients; ``why`` states what the sweeps lack for the coefficient that widens.
     """
     if not bands.wider:
         return ""
@@ -177,7 +177,7 @@ def bands_sentence(bands: Bands, held: Mapping[str, float], values: Mapping[str,
 
 
 def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> tuple[str, bool]:
-    """What zeros without a measured eps_gamma changed; and whether they contradict a base file, which is a warning."""
+    """A sentence on the coefficients that the zeros changed, and whether the zeros contradict a base file (then a warning)."""
     contradicted = zeros.contradicted and from_base
     begins = "the base file contradicts the zeros: " if contradicted else ""
     source = "it gives" if contradicted else "the base file gives" if from_base else "the usual values give"
@@ -204,7 +204,7 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> t
 
 
 def zeros_of_rig_sentence(zeros: Mapping[str, tuple[float, float]], bands: Bands) -> str:
-    """What the fitted zeros of the rig on a flat track share with the tyre, how much of the bands this is, and what helps."""
+    """A sentence on zeros of a flat track that the fit hardly separates from the tyre: their effect on the bands, the remedy."""
     band, exact = (to_uncertainty(half, half) for half in (bands.half, bands.half_of_exact_zeros))
     return (
         f"on a flat track with one set-up, zeros of the rig ({zeros_listed(zeros)}) look almost like the tyre's own asymmetries, "
@@ -221,7 +221,7 @@ def warnings(
     outlying: Sequence[Outlier],
     untested: Mapping[str, str],
 ) -> tuple[str, ...]:
-    """All warnings of the fits without and with influences, the most important first; ``untested`` is that of the files."""
+    """All warnings of the fits without and with influences, most important first; ``untested`` as in :class:`Files`."""
     out = [
         f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
         for word, origin in untested.items()
@@ -235,7 +235,7 @@ def warnings(
 
 
 def by_hand_warnings(fitted: Fitted) -> list[str]:
-    """Bounds set by hand that the fit ends at, bounds and priors without effect, and priors that the points contradict."""
+    """Warnings on [coefficients]: values at a bound, settings without effect, and priors that the points contradict."""
     hand, free = fitted.hand, {number.name for number in fitted.numbers}
     out = []
     for name in sorted(fitted.at_bound & hand.bounded.keys()):
@@ -256,10 +256,10 @@ def by_hand_warnings(fitted: Fitted) -> list[str]:
 
 
 def contradicted_priors(fitted: Fitted) -> Iterator[str]:
-    """The priors set by hand that differ from the points by more than chance explains.
+    """Warnings on priors set by hand that differ significantly from the points.
 
-    The posterior of one number is the mean of prior and points, weighted by their information, so that the part of the points
-    follows from posterior and prior.
+    The posterior mean of a number is the mean of prior and points weighted by their precisions, so the estimate from the points
+    alone follows from posterior and prior.
     """
     stderr = fitted.posterior.stderr
     far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * max(len(fitted.hand.priors), 1))))
@@ -267,7 +267,7 @@ def contradicted_priors(fitted: Fitted) -> Iterator[str]:
         if name not in fitted.values or name in fitted.at_bound:
             continue
         both, own = stderr[name] ** -2.0, prior.spread**-2.0
-        if not both > own:  # the points say nothing
+        if not both > own:  # the points contain no information about it
             continue
         value, u = (both * fitted.values[name] - own * prior.expected) / (both - own), (both - own) ** -0.5
         apart = abs(value - prior.expected) / math.hypot(u, prior.spread)
@@ -279,7 +279,7 @@ def contradicted_priors(fitted: Fitted) -> Iterator[str]:
 
 
 def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
-    """What bounds and physical limits hold in the plain file and, where it differs, in the file at temperature."""
+    """Warnings on numbers at bounds or physical limits in the plain fit and, if they differ, in the full fit."""
     said, special = (_held_by_bounds(fit) for fit in (plain, full))
     if special == said:
         return [f"{said}; check the sweeps that determine them"] if said else []
@@ -288,12 +288,12 @@ def _at_bounds(plain: Fitted, full: Fitted) -> list[str]:
 
 
 def _held_by_bounds(fitted: Fitted) -> str:
-    """What is at a limit, in words."""
+    """The numbers at a limit, in words."""
     return "; ".join(f"{word}: {', '.join(names)}" for word, names in at_limits(fitted).items() if names)
 
 
 def at_limits(fitted: Fitted) -> dict[str, list[str]]:
-    """Numbers at a limit of the table, rare ones, and those at a limit of the curves, by words; bounds by hand do not count."""
+    """Numbers at a bound of the table, outside the usual range, or at a physical limit, by words; without bounds by hand."""
     at_bound = fitted.at_bound - fitted.hand.bounded.keys()
     rare = {
         n.name
@@ -321,7 +321,7 @@ SCALED = {
     "run_grip": "friction",
     "run_stiffness": "cornering stiffness",
 }
-"""What a temperature term or a number of a run scales, in words."""
+"""By temperature term or random effect, the quantity that it scales, in words."""
 
 
 def nuisance_sentences(
@@ -331,9 +331,9 @@ def nuisance_sentences(
     runs: BetweenRuns | None,
     plain: Mapping[str, Agreement],
 ) -> tuple[list[str], list[str]]:
-    """Which file is for whom and what was modelled; and what was not modelled, each with the reason.
+    """Sentences on the files and the modelled influences; and sentences on influences that were not modelled, with reasons.
 
-    ``name`` is that of the tyre; ``plain`` the agreement of the plain file with the points, by channel.
+    ``name`` is the tyre's name; ``plain`` is the agreement of the plain file with the points, by channel.
     """
     first = [] if temperature is None else [_files_sentence(name, temperature, plain)]
     last, measured = [], bool(np.any(np.isfinite(found.full.problem.points.T)))
@@ -348,7 +348,7 @@ def nuisance_sentences(
 
 
 def _size(verdict: Verdict, found: NuisanceFit, runs: BetweenRuns | None) -> str:
-    """What was found of an influence, and that the files are without it."""
+    """The fitted size of an influence in words, with a note that the files do not contain it."""
     if runs is not None and verdict.nuisance.per_run:
         sizes = " and ".join(f"{SCALED[n]} by {_percent(*value)}" for n, value in runs.scatter.items())
         return (
@@ -407,7 +407,7 @@ def _gaps(gaps: Gaps) -> str:
 def remarks(
     config: Config, points: Points, fitted: Fitted, values: Mapping[str, Any], found: Bands
 ) -> list[str]:
-    """What the bands of a fitted tyre with these values have to say."""
+    """Sentences on the widths of the fitted tyre's bands."""
     zeros = zeros_of_rig(fitted.rig)
     said = [
         bands_sentence(found, fitted.held, values, why_held(found.unseen, points, config.tyre.side)),
@@ -418,7 +418,7 @@ def remarks(
 
 
 def zeros_listed(rig: Mapping[str, tuple[float, float]]) -> str:
-    """The same in words, joined by commas."""
+    """The fitted zeros of the rig in words, joined by commas."""
     return ", ".join(
         f"{WORDS[name]} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {UNITS[name]}"
         for name, (value, u) in zeros_of_rig(rig).items()

@@ -1,4 +1,4 @@
-"""What a fit leaves of the readings, as one linear Gaussian model that every later question asks."""
+"""The residuals of a fit as one linear Gaussian model, which answers every later question about predictions and evidence."""
 
 from mffit.linearised.fitted import LinearisedChannel, LinearisedFit, Uncertain, linearised
 

@@ -1,6 +1,6 @@
-"""A linear model of readings whose errors have a memory along chains: what explains them is integrated out with its priors.
+"""A linear Gaussian model of readings with errors that are autocorrelated along chains; its numbers are integrated out.
 
-Where :mod:`mffit.linearised.mixed` has numbers that each group has of its own, here the errors of a group are correlated.
+In :mod:`mffit.linearised.mixed` each group has random effects; here instead the errors of a group are correlated.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from mffit.linearised import constants
 
 
 class Memory(NamedTuple):
-    """How errors along a chain are correlated."""
+    """Autocorrelation of errors along a chain: an exponential part and an independent part."""
 
-    correlation: float = 0.0  #: to the next reading, of the part with a memory
-    independent: float = 0.0  #: share of the variance without memory
+    correlation: float = 0.0  #: correlation of neighbouring readings in the exponential part
+    independent: float = 0.0  #: share of the variance that is independent
 
     def matrix(self, n: int) -> np.ndarray:
-        """Correlation (n, n) of the readings of a chain."""
+        """Correlation matrix (n, n) of the readings of a chain."""
         out: np.ndarray = (1.0 - self.independent) * self.correlation ** _steps(n)
         np.fill_diagonal(out, 1.0)
         return out
 
     def slopes(self, n: int) -> np.ndarray:
-        """Derivatives (2, n, n) of the matrix by correlation and independent share."""
+        """Derivatives (2, n, n) of the correlation matrix by correlation and independent share."""
         steps = _steps(n)
         by_correlation = (1.0 - self.independent) * steps * self.correlation ** np.maximum(steps - 1.0, 0.0)
         by_share = -(self.correlation**steps)
@@ -44,10 +44,10 @@ def _steps(n: int) -> np.ndarray:
 
 
 def chains_of(chain: np.ndarray, turn: np.ndarray | None = None) -> list[np.ndarray]:
-    """Rows of every chain in their order, from the number (m,) of the chain of each.
+    """Row indices of every chain in order; ``chain`` (m,) is the index of the chain of each row.
 
-    Rows of a chain are ordered by ``turn`` (m,) if that is given, and a turn that is left out begins another chain. Very long
-    chains are cut: their ends know nothing of each other.
+    If ``turn`` (m,) is given, rows of a chain are ordered by it, and a gap in it starts a new chain. Very long chains are cut,
+    because distant errors are practically independent.
     """
     order = np.argsort(chain, kind="stable") if turn is None else np.lexsort((turn, chain))
     begins = np.diff(chain[order]) != 0
@@ -60,14 +60,14 @@ def chains_of(chain: np.ndarray, turn: np.ndarray | None = None) -> list[np.ndar
 
 @dataclass(frozen=True, eq=False)
 class ChainedErrors:
-    """Errors of unit variance: the chains of all rows, and their memory."""
+    """Errors of unit variance in chains, and their autocorrelation."""
 
     chains: Sequence[np.ndarray]
     memory: Memory
 
     @cached_property
     def root(self) -> np.ndarray:
-        """Inverse of the lower factor of the correlation of the longest chain; its upper left part is that of a shorter one."""
+        """Inverse Cholesky factor of the longest chain's correlation matrix; its upper left block serves shorter chains."""
         n = max((len(rows) for rows in self.chains), default=0)
         factor = np.linalg.cholesky(self.memory.matrix(n)) if n else np.zeros((0, 0))
         return solve_triangular(factor, np.eye(n), lower=True, check_finite=False) if n else factor
@@ -78,15 +78,15 @@ class ChainedErrors:
         return not self.memory.correlation
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
-        """Rows (m,) or (m, k) made independent of each other."""
+        """Rows (m,) or (m, k) multiplied by the inverse Cholesky factor, so that their errors become independent."""
         return x if self.trivial else self._by_chain(self.root, x)
 
     def back(self, x: np.ndarray) -> np.ndarray:
-        """The transposed operation."""
+        """Rows (m,) or (m, k) multiplied by the transposed inverse Cholesky factor."""
         return x if self.trivial else self._by_chain(self.root.T, x)
 
     def _by_chain(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Rows of every chain multiplied by the upper left part of a matrix."""
+        """The rows of every chain multiplied by the upper left block of a matrix."""
         out = np.empty_like(x)
         for rows in self.chains:
             n = len(rows)
@@ -102,13 +102,13 @@ class ChainedErrors:
 
     @property
     def log_determinant(self) -> float:
-        """Of the correlation of all rows."""
+        """Log determinant of the correlation matrix of all rows."""
         logs = np.append(0.0, np.cumsum(np.log(np.diag(self.root))))
         return 0.0 if self.trivial else -2.0 * float(sum(logs[len(rows)] for rows in self.chains))
 
     @property
     def known_from_others(self) -> np.ndarray:
-        """Inverse (m,) of the variance of each error as the others of its chain leave it."""
+        """Inverse (m,) of each error's conditional variance given the other errors of its chain."""
         out = np.ones(sum(len(rows) for rows in self.chains))
         for rows in self.chains if not self.trivial else ():
             n = len(rows)
@@ -117,32 +117,32 @@ class ChainedErrors:
 
 
 class ChainedEvidence(NamedTuple):
-    """Logarithm of the probability of the readings, less a constant, and its derivatives."""
+    """Log marginal likelihood of the readings, up to a constant, and its derivatives."""
 
     value: float
-    sizes: np.ndarray  #: (k,) by the logarithms of the sizes of the columns
-    u: np.ndarray  #: (m,) by the logarithms of the uncertainties
-    memory: np.ndarray  #: (2,) by correlation and independent share
+    sizes: np.ndarray  #: (k,) derivatives by the logarithms of the sizes of the columns
+    u: np.ndarray  #: (m,) derivatives by the logarithms of the uncertainties
+    memory: np.ndarray  #: (2,) derivatives by correlation and independent share
 
 
 class Foretold(NamedTuple):
-    """Each reading as all others foretell it, in units of its uncertainty."""
+    """Leave-one-out prediction of each reading, in units of its uncertainty."""
 
-    error: np.ndarray  #: (m,)
-    variance: np.ndarray  #: (m,) of the error
-    own: np.ndarray  #: (m,) the part of it that is the reading's own
+    error: np.ndarray  #: (m,) reading less prediction
+    variance: np.ndarray  #: (m,) variance of the error
+    own: np.ndarray  #: (m,) the part of the variance from the reading's own error
 
 
 @dataclass(frozen=True, eq=False)
 class Chained:
-    """Readings (m,) = columns @ numbers of unit prior variance + errors with a memory along chains."""
+    """Readings (m,) = columns @ numbers of unit prior variance + errors that are autocorrelated along chains."""
 
     residual: np.ndarray  #: (m,)
     columns: np.ndarray  #: (m, k)
     chains: Sequence[np.ndarray]
 
     def evidence(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> ChainedEvidence:
-        """The evidence of uncertainties (m,), sizes (k,) of the columns and a memory."""
+        """The log marginal likelihood for uncertainties (m,), sizes (k,) of the columns and an autocorrelation."""
         errors = ChainedErrors(self.chains, memory)
         plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
         mean, inverse, half_log, white = self._explained(errors, plain)
@@ -166,7 +166,7 @@ class Chained:
         )
 
     def foretold(self, u: np.ndarray, sizes: np.ndarray, memory: Memory) -> Foretold:
-        """Every reading from all others."""
+        """The leave-one-out prediction of every reading."""
         errors = ChainedErrors(self.chains, memory)
         plain = np.column_stack([self.residual, self.columns * sizes]) / u[:, None]
         mean, inverse, _, white = self._explained(errors, plain)
@@ -180,7 +180,7 @@ class Chained:
     def _explained(
         errors: ChainedErrors, plain: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
-        """Mean (k,) and covariance (k, k) of the numbers, half the log determinant of its inverse, and the whitened rows."""
+        """Posterior mean (k,) and covariance (k, k) of the numbers, half the log determinant of its inverse, whitened rows."""
         white = errors.whiten(plain)
         root = lower_factor(white[:, 1:])
         inverse = dpotri(root, lower=1)[0] if len(root) else root
@@ -190,10 +190,10 @@ class Chained:
 
 
 def lower_factor(A: np.ndarray) -> np.ndarray:
-    """Lower Cholesky factor of A'A + 1, also where A is so large that rounding loses the 1 (a model far from the readings)."""
+    """Lower Cholesky factor of A'A + 1, even if A is so large that rounding loses the 1 (a model far from the readings)."""
     ones = np.eye(A.shape[1])
     try:
         return np.linalg.cholesky(A.T @ A + ones)
-    except np.linalg.LinAlgError:  # slower, and never without a factor
+    except np.linalg.LinAlgError:  # slower, but never fails
         _, upper = np.linalg.qr(np.vstack([A, ones]))
         return np.asarray((upper * np.where(np.diag(upper) < 0.0, -1.0, 1.0)[:, None]).T)

@@ -1,4 +1,4 @@
-"""The components of variance of a channel: what the formula misses, what differs from run to run, and noise."""
+"""The variance components of a channel: model error, random effects of the runs, and noise."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from mffit.linearised.smooth import SmoothFunctions
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """Standard deviations, in the unit of the channel where nothing else is said."""
+    """Standard deviations and lengths of the variance components, in the unit of the channel unless stated otherwise."""
 
-    missed: float  #: of what the formula misses, over the tested range with its room, a constant included
-    lengths: tuple[float, ...]  #: over which it changes, along every input [unit of the input]
-    offset: float  #: of a run
-    scale: float  #: of a run, relative [-]
-    shape: float  #: of a run, along what it sweeps
-    shape_length: float  #: over the tested range [-]
-    noise: float  #: over that stated [-]
+    missed: float  #: standard deviation of the model error over the slightly widened tested range, a constant included
+    lengths: tuple[float, ...]  #: length scales of the model error along every input [unit of the input]
+    offset: float  #: standard deviation of the runs' offsets
+    scale: float  #: standard deviation of the runs' relative scales [-]
+    shape: float  #: standard deviation of the runs' smooth deviations along the swept setting
+    shape_length: float  #: length scale of these deviations, over the tested range [-]
+    noise: float  #: standard deviation of the noise over the stated one [-]
 
     @classmethod
     def guess(cls, smooth: SmoothFunctions, misfit: float) -> Components:
-        """Where the search begins: the formula misses all of the misfit, and runs differ by a third of it."""
+        """Starting values of the search: a model error as large as the misfit, and differences of runs of a third of it."""
         return cls(
             missed=misfit,
             lengths=tuple(2.0 * one.spacing for one in smooth.inputs),
@@ -39,14 +39,14 @@ class Components:
         )
 
     def over_one_input(self, smooth: SmoothFunctions) -> Iterator[Components]:
-        """The same where the miss changes over one of the inputs alone."""
+        """Variants in which the model error changes over one input only."""
         longest = [constants.LONGEST_LENGTH * one.width for one in smooth.inputs]
         for i, length in enumerate(self.lengths):
             yield replace(self, lengths=(*longest[:i], length, *longest[i + 1 :]))
 
     @property
     def logarithms(self) -> np.ndarray:
-        """Of all numbers (d + 6,)."""
+        """Logarithms (d + 6,) of all components."""
         return np.log(
             [
                 self.missed,
@@ -61,25 +61,25 @@ class Components:
 
     @classmethod
     def of_logarithms(cls, x: np.ndarray) -> Components:
-        """From the logarithms of all numbers."""
+        """The components from their logarithms."""
         size = np.exp(x).tolist()
         return cls(size[0], tuple(size[1:-5]), *size[-5:])
 
     def run_variance(self, force: np.ndarray) -> np.ndarray:
-        """Variance (n,) of a new run around the mean of all, where the force is as given (n,)."""
+        """Variance (n,) of a new run around the mean of all runs, at points with the given force (n,)."""
         of_scale: np.ndarray = (self.scale * force) ** 2
         return self.offset**2 + of_scale + self.shape**2
 
 
 def own_columns(force: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """What every run has of its own (n, q): constant, force, and half waves along what it sweeps, from 0 to 1."""
+    """Columns (n, q) of each run's random effects: constant, force, and cosines along the swept setting (0 to 1)."""
     order = np.arange(1, constants.FUNCTIONS_OF_A_RUN + 1)
     waves = np.sqrt(2.0) * np.cos(np.pi * order * along[:, None])
     return np.column_stack([np.ones(len(force)), force, waves])
 
 
 def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.ndarray, np.ndarray]:
-    """The variances of all numbers, and the derivatives of the common and of the own ones by the logarithms ``x``."""
+    """Log variances of all numbers, and the derivatives of the common and the group-specific ones by the log components ``x``."""
     d, q = len(smooth.inputs), int(constants.FUNCTIONS_OF_A_RUN)
     share, by_length = smooth.log_variance(np.exp(x[1 : 1 + d]))
     by_common = np.zeros((len(share), len(x)))
@@ -96,7 +96,7 @@ def variances(x: np.ndarray, smooth: SmoothFunctions) -> tuple[Variances, np.nda
 
 
 def with_further(given: Variances, further: np.ndarray) -> Variances:
-    """The variances with those of further common numbers, as logarithms."""
+    """The variances extended by the log variances of ``further`` common numbers."""
     return given._replace(common=np.append(given.common, further))
 
 
@@ -105,16 +105,16 @@ def most_probable(
 ) -> Components:
     """The components of the largest evidence, around their first guess; ``misfit`` is the size of the residuals.
 
-    The search begins at those of a similar fit that are ``near``, if there is one, and else where the miss changes over all
-    inputs. Runs that differ can take up a miss over a condition that they hold: where they do, it begins once more with a miss
-    over one of the inputs alone, which counts if it is certain. ``further`` are logarithms of the variances of numbers that the
-    common ones have behind the functions of ``smooth``.
+    The search starts at ``near``, the components of a similar fit, if given; else at a model error that changes over all inputs.
+    Random effects of the runs can absorb model error over a condition that runs hold. If they are larger than the model error, a
+    second search starts with model error over a single input; its result must be clearly more probable. ``further`` are log
+    variances of the common numbers that follow the functions of ``smooth``.
     """
     first = Components.guess(smooth, misfit)
     guess = first.logarithms
     usual = float(np.log(constants.USUAL_RATIO))
     has_prior = np.ones(len(guess))
-    has_prior[[0, -1]] = 0.0  # the data alone say how much the formula misses, and the noise
+    has_prior[[0, -1]] = 0.0  # the data alone determine model error and noise
 
     def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
         given, by_common, by_own = variances(x, smooth)
@@ -153,7 +153,7 @@ def most_probable(
 
 
 def _bounds(smooth: SmoothFunctions, misfit: float) -> list[tuple[float, float]]:
-    """Of the logarithms: a run differs by no more than the misfit, and no length is below the settings' distance."""
+    """Bounds of the log components: runs differ by at most the misfit, and no length is below the spacing of the settings."""
     tiny = 1e-4 * misfit
     missed = (tiny, 3.0 * misfit)
     lengths = [(one.spacing, constants.LONGEST_LENGTH * one.width) for one in smooth.inputs]

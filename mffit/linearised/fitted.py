@@ -1,4 +1,4 @@
-"""What a fit leaves of the readings, as one linear model per channel."""
+"""The residuals of a fit as one linear mixed model per channel."""
 
 from __future__ import annotations
 
@@ -24,55 +24,55 @@ from mffit.scatter import rms, robust
 
 @dataclass(frozen=True, eq=False)
 class LinearisedChannel:
-    """Residuals of one channel: what the formula misses, what differs from run to run, noise."""
+    """Linear model of the residuals of one channel: model error, random effects of the runs, and noise."""
 
     name: str
-    rows: np.ndarray  #: (n,) of the points that are looked at
-    stride: int  #: readings for each of them
-    unit: np.ndarray  #: (n,) their noise as stated, or usual [N], [Nm], [m]
+    rows: np.ndarray  #: (n,) indices of the points in the model
+    stride: int  #: thinning factor: readings represented by each of these points
+    unit: np.ndarray  #: (n,) standard uncertainty as stated, or the usual one [N], [Nm], [m]
     smooth: SmoothFunctions
     components: Components
     model: Mixed
-    """Of residuals, measured less model, over ``unit``; its common numbers are the weights of ``smooth``, then changes of the
-    numbers of the fit."""
-    variances: Variances  #: of these
+    """Model of the residuals (measured less model, over ``unit``). Common numbers: the weights of ``smooth``, then independent
+    changes of the fit's numbers."""
+    variances: Variances  #: prior variances of ``model``
     alone: Mixed
-    """The same with the coefficients as they are; its common numbers are the weights, then errors of the rig as declared."""
-    declared: np.ndarray  #: logarithms of the variances of these errors
+    """The model with fixed coefficients. Common numbers: the weights of ``smooth``, then rig errors with declared priors."""
+    declared: np.ndarray  #: log variances of these rig errors
     missed: np.ndarray
-    """(m,) weights of the functions with the coefficients and the zeros of the rig as they are [unit of the channel]."""
-    turn: np.ndarray  #: (k, k) changes of the numbers of the fit by these
-    sweeps: np.ndarray  #: number of the sweep of every group of ``model``
+    """(m,) estimated weights of ``smooth`` with fixed coefficients and rig zeros [unit of the channel]."""
+    turn: np.ndarray  #: (k, k) changes of the fit's numbers by the independent changes in ``model``
+    sweeps: np.ndarray  #: index of the sweep of every group of ``model``
 
     @cached_property
     def posterior(self) -> MixedPosterior:
-        """Of the common numbers."""
+        """Posterior of the common numbers."""
         return self.model.posterior(self.variances)
 
     @property
     def noise(self) -> float:
-        """Standard deviation of a usual reading of a run."""
+        """Standard deviation of the noise of a typical reading."""
         return self.components.noise * float(np.median(self.unit))
 
     @property
     def size(self) -> float:
-        """Root mean square of what the formula misses at the readings."""
+        """Root mean square of the estimated model error at the readings."""
         return rms(self.missed_at_readings)
 
     @property
     def missed_at_readings(self) -> np.ndarray:
-        """What the formula misses (n,), measured less model, as all sweeps show it."""
+        """The estimated model error (n,), measured less model, from all sweeps."""
         return np.asarray(self.unit * (self.model.common[:, : len(self.missed)] @ self.missed))
 
     @property
     def misfit(self) -> float:
-        """Root mean square of the residuals over their stated noise."""
+        """Root mean square of the residuals in units of their stated uncertainty."""
         return rms(self.model.residual)
 
     def told_of(self, slopes: np.ndarray) -> FurtherColumns:
-        """Information and pull of all readings on some numbers, where the miss, runs and noise are unknown, too.
+        """Information matrix and score of all readings for some numbers, with model error and random effects marginalised.
 
-        ``slopes`` (n, k) are derivatives of the readings of :attr:`rows` by the numbers.
+        ``slopes`` (n, k) are derivatives of the readings at :attr:`rows` by the numbers.
         """
         functions, given = len(self.missed), self.variances
         plain = replace(self.model, common=self.model.common[:, :functions])
@@ -82,11 +82,14 @@ class LinearisedChannel:
         return plain.further(of_all, slopes / self.unit[:, None])
 
     def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
-        """Each sweep, or each set of ``rows`` counted as those of :attr:`rows`, as all other readings predict it."""
+        """Prediction of each sweep from all others, or of each set of ``rows`` (positions in :attr:`rows`)."""
         return self._left_out(self.model, self.variances, self.model.groups if rows is None else rows)
 
     def without_runs(self, rows: Sequence[np.ndarray], *, missed: bool) -> list[LeftOutReadings]:
-        """The same if runs did not differ but by noise; without what is ``missed``, all that usual readings miss is noise."""
+        """Prediction of each set of ``rows`` from all other readings in a model without random effects of the runs.
+
+        With ``missed`` False the model has no model error either, and the noise covers the core of the residuals.
+        """
         functions = len(self.missed)
         noise = self.components.noise if missed else robust(self.model.residual)
         given = self.variances._replace(own=self._alike, noise=2.0 * float(np.log(max(noise, 1.0))))
@@ -96,10 +99,10 @@ class LinearisedChannel:
         return self._left_out(plain, given._replace(common=given.common[functions:]), rows)
 
     def by_others(self, rows: np.ndarray) -> LeftOutReadings:
-        """The rows of a run that others shall predict, if the fit and the components are those of the others.
+        """Prediction of a run's ``rows`` from other runs, for a model whose fit and components exclude that run.
 
-        Between the settings of a condition that no run sweeps, such as the load, few runs say how fast the miss changes: it may
-        change from one to the next.
+        Few runs determine how fast the model error changes over a condition that no run sweeps, such as the load. Its length is
+        therefore limited to the spacing of the settings.
         """
         lengths = tuple(
             min(length, one.spacing) if one.is_held else length
@@ -111,27 +114,27 @@ class LinearisedChannel:
 
     @property
     def _alike(self) -> np.ndarray:
-        """Logarithms of the variances of the numbers of each run, if runs do not differ."""
+        """Log variances that practically switch off the random effects of the runs."""
         return np.full(len(self.variances.own), 2.0 * np.log(1e-6 * float(np.median(self.unit))))
 
     @cached_property
     def proof(self) -> float:
-        """Gain of log evidence by what the formula misses, over a constant alone."""
+        """Gain of log evidence by the model error, over a constant alone."""
         return self.stride * (self._evidence - self._without)
 
     @property
     def is_proven(self) -> bool:
-        """Whether neither noise nor differences of runs look like what the formula misses."""
+        """Whether neither noise nor random effects of the runs can explain the model error."""
         return self.proof > constants.CERTAIN_EVIDENCE
 
     @property
     def proven_over(self) -> list[str]:
-        """Names of the inputs over which it changes for certain, the clearest first."""
+        """Names of the inputs over which the model error changes significantly, the clearest first."""
         return [name for name, gain in self.missed_over.items() if gain > constants.CERTAIN_EVIDENCE]
 
     @cached_property
     def missed_over(self) -> dict[str, float]:
-        """Gain of log evidence because what the formula misses changes over an input, by its name, largest first."""
+        """By name of an input, the gain of log evidence because the model error changes over it; largest first."""
         found = {}
         for i, one in enumerate(self.smooth.inputs):
             lengths = list(self.components.lengths)
@@ -143,12 +146,12 @@ class LinearisedChannel:
 
     @cached_property
     def _evidence(self) -> float:
-        """Log evidence of the model with the coefficients as they are."""
+        """Log evidence of the model with fixed coefficients."""
         return _evidence(self.alone, self.components, self.smooth, self.declared)
 
     @cached_property
     def _without(self) -> float:
-        """Log evidence if the formula misses only a constant."""
+        """Log evidence if the model error is only a constant."""
         constant = SmoothFunctions.over(())
         model = replace(
             self.alone,
@@ -168,8 +171,7 @@ class LinearisedChannel:
         ]
 
     def gain(self, change: np.ndarray) -> tuple[float, float]:
-        """Gain of log evidence by a known change (n,) of the readings that takes the place of what the formula misses, and the
-        :attr:`proof` of what it misses beside that."""
+        """Gain of log evidence by adding a known ``change`` (n,) to the model, and :attr:`proof` of the remaining model error."""
         without = replace(self.alone, residual=self.alone.residual - change / self.unit)
         found = _found(without, self.smooth, self.unit, self.declared, self.components)
         beside = replace(self, alone=without, components=found)
@@ -177,28 +179,27 @@ class LinearisedChannel:
 
 
 class Uncertain(NamedTuple):
-    """A number of the fit that may change, with its prior as the change from its value."""
+    """A number of the fit with its prior, relative to the fitted value."""
 
     name: str
-    expected: float
+    expected: float  #: prior mean less fitted value
     spread: float  #: standard deviation
     held: bool = False  #: whether the fit took it as exact
 
 
 @dataclass(frozen=True, eq=False)
 class LinearisedFit:
-    """The channels of a fit at its solution."""
+    """The linear models of all channels of a fit at its solution."""
 
     numbers: tuple[Uncertain, ...]  #: (k,) coefficients and rig errors
     channels: Mapping[str, LinearisedChannel]
 
     @property
     def zeros(self) -> dict[str, tuple[float, float]]:
-        """The fitted zeros of the rig beside what the formula misses: changes of their values, and standard uncertainties.
+        """By name, change and standard uncertainty of the fitted zeros of forces, estimated together with the model error.
 
-        The coefficients are as they are. A constant that the formula may miss belongs to a zero only as far as its declared
-        uncertainty exceeds the size of such constants; all channels together say how far. Only zeros of forces: that of an angle
-        moves along the curves, as coefficients do that are held here.
+        Coefficients are fixed. The priors apportion a constant residual between a zero and the model error; all channels are used
+        together. Zeros of angles are excluded, because they shift the curves as the fixed coefficients do.
         """
         rig = [number for number in self.numbers if _of_rig(number)]
         free = np.array([_is_of_force(number) and not number.held for number in rig], dtype=bool)
@@ -225,17 +226,17 @@ def linearised(
     without: np.ndarray | None = None,
     near: LinearisedFit | None = None,
 ) -> LinearisedFit:
-    """The linear model of what a simulation leaves of the points.
+    """The linear model of a simulation's residuals at the points.
 
     Parameters
     ----------
     points : (n,)
     simulation : the fitted tyre on its rig
     sigma : by channel, uncertainty (n,) that the fit used; inf where a reading has no weight
-    numbers : of the fit, each with a prior
-    only : channels to look at; all that were fitted if None
-    without : rows of the points that the simulation was not fitted to, and that do not say what is usual
-    near : the same of a similar fit to these points, from which the search for the components begins
+    numbers : numbers of the fit, each with a prior
+    only : channels of the result; all fitted channels if None
+    without : indices of points that the fit did not use; they do not enter the estimation of the components
+    near : linear model of a similar fit to these points; its components are the starting values of the search
     """
     readings = simulation.readings(points, sigma)
     sight = _Sight(
@@ -256,7 +257,7 @@ def linearised(
 
 
 class _Sight(NamedTuple):
-    """What all channels share."""
+    """Inputs that all channels share."""
 
     points: Points
     felt: Points
@@ -264,10 +265,10 @@ class _Sight(NamedTuple):
     numbers: Sequence[Uncertain]
     without: np.ndarray
     near: Mapping[str, Components]  #: by channel
-    looked_at: dict[bytes, _LookedAt]  #: by the rows, which most channels have in common
+    looked_at: dict[bytes, _LookedAt]  #: cache by the rows, which are equal for most channels
 
     def at(self, rows: np.ndarray) -> _LookedAt:
-        """The readings of some rows (n,)."""
+        """The points of some rows (n,) with their smooth functions, cached."""
         known = self.looked_at.get(rows.tobytes())
         if known is None:
             part, at_tyre = (p.select(rows, with_table=False) for p in (self.points, self.felt))
@@ -280,21 +281,22 @@ class _Sight(NamedTuple):
 
 
 class _LookedAt(NamedTuple):
-    """Readings (n,), and what may be missed there."""
+    """Points (n,) of a channel, and the smooth functions of the model error there."""
 
     points: Points
     smooth: SmoothFunctions
-    columns: np.ndarray  #: (n, m) of these
+    columns: np.ndarray  #: (n, m) values of the smooth functions
     along: np.ndarray  #: (n,) as :func:`mffit.linearised.inputs.along`
 
 
 def _channel(
     name: str, sight: _Sight, model: np.ndarray, sigma: np.ndarray, used: np.ndarray
 ) -> LinearisedChannel:
-    """The components are found with the coefficients as they are, since free ones would take up what the formula misses.
+    """The linear model of one channel.
 
-    The errors of the rig are free: none of them is to take up what the formula misses, beyond what was declared. Influences that
-    the fit found, such as that of temperature, are as they are: nothing limits what a free one would take up.
+    The components are estimated with fixed coefficients, because free ones would absorb the model error. Rig errors are free
+    within their declared priors. Influences without a prior, such as temperature terms, are fixed too: free ones could absorb
+    any model error.
     """
     every = np.flatnonzero(used)
     stride = max(1, -(-len(every) // int(constants.POINTS_EXAMINED)))
@@ -306,7 +308,7 @@ def _channel(
     unit = np.where(stating(stated), stated, usual)
     groups = [np.flatnonzero(part.sweep == k) for k in np.unique(part.sweep)]
     own = own_columns(model[rows], place)
-    if len(groups) == 1:  # how runs differ is not seen, and one run would take up what the formula misses
+    if len(groups) == 1:  # random effects are not identifiable, and would absorb the model error
         own = np.zeros_like(own)
     missed = functions / unit[:, None]
     slopes = sight.simulation.sensitivities(part, [number.name for number in sight.numbers], [name])[1][name]
@@ -341,9 +343,9 @@ def _channel(
 
 
 def _missed(alone: Mixed, rig: Sequence[Uncertain], declared: np.ndarray, given: Variances) -> np.ndarray:
-    """Weights (m,) of the functions beside the errors of the rig, of which the zeros and what the fit took as exact stay.
+    """Posterior mean (m,) of the functions' weights, with free rig errors except zeros and held ones, which keep their values.
 
-    No reading tells a zero from a constant that the formula misses: readings are then foretold with the zeros that are stated.
+    A zero cannot be separated from a constant model error, so the result must go together with the stated zeros.
     """
     functions = len(given.common)
     stays = np.array([number.held or error_of(number.name) in ZEROS for number in rig], dtype=bool)
@@ -359,13 +361,13 @@ def _is_of_force(number: Uncertain) -> bool:
 
 
 def _of_rig(number: Uncertain) -> bool:
-    """Whether a number is an error of the rig that a prior limits."""
+    """Whether a number is a rig error with a prior."""
     error = error_of(number.name)
     return error is not None and error.has_prior
 
 
 def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.ndarray) -> Mixed:
-    """The model with the coefficients as they are and only some (k,) errors of the rig free; all others are as fitted."""
+    """The model with fixed coefficients and only the rig errors of the mask ``free`` (k,) free; the others keep fitted values."""
     columns = alone.common[:, functions:]
     fitted = np.array([number.expected for number in rig])[~free]
     return replace(
@@ -376,16 +378,17 @@ def _beside(alone: Mixed, rig: Sequence[Uncertain], functions: int, free: np.nda
 
 
 def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np.ndarray:
-    """Changes (k, k) of the numbers of the fit that are independent, each of variance 1, before what is missed is known.
+    """Matrix (k, k) that maps independent numbers of unit variance to changes of the fit's numbers.
 
-    ``weighted`` (n, k) are derivatives over the uncertainty that the fit used.
+    Their covariance is that of the fit, widened because the model error is still unknown. ``weighted`` (n, k) are derivatives of
+    the readings over the uncertainty that the fit used.
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
     return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
 
 
 def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np.ndarray) -> float:
-    """Log evidence of components; ``further`` are logarithms of the variances of further common numbers."""
+    """Log evidence of variance components; ``further`` are log variances of further common numbers."""
     given, _, _ = variances(of.logarithms, smooth)
     return model.evidence(with_further(given, further)).value
 
@@ -397,7 +400,7 @@ def _found(
     further: np.ndarray,
     near: Components | None = None,
 ) -> Components:
-    """The components of residuals over ``unit`` (n,); ``further`` are logarithms of the variances of further common numbers."""
+    """The most probable variance components of residuals over ``unit`` (n,); ``further`` as in :func:`_evidence`."""
     rows = np.concatenate(list(model.groups))
     misfit = max(rms((model.residual * unit)[rows]), 1e-12)
     return most_probable(model, smooth, near, misfit, further)

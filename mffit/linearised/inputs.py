@@ -1,4 +1,4 @@
-"""The conditions over which a formula may miss a tyre smoothly."""
+"""The conditions over which the model error varies smoothly."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OTHER_WORDS: Mapping[str, str] = {
     "sense": "sense of the sweeps",
 }
 ALSO: tuple[str, ...] = ("phi_t", "T", "direction", "mount")
-"""Further conditions, each used where it varies."""
+"""Further conditions, each used only if it varies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +36,11 @@ class Input:
     """One condition, in SI units."""
 
     name: str  #: field of :class:`mffit.points.Points`, or ``sense``
-    lower: float
-    upper: float  #: the tested range
-    spacing: float  #: distance of neighbouring settings; nothing shorter is smooth
+    lower: float  #: lower end of the tested range
+    upper: float  #: upper end of the tested range
+    spacing: float  #: distance of neighbouring settings, the shortest length scale
     averaged: tuple[float, ...] = ()
-    """Values over which a prediction averages that does not state the condition; empty: it is stated always."""
+    """Values over which a prediction averages if it does not state the condition; empty if predictions always state it."""
 
     @property
     def width(self) -> float:
@@ -49,7 +49,7 @@ class Input:
 
     @property
     def is_held(self) -> bool:
-        """Whether every sweep holds the condition, at one of few settings."""
+        """Whether every sweep holds the condition constant, at one of few settings."""
         return self.spacing > 1.5 * self.width / constants.DIVISIONS_OF_A_SWEEP
 
 
@@ -79,7 +79,7 @@ def inputs_of(points: Points) -> tuple[Input, ...]:
             found.append(_input(name, values, int(constants.DIVISIONS_OF_WARMING), usual))
         else:
             found.append(_input(name, values, 1))
-    if "T" not in [one.name for one in found]:  # a sweep up and back differs mostly by its warmth
+    if "T" not in [one.name for one in found]:  # up and down sweeps differ mostly by temperature
         senses = sense(points, swept_of(points, tuple(found)))
         if np.any(senses > 0.0) and np.any(senses < 0.0):
             found.append(Input("sense", -1.0, 1.0, 2.0, (-1.0, 1.0)))
@@ -96,14 +96,14 @@ def _runs(points: Points) -> list[np.ndarray]:
 
 
 def _width(values: np.ndarray) -> float:
-    """How far a run moves a condition."""
-    in_order = np.sort(values)  # np.percentile takes ten times as long for so few
+    """Width of the range through which a run moves a condition, without extreme values."""
+    in_order = np.sort(values)  # np.percentile takes ten times as long for few values
     low, high = np.interp(constants.ENDS_OF_A_RUN, np.linspace(0.0, 100.0, len(values)), in_order)
     return float(high - low)
 
 
 def swept_of(points: Points, inputs: tuple[Input, ...]) -> dict[int, str]:
-    """By number of a sweep, the condition that moves most in it, over its tested range."""
+    """By index of a sweep, the condition that it moves most, relative to the tested range."""
     out = {}
     steered = [one for one in inputs if one.name in LEVELS and one.name != "p"]
     for k in np.unique(points.sweep).tolist():
@@ -124,7 +124,7 @@ def sense(points: Points, swept: Mapping[int, str]) -> np.ndarray:
 
 
 def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
-    """The conditions (n, d); one that a run holds is its mean over that run, so that its control does not count."""
+    """The conditions (n, d); a condition that a run holds is replaced by the run's mean, which removes control errors."""
     out = np.empty((len(points), len(inputs)))
     for i, one in enumerate(inputs):
         if one.name == "sense":
@@ -139,7 +139,7 @@ def settings_of(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
 
 
 def along(points: Points, inputs: tuple[Input, ...]) -> np.ndarray:
-    """Place (n,) of every point within the tested range of what its sweep moves, from 0 to 1."""
+    """Position (n,) of every point in the tested range of the condition that its sweep moves, 0 to 1."""
     by_name = {one.name: one for one in inputs}
     out = np.zeros(len(points))
     for k, name in swept_of(points, inputs).items():

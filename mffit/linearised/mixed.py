@@ -1,7 +1,6 @@
-"""A linear model of residuals: numbers that all groups share, numbers that each group has of its own, and noise; all Gaussian.
+"""A linear Gaussian mixed model of residuals: numbers common to all groups, random effects of each group, and noise.
 
-Whatever is asked of it (evidence, posterior, prediction of groups that are left out) comes from sums over groups, so it costs
-as much for many readings of a group as for few.
+Evidence and posterior are computed from sums of products over groups, so their cost hardly depends on the number of readings.
 """
 
 from __future__ import annotations
@@ -17,19 +16,19 @@ from scipy.linalg.blas import dtrmm
 from scipy.linalg.lapack import dtrtri
 
 ROUNDING = 1e-13
-"""Largest error of a difference of sums of products, over the sums, by which it may lose its sign."""
+"""Rounding error of a difference of sums of products relative to the sums; such a difference can become negative."""
 
 
 class Variances(NamedTuple):
-    """Logarithms of the variances of the priors and of the noise."""
+    """Log variances of the priors and of the noise."""
 
-    common: np.ndarray  #: (m,) of the shared numbers
-    own: np.ndarray  #: (q,) of the numbers of every group
-    noise: float  #: over that of the readings as stated
+    common: np.ndarray  #: (m,) of the common numbers
+    own: np.ndarray  #: (q,) of the random effects
+    noise: float  #: of the noise, relative to the stated variance
 
 
 class MixedEvidence(NamedTuple):
-    """Logarithm of the probability of the residuals, less a constant, and its derivatives by :class:`Variances`."""
+    """Log marginal likelihood of the residuals, up to a constant, and its derivatives by :class:`Variances`."""
 
     value: float
     common: np.ndarray  #: (m,)
@@ -39,7 +38,7 @@ class MixedEvidence(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mixed:
-    """Residuals (n,) = common @ shared numbers + own @ numbers of the group + noise, each row in units of its stated noise."""
+    """Residuals (n,) = common @ common numbers + own @ random effects of the group + noise, in units of the stated noise."""
 
     residual: np.ndarray  #: (n,)
     common: np.ndarray  #: (n, m)
@@ -63,14 +62,14 @@ class Mixed:
 
     @cached_property
     def _group_of(self) -> np.ndarray:
-        """Number (n,) of the group of every row; -1 of one in none."""
+        """Index (n,) of the group of every row; -1 for rows in no group."""
         out = np.full(len(self.residual), -1)
         for k, g in enumerate(self.groups):
             out[g] = k
         return out
 
     def evidence(self, given: Variances) -> MixedEvidence:
-        """The evidence of some variances."""
+        """The log marginal likelihood for given variances."""
         found, sums = self.posterior(given), self._sums
         w, gain = np.exp(-given.noise), found.gain
         own_size = np.exp(given.own)
@@ -94,7 +93,7 @@ class Mixed:
         )
 
     def posterior(self, given: Variances) -> MixedPosterior:
-        """The shared numbers given the residuals."""
+        """The posterior of the common numbers for given variances."""
         sums, w = self._sums, float(np.exp(-given.noise))
         size, own_size = np.exp(0.5 * given.common), np.exp(0.5 * given.own)
         inner = np.linalg.cholesky(np.eye(len(own_size)) + w * own_size[:, None] * sums.own * own_size)
@@ -122,7 +121,7 @@ class Mixed:
         )
 
     def further(self, given: Variances, columns: np.ndarray) -> FurtherColumns:
-        """What the residuals say of the factors of further columns (n, j), beside all other numbers."""
+        """The information of the residuals about coefficients of further columns (n, j), with all other numbers marginalised."""
         found, w = self.posterior(given), float(np.exp(-given.noise))
         j, m = columns.shape[1], self.common.shape[1]
         information, pull, across = np.zeros((j, j)), np.zeros(j), np.zeros((j, m))
@@ -137,9 +136,10 @@ class Mixed:
         return FurtherColumns(information - through @ through.T, pull, outside)
 
     def left_out(self, given: Variances, rows: Sequence[np.ndarray]) -> list[LeftOutReadings]:
-        """Each set of rows as all other rows of the groups predict it; what is left of a group shows its own numbers.
+        """Prediction of each set of rows from all other rows; remaining rows of a group inform about its random effects.
 
-        By the inverse of the covariance of all readings: its block of the left-out ones, inverted, is their covariance.
+        Uses the inverse of the covariance of all readings: the inverse of its block for the left-out rows is the covariance of
+        their prediction errors.
         """
         found, w = self.posterior(given), float(np.exp(-given.noise))
         return [self._predicted(found, w, np.sort(one)) for one in rows]
@@ -169,7 +169,10 @@ class Mixed:
 
 
 def _factor(whole: np.ndarray, rounding: float) -> tuple[np.ndarray, bool]:
-    """Lower factor of 1 plus a matrix that has no negative eigenvalues but for rounding, which grows until it suffices."""
+    """Lower Cholesky factor of 1 + ``whole``, where only rounding makes eigenvalues of ``whole`` negative.
+
+    ``rounding`` is added to the diagonal and increased until the factorisation succeeds.
+    """
     while True:
         try:
             factor: tuple[np.ndarray, bool] = cho_factor(
@@ -195,36 +198,36 @@ class _Sums(NamedTuple):
 
 
 class MixedPosterior(NamedTuple):
-    """The shared numbers given the residuals, and what left-out groups need."""
+    """Posterior of the common numbers, with intermediate results for the prediction of left-out groups."""
 
     mean: np.ndarray  #: (m,)
-    root: np.ndarray  #: (m, m) upper triangle whose product with its transpose is the covariance
-    pull: np.ndarray  #: (m,)
-    scaled: np.ndarray  #: (m,) the mean over the prior's standard deviation
-    gain: np.ndarray  #: (m,) variance over that of the prior
-    own: np.ndarray  #: (groups, q, q) covariance of the groups' numbers if the shared ones were known
-    through: np.ndarray  #: (groups, q, m)
+    root: np.ndarray  #: (m, m) upper triangular; root @ root.T is the covariance
+    pull: np.ndarray  #: (m,) score of the residuals at zero
+    scaled: np.ndarray  #: (m,) mean over the prior standard deviation
+    gain: np.ndarray  #: (m,) posterior variance over prior variance
+    own: np.ndarray  #: (groups, q, q) covariance of the random effects given the common numbers
+    through: np.ndarray  #: (groups, q, m) that covariance times the products of own and common columns
     log_determinant: float
 
 
 class FurtherColumns(NamedTuple):
-    """What residuals say of the factors of further columns; those that explain most are the pull over the information."""
+    """Information of residuals about coefficients of further columns; their best estimate is information^-1 @ pull."""
 
-    information: np.ndarray  #: (j, j)
-    pull: np.ndarray  #: (j,)
-    outside: np.ndarray  #: (n, j) the columns without what the shared numbers follow of them
+    information: np.ndarray  #: (j, j) information matrix
+    pull: np.ndarray  #: (j,) score at zero
+    outside: np.ndarray  #: (n, j) the columns less the part that the common numbers reproduce
 
 
 class LeftOutReadings(NamedTuple):
-    """Readings as other groups predict them, in units of their stated noise."""
+    """Prediction errors of left-out readings, in units of their stated noise."""
 
-    rows: np.ndarray  #: (k,)
+    rows: np.ndarray  #: (k,) indices of the readings
     error: np.ndarray  #: (k,) measured less predicted
-    covariance: np.ndarray  #: (k, k) of the error: prediction, run to run and noise
+    covariance: np.ndarray  #: (k, k) of the error: from prediction, random effects and noise
 
     @property
     def log_density(self) -> float:
-        """Logarithm of the probability of the readings as predicted, less a constant."""
+        """Log predictive density of the readings, up to a constant."""
         factor = cho_factor(self.covariance, lower=True)
         return -0.5 * float(self.error @ cho_solve(factor, self.error)) - float(
             np.sum(np.log(np.diag(factor[0])))

@@ -1,10 +1,9 @@
-"""Smooth functions of several conditions, with a Gaussian prior of few numbers.
+"""Smooth functions of several conditions: a Gaussian process in a reduced-rank basis.
 
-Products of cosines over the tested range with a little room around it, as in a reduced-rank Gaussian process (Solin and Sarkka
-2020, Statistics and Computing 30, 419), so that only variances change with size and lengths. Each condition has a Matern
-covariance of order 5/2: what is missed bends fast where a tyre begins to slide and slowly elsewhere, for which the one length of
-a squared exponential does not suffice. A constant is one of the functions; how much of it belongs to the zeros of the rig is for
-their priors to say.
+The basis functions are products of cosines over a slightly widened tested range (Solin and Sarkka 2020, Statistics and Computing
+30, 419); size and length scales change only their prior variances. Each condition has a Matern covariance of order 5/2: model
+error bends fast where a tyre begins to slide and slowly elsewhere, which the single length of a squared exponential cannot
+describe. A constant is one of the functions; the priors apportion it between model error and zeros of the rig.
 """
 
 from __future__ import annotations
@@ -18,21 +17,21 @@ from mffit.linearised.inputs import Input
 
 LEAST = float(-np.log(constants.LEAST_SHARE))
 WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
-"""Radians per length from which the share of a half wave is too small."""
+"""Wave number, in radians per length scale, beyond which a basis function's variance is negligible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SmoothFunctions:
-    """The functions: m products of cosines over d conditions."""
+    """The basis: m products of cosines over d conditions."""
 
     inputs: tuple[Input, ...]  #: (d,)
-    orders: np.ndarray  #: (m, d) half waves of every function along every condition
+    orders: np.ndarray  #: (m, d) number of half waves of every function along every condition
 
     @classmethod
     def over(cls, inputs: tuple[Input, ...]) -> SmoothFunctions:
-        """The functions that matter most at the shortest lengths."""
+        """The basis functions with the largest prior variance at the shortest lengths."""
         orders, size = np.zeros((1, 0), dtype=int), np.zeros(1)
-        for one in inputs:  # functions too small in some conditions are so in all: they never become many
+        for one in inputs:  # further factors only reduce the variance, so small products are dropped at once
             order = np.arange(_most_half_waves(one) + 1)
             size = (size[:, None] + _log_spectrum(np.pi * order * one.spacing / _length(one))[0]).ravel()
             orders = np.column_stack([np.repeat(orders, len(order), axis=0), np.tile(order, len(orders))])
@@ -41,7 +40,7 @@ class SmoothFunctions:
         return cls(inputs, orders[largest])
 
     def columns(self, at: np.ndarray) -> np.ndarray:
-        """Values (n, m) at conditions (n, d); beyond the tested range those at its end."""
+        """Values (n, m) at conditions (n, d), which are clipped to the tested range."""
         out = np.ones((len(at), len(self.orders)))
         for i, one in enumerate(self.inputs):
             inside = np.clip(at[:, i], one.lower, one.upper)
@@ -52,7 +51,7 @@ class SmoothFunctions:
         return out
 
     def log_variance(self, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Logarithm of the share (m,) of every function in the variance, and its derivatives (m, d) by those of the lengths."""
+        """Log share (m,) of every function in the prior variance, and its derivatives (m, d) by the log lengths."""
         size = np.zeros(len(self.orders))
         slope = np.zeros((len(self.orders), len(self.inputs)))
         for i, one in enumerate(self.inputs):
@@ -65,7 +64,7 @@ class SmoothFunctions:
         return size, slope
 
     def likeness(self, at: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-        """Correlation (n,) of what is missed at conditions (n, d) with that at the nearest tested ones; 1 within their range."""
+        """Correlation (n,) of the model error at conditions (n, d) with that at the nearest tested ones; 1 inside the range."""
         lower, upper = ([getattr(one, end) for one in self.inputs] for end in ("lower", "upper"))
         beyond = (at - np.clip(at, lower, upper)) / lengths
         found: np.ndarray = np.exp(-0.5 * np.sum(beyond**2, axis=1))
@@ -73,15 +72,15 @@ class SmoothFunctions:
 
 
 def _length(one: Input) -> float:
-    """Range over which the functions of a condition run."""
+    """Length of the widened range over which the cosines of a condition are defined."""
     return (1.0 + 2.0 * constants.ROOM) * one.width
 
 
 def _most_half_waves(one: Input) -> int:
-    """Half waves of the functions that matter at the shortest length."""
+    """Largest number of half waves with non-negligible variance at the shortest length."""
     return int(np.ceil(WIDEST / np.pi * _length(one) / one.spacing))
 
 
 def _log_spectrum(wave: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Logarithm of the share (k,) of half waves in radians per length, and its derivative by that of the length: Matern 5/2."""
+    """Log spectral density (k,) of a Matern 5/2 covariance at waves [rad/length], and its derivative by the log length."""
     return -3.0 * np.log1p(wave**2 / 5.0), -6.0 * wave**2 / (5.0 + wave**2)

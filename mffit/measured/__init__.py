@@ -1,4 +1,4 @@
-"""Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
+"""The direct method: alignment, radii, stiffnesses, turn-slip force and eps_gamma from the data without a model, with budgets."""
 
 from mffit.measured.alignment import align
 from mffit.measured.direct import adding_to_camber, at_the_axis, measure

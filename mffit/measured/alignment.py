@@ -26,15 +26,15 @@ def align(
     measured: Mapping[float, Quantity] | None = None,
     resolution_deg: float = constants.AXIS_RESOLUTION,
 ) -> Alignment:
-    """Next correction of the sideslip axis from forward and backward zeros.
+    """The next correction of the sideslip axis, from forward and backward zeros.
 
     Parameters
     ----------
-    points : with rows at zero sideslip and camber rolled both ways, corrected for the play; ``iteration`` numbers repeated
-        steps. Of several set-ups on the usual path the last one is aligned
+    points : points corrected for the play, with rows at zero sideslip and camber in both directions; ``iteration`` numbers
+        repeated steps. If the usual path has several set-ups, the last one is aligned
     axes : the rig's axes, in which the correction is returned
-    C_alpha : cornering stiffness per load [1/rad], positive, where none is measured; default 10
-    measured : cornering stiffness by load [N], which is used where its uncertainty is smallest
+    C_alpha : cornering stiffness per load [1/rad], positive, used if none is measured; default 10
+    measured : measured cornering stiffness by load [N], used if its relative uncertainty is the smallest
     resolution_deg : smallest angle by which the axis can be turned [deg]
 
     Raises
@@ -64,7 +64,7 @@ def align(
 def _steps(
     points: Points, group: LoadGroup, axes: str, guess: float, measured: Quantity | None
 ) -> Iterator[AlignmentStep]:
-    """The iterations at one load, on one path in one set-up."""
+    """The iterations at one load, on one path and in one set-up."""
     size = guess * group.load
     guessed = named(-size, constants.GUESSED_STIFFNESS_U * size, "usual cornering stiffness", "N/rad")
     known = [] if measured is None else [("measured", ufloat(measured.value, measured.u))]

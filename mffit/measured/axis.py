@@ -1,7 +1,7 @@
-"""The zero of the sideslip axis of a set-up: alpha_M, the sum of misalignment and ply-steer, and its parts.
+"""The zero of a set-up's sideslip axis: alpha_M, the sum of misalignment and ply-steer, and its split into the two.
 
-The zeros both ways at all loads of a set-up give it: the axis is off by one angle at every load of a set-up, ply-steer
-belongs to the tyre and may change with load.
+alpha_M is determined from forward and backward zeros at all loads of a set-up. The misalignment is one angle per set-up;
+ply-steer is a property of the tyre and may change with load.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from mffit.measured.uncertain import combined, covariance, named, quantity
 
 
 class SlipStiffness(NamedTuple):
-    """Slope and bend of the side force over sideslip at its reading of zero; the slope is the usual one if none was measured."""
+    """Slope and bend of the side force over sideslip at zero reading; without a measurement the slope is the usual one."""
 
     C_alpha: UFloat  #: [N/rad]
     bend: UFloat | None  #: change of the slope with sideslip, on the usual side of the disc [N/rad^2]
 
     def at(self, angle: UFloat) -> UFloat:
-        """Slope at true zero [N/rad], where the axis is off by an angle [rad]."""
+        """Slope at true zero [N/rad] if the axis is misaligned by ``angle`` [rad]."""
         return self.C_alpha if self.bend is None else self.C_alpha - self.bend * angle
 
     def force(self, angle: UFloat, side: float) -> UFloat:
-        """Side force [N] that an angle [rad] adds to a forward reading of zero; ``side`` is 1, or -1 on the other side."""
+        """Side force [N] that an angle [rad] adds to a forward zero; ``side`` is 1 on the usual side of the disc, else -1."""
         linear = self.at(angle) * angle
         return linear if self.bend is None else linear + 0.5 * side * self.bend * angle**2
 
 
 def slip_stiffness(C_alpha: UFloat | None, bend: UFloat | None, load: float) -> SlipStiffness:
-    """As measured, else the usual one at a load [N]."""
+    """The measured slope and bend, else the usual slope at a load [N] without a bend."""
     if C_alpha is not None:
         return SlipStiffness(C_alpha, bend)
     usual = USUAL_CORNERING_STIFFNESS * load
@@ -47,7 +47,7 @@ def slip_stiffness(C_alpha: UFloat | None, bend: UFloat | None, load: float) -> 
 
 
 class ZeroAngle(NamedTuple):
-    """alpha_M as the zeros both ways of one set-up, load and path give it."""
+    """alpha_M from the forward and backward zeros of one set-up, load and path."""
 
     setup: str
     load: float  #: [N]
@@ -70,12 +70,12 @@ class SetupAngle(NamedTuple):
 def angles_of_setups(
     readings: Sequence[ZeroAngle], nominal_load: float
 ) -> tuple[dict[str, SetupAngle], tuple[SideslipZeros, ...]]:
-    """alpha_M of every set-up that was run both ways, and how well its readings agree.
+    """alpha_M of every set-up that was run both ways, and the consistency of its readings.
 
-    Least squares over the loads of a set-up. What ply-steer may change over one nominal load is one more reading: zero, as
-    uncertain as ply-steer itself.
+    Generalised least squares over the loads of a set-up. The prior of ply-steer's change per nominal load enters as one more
+    reading: zero, as uncertain as ply-steer itself.
     """
-    # One tyre: its change over load is common to the set-ups.
+    # All set-ups test one tyre, so its change over load is common to them.
     expected = named(0.0, usual_ply_steer(), "ply-steer over load", "rad")
     found, agreements = {}, []
     for setup in dict.fromkeys(reading.setup for reading in readings):
@@ -92,7 +92,7 @@ def angles_of_setups(
 def _farthest_apart(
     own: Sequence[ZeroAngle], off: np.ndarray, errors: np.ndarray
 ) -> tuple[SideslipReading, SideslipReading]:
-    """The two readings whose difference is largest over its uncertainty, that of ply-steer over load included."""
+    """The two readings with the largest difference over its uncertainty, ply-steer over load included."""
     n = len(own)
     whole = errors[:n, :n] + errors[n, n] * np.outer(off, off)
 
@@ -107,25 +107,25 @@ def _farthest_apart(
 
 
 class ZeroSplit(NamedTuple):
-    """alpha_M split into its two parts [rad], each with the uncertainty that the other one leaves."""
+    """alpha_M split into its two parts [rad], with the uncertainty of the split."""
 
     misalignment: UFloat
     ply_steer: UFloat
 
 
 def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> ZeroSplit | None:
-    """The parts by their priors; None without both directions in the set-up.
+    """Misalignment and ply-steer, split by their priors; None without both directions in the set-up.
 
     Parameters
     ----------
-    alpha_M : their sum [rad]
+    alpha_M : sum of misalignment and ply-steer [rad]
     C_alpha : cornering stiffness [N/rad]
     u_force : declared standard uncertainty of the alignment, as the side force that it causes [N]
 
     Notes
     -----
-    The sum is divided in the ratio of the prior variances. If it is far beyond both priors, the declared alignment is
-    contradicted, as ply-steer is a property of tyres and no tyre has so much: the axis then gets the variance that is missing.
+    The sum is divided in proportion to the prior variances. If it is far beyond both priors, it contradicts the declared
+    alignment, because no tyre has so much ply-steer: the prior variance of the misalignment is then enlarged to explain it.
     """
     if alpha_M is None:
         return None
@@ -142,14 +142,14 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> Zer
 def at_true_zero(
     C_alpha: UFloat | None, bend: UFloat | None, split: ZeroSplit | None, u_force: float
 ) -> UFloat | None:
-    """Cornering stiffness at zero sideslip [N/rad] from that at the reading of zero.
+    """Cornering stiffness at true zero sideslip [N/rad], from the slope at zero reading.
 
     Parameters
     ----------
-    C_alpha : slope at the reading of zero [N/rad]
+    C_alpha : slope at zero reading [N/rad]
     bend : change of the slope with sideslip [N/rad^2]
     split : the misalignment, if both directions were run
-    u_force : else the declared standard uncertainty of the alignment, as the side force that it causes [N]
+    u_force : declared standard uncertainty of the alignment, as the side force that it causes [N]; used without ``split``
 
     Notes
     -----
@@ -165,10 +165,10 @@ def at_true_zero(
 
 
 def camber_at_true_zero(C_alpha: float, bend: UFloat, split: ZeroSplit) -> UFloat:
-    """Camber stiffness at true zero of sideslip over that at the reading of zero.
+    """Ratio of the camber stiffness at true zero sideslip to that at zero reading.
 
-    Camber that acts as sideslip loses its force with the bend of the sideslip curve, camber with a force of its own does not.
-    Every share between them is as likely: a rectangular distribution from 0 to 1 (JCGM 100, 4.3.7).
+    If camber acts like sideslip, its force changes with the bend of the sideslip curve; if it acts independently, it does not.
+    The true share is between these, with a rectangular distribution from 0 to 1 (JCGM 100, 4.3.7).
     """
     share = named(0.5, 1.0 / math.sqrt(12.0), "camber stiffness off true zero", "-")
     return 1.0 - share * (bend / C_alpha) * split.misalignment

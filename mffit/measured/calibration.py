@@ -1,4 +1,4 @@
-"""Errors that multiply what is read: calibration of a channel, a steering that yields to the moment, what looks like camber."""
+"""Multiplicative errors of the readings: calibration of a channel, compliance of the steering, errors that look like camber."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mffit.rig_errors import DECLARED, AtLoad, Slopes
 
 
 class Factors(NamedTuple):
-    """What turns stiffnesses and force as read into the true ones: 1, with the uncertainty of the calibrations."""
+    """Correction factors for stiffnesses and force as read: 1, with the uncertainty of the calibrations."""
 
     C_alpha: UFloat
     C_gamma: UFloat
@@ -31,16 +31,16 @@ class Factors(NamedTuple):
 def calibration(
     evidence: DirectEvidence, group: LoadGroup, over_load: Slopes, slopes: LoadSlopes, found: Turning | None
 ) -> Factors:
-    """The factors of one load.
+    """The correction factors at one load.
 
-    An error that all loads share is one source, so that it cancels wherever results are compared or divided.
+    An error common to all loads is one source, so it cancels in differences and ratios of results.
 
     Parameters
     ----------
-    evidence : has the errors
-    group : the points of the load
+    evidence : supplies the calibration errors
+    group : points of the load
     over_load : relative change of stiffnesses and force per relative change of load
-    slopes, found : as read
+    slopes, found : stiffnesses and turn-slip force as read
     """
     of_camber, spin = 0.0, 0.0
     if slopes.C_gamma is not None:
@@ -57,9 +57,9 @@ def calibration(
 
 
 def powers_of_load(found: Sequence[tuple[LoadGroup, LoadSlopes]], load: float) -> Slopes:
-    """Relative change of stiffnesses and force per relative change of load [N]; 1 where only one load was measured.
+    """Relative change of stiffnesses and force per relative change of load, at ``load`` [N]; 1 if only one load was measured.
 
-    The turn-slip force is camber stiffness times spin.
+    The turn-slip force, camber stiffness times spin, has the power of the camber stiffness.
     """
 
     def power(name: str) -> float:
@@ -79,7 +79,7 @@ def powers_of_load(found: Sequence[tuple[LoadGroup, LoadSlopes]], load: float) -
 def _by_moment(
     evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None
 ) -> Slopes:
-    """Relative change of stiffnesses and force per angle [rad] by which one Nm turns the wheel; 0 where Mz was not measured."""
+    """Relative change of stiffnesses and force per unit of steering compliance [rad/Nm]; 0 if Mz was not measured."""
     if slopes.C_alpha is None:
         return Slopes()
     C_alpha = float(slopes.C_alpha.nominal_value)
@@ -92,7 +92,7 @@ def _by_moment(
 
 
 def _moment_over(evidence: DirectEvidence, group: LoadGroup, angle: str) -> float:
-    """Slope of Mz at zero over an angle [Nm/rad]; 0 where it was not measured."""
+    """Slope of Mz over an angle at zero [Nm/rad]; 0 if Mz was not measured at enough angles."""
     points, parts = evidence.points, evidence.parts
     Mz = points.Mz if evidence.rig is None else parts.Mz_odd
     i = sweep(points, Mz, group, angle, evidence.config)

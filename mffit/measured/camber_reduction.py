@@ -1,7 +1,7 @@
 """Formulae of the direct method: turn-slip force (23), its stiffness (21), eps_gamma (17), with correlated uncertainties.
 
-Numbers that carry an uncertainty are those of the ``uncertainties`` package: first-order propagation in which a source
-that enters twice (R is in r_e and in C_phit) is counted with its correlation.
+Uncertain numbers are those of the ``uncertainties`` package: first-order propagation that includes correlations, such as that of
+R, which enters both r_e and C_phit.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ READ = {
     for error, declared in DECLARED
     if declared.force_at_zero or declared.camber_stiffness
 }
-"""The declared rig errors that change what the direct method reads, by name."""
+"""By name, the declared rig errors that change readings of the direct method."""
 
 
 @dataclass(frozen=True, slots=True)
 class UncertainRig:
-    """Deviation of the declared rig errors from their declared values, in the declared units, and the path radius."""
+    """Uncertain deviations of the rig errors from their declared values, in the declared units, and the path radius."""
 
-    errors: Mapping[str, UFloat]  #: common to all loads
+    errors: Mapping[str, UFloat]  #: errors common to all loads
     of_setups: Mapping[str, Mapping[str, UFloat]]
-    """Zeros that each set-up has anew, by its name; empty if there is one set-up only."""
+    """By set-up, its own zeros; empty with only one set-up."""
     R: UFloat  #: path radius [m]
 
     def at(self, setup: str) -> Mapping[str, UFloat]:
@@ -55,14 +55,14 @@ def uncertain_rig(u: Mapping[str, float], R: UFloat, setups: Sequence[str] = ())
 def turn_slip_force(
     F_raw: UFloat, errors: Mapping[str, UFloat], at: AtZero, *, both_directions: bool
 ) -> UFloat:
-    """Turn-slip force [N]: the raw force at (0, 0) less what the rig errors add to it; (23) in ISO signs.
+    """Turn-slip force [N]: the raw force at (0, 0) less the forces of the rig errors; (23) in ISO signs.
 
     Parameters
     ----------
     F_raw : raw force [N], the mean of both directions if both were run
     errors : rig errors by name, in the declared unit
     at : stiffnesses of the tyre and side of the play
-    both_directions : errors that change sign with the direction of rolling cancel in the mean
+    both_directions : whether errors that change sign with the direction of rolling cancel in ``F_raw``
     """
     for name, number in errors.items():
         declared = READ[name][1]
@@ -72,7 +72,7 @@ def turn_slip_force(
 
 
 def true_camber_stiffness(C_gamma: UFloat, errors: Mapping[str, UFloat], at: AtZero) -> UFloat:
-    """Camber stiffness [N/rad]: the slope over the camber reading, rolling forwards, less what the rig errors add to it."""
+    """Camber stiffness [N/rad]: the slope over the camber reading, rolling forwards, less the parts from rig errors."""
     for name, number in errors.items():
         declared = READ[name][1]
         if declared.camber_stiffness:

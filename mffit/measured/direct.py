@@ -50,7 +50,7 @@ COMPLIANCE = BY_NAME["compliance_deg_per_Nm"]
 
 @dataclass(frozen=True, slots=True)
 class _AtLoad:
-    """The result of one load, with eps_gamma for the next steps."""
+    """The result of one load, with eps_gamma as an uncertain number for later steps."""
 
     row: LoadResult
     epsilon: UFloat | None
@@ -58,19 +58,19 @@ class _AtLoad:
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
-    """Measure stiffnesses, turn-slip force and eps_gamma at every load.
+    """Stiffnesses, turn-slip force and eps_gamma at every load.
 
     Parameters
     ----------
     config : the rig, its uncertainties and the method for C_gamma
-    points : with the angles as read
-    parts : their odd and even parts
-    base : gives the shape of Re over load where r_e was not measured
+    points : points with the angles as read
+    parts : odd and even parts of the points
+    base : property file that supplies the shape of Re over load for loads at which r_e was not measured
 
     Returns
     -------
     Measured
-        On a flat track with stiffnesses only.
+        On a flat track it has stiffnesses only.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         evidence = replace(evidence, axes=axes)
     for group, slopes in stiffnesses:
         calibrated = partial(calibration, evidence, group, powers_of_load(stiffnesses, group.load))
-        # Camber sweeps in both directions are free of it: their mean is the stiffness at true zero.
+        # With camber sweeps in both directions (skew), no correction is needed: their mean holds at true zero sideslip.
         found, troubles = _at_load(
             evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes), calibrated
         )
@@ -115,7 +115,10 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
 
 
 def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]:
-    """The evidence with the shares of the sweeps where they clearly drift, and the drift; both as they are if warmth is known."""
+    """The evidence, with the relative forces of the sweeps if they clearly drift, and the drift.
+
+    The drift is None if the recorded temperature varies, which may explain it.
+    """
     points = evidence.points
     if np.ptp(points.T) > VISIBLE_TEMPERATURE:
         return evidence, None
@@ -126,7 +129,7 @@ def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
-    """The slopes with the camber stiffness at true zero of sideslip, where the axis is known to be off."""
+    """The slopes with the camber stiffness corrected to true zero sideslip, if alpha_M and the bend are known."""
     axis = next(iter(evidence.axes.values()), None)
     if axis is None or slopes.C_alpha is None or slopes.bend is None:
         return slopes
@@ -138,7 +141,7 @@ def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSl
 
 
 def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[str, float]:
-    """alpha_M [rad] of the set-ups whose sideslip zero makes more force than the alignment is declared to leave."""
+    """alpha_M [rad] of the set-ups whose sideslip zero causes more force than the declared alignment uncertainty."""
     found = {name: float(axis.at(nominal.load).nominal_value) for name, axis in evidence.axes.items()}
     left = evidence.config.rig.u("alpha_0_deg")
     return {name: angle for name, angle in found.items() if abs(nominal.slip_force(angle)) > left}
@@ -147,7 +150,7 @@ def _misaligned_setups(evidence: DirectEvidence, nominal: LoadResult) -> dict[st
 def _sideslip_zeros(
     evidence: DirectEvidence, found: Sequence[tuple[LoadGroup, LoadSlopes]]
 ) -> tuple[dict[str, SetupAngle], tuple[SideslipZeros, ...]]:
-    """alpha_M of every set-up from all its loads, and how well these agree."""
+    """alpha_M of every set-up from all its loads, and the consistency of these."""
     readings = []
     for group, slopes in found:
         if slopes.C_alpha is None:
@@ -155,7 +158,7 @@ def _sideslip_zeros(
         stiffness = slip_stiffness(slopes.C_alpha, slopes.bend, group.load)
         for path in zeros_by_path(evidence.points, group, slopes.C_alpha, evidence.config):
             if path.backward is not None:
-                # The difference is odd in the angle, so the slope at true zero counts, not that at the reading of zero.
+                # The difference of both directions is odd in the angle, so the slope at true zero applies.
                 angle = path.slip / stiffness.at(path.slip / stiffness.C_alpha)
                 angle = angle + rest_of_play(evidence.config)
                 readings.append(ZeroAngle(path.setup, group.load, path.phi_t, angle))
@@ -163,7 +166,7 @@ def _sideslip_zeros(
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> tuple[Points, dict[float, Quantity]]:
-    """For the alignment: the points without play, and the cornering stiffness by load [N]."""
+    """Inputs of the alignment: the points corrected for play, and the cornering stiffness by load [N]."""
     evidence = evidence_of(config, points, parts, None)
     found = {group.load: cornering_stiffness(evidence, group) for group in load_groups(evidence.points)}
     return evidence.points, {load: quantity(C, "N/rad") for load, C in found.items() if C is not None}
@@ -175,7 +178,7 @@ def _at_load(
     slopes: LoadSlopes,
     calibrated: Callable[[LoadSlopes, Turning | None], Factors],
 ) -> tuple[_AtLoad | None, list[str]]:
-    """Results and warnings at one load, with eps_gamma where everything that it needs was measured; None if nothing was."""
+    """Results and warnings at one load, with eps_gamma if all its inputs were measured; None without any result."""
     C_alpha, rig = slopes.C_alpha, evidence.rig
     slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, C_alpha))
     found, troubles = (None, []) if rig is None else turning(evidence, group, slopes)
@@ -199,7 +202,7 @@ def _at_load(
     row = replace(
         row,
         epsilon_gamma=quantity(epsilon.plain, "-"),
-        # The secant is larger by far more than finite spin, so only the slope can be corrected.
+        # The bias of the secant is far larger than that of finite spin, so only the slope is corrected.
         epsilon_debiased=None if slope is None else quantity(slope.debiased, "-"),
         epsilon_slope=None if slope is None else float(slope.plain.nominal_value),
         epsilon_secant=None if secant is None else float(secant.plain.nominal_value),
@@ -245,7 +248,7 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
 def _assembled(
     evidence: DirectEvidence, rows: Sequence[_AtLoad], skew: Quantity | None
 ) -> tuple[Measured, list[str]]:
-    """The results of all loads together, with eps_gamma over load and the remarks."""
+    """The results of all loads with eps_gamma over load and notes, and the warnings."""
     nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
     nearest = min(rows, key=lambda found: abs(found.row.load - nominal_load), default=None)
@@ -295,11 +298,11 @@ def _assembled(
 def _with_measured_skew(
     evidence: DirectEvidence, slopes: Sequence[LoadSlopes]
 ) -> tuple[DirectEvidence, Quantity | None]:
-    """The evidence with the rig error that adds to the camber stiffness as measured, and its value in the declared unit.
+    """The evidence with the measured value of the rig error that adds to the camber stiffness, and this value in declared units.
 
-    Rolling backwards the camber force keeps its sign and the slip force changes it: half the difference of both slopes is
-    what the rig adds, half their sum is the camber stiffness. One difference determines one number: if several errors add
-    to the slope, it is their sum, and the one that is declared most uncertain takes it.
+    Rolling backwards, the camber force keeps its sign and the slip force reverses it. Half the difference of the two slopes is
+    therefore the contribution of the rig, half their sum the camber stiffness. Only the sum of several such errors is measurable;
+    it is assigned to the one with the largest declared uncertainty.
     """
     both = [
         (row.C_alpha, row.C_gamma, row.C_gamma_backward)
@@ -324,7 +327,7 @@ def _with_measured_skew(
 
 
 def _if_steering_yields(config: Config, found: _AtLoad) -> list[str]:
-    """A sentence if a steering declared as rigid that yields as usual would change C_alpha by more than its uncertainty."""
+    """A sentence if the steering is declared rigid, but a usual compliance would change C_alpha by more than its uncertainty."""
     C_alpha, usual = found.row.C_alpha, COMPLIANCE.spread
     if C_alpha is None or config.rig.u(COMPLIANCE.name) > 0.0:
         return []
@@ -333,7 +336,7 @@ def _if_steering_yields(config: Config, found: _AtLoad) -> list[str]:
 
 
 def _skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:
-    """A sentence if the measured skew is far beyond its declaration."""
+    """A sentence if the measured skew far exceeds its declared uncertainty."""
     if skew is None:
         return []
     declared = max(evidence.config.rig.u(error.name) for error, _ in adding_to_camber())
@@ -349,7 +352,7 @@ def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
 def _notes(
     evidence: DirectEvidence, row: LoadResult, skew: Quantity | None, load_note: str
 ) -> tuple[str, ...]:
-    """What the numbers and the budget of the nominal load do not say themselves."""
+    """Notes on the results at the nominal load: skew, conicity, load dependence, pressure."""
     used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
     nominal = 1e3 * evidence.config.tyre.nominal_pressure
     near = abs(used - nominal) < levels.PRESSURE.tolerance

@@ -1,6 +1,6 @@
-"""Drift: how far the forces of each sweep differ from the usual, as conditions show that several sweeps repeat.
+"""Drift of the forces from sweep to sweep, estimated from conditions that several sweeps repeat.
 
-A tyre that warms or wears changes its stiffness from sweep to sweep, so that camber sweeps and zeros are those of two tyres.
+A tyre that warms up or wears changes its stiffness from sweep to sweep, so camber sweeps and zeros belong to different states.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mffit.points import Points, levels
 from mffit.scatter import rms
 
 SOURCE = "drift between sweeps"
-"""Its name in the uncertainty budget."""
+"""Name of the drift in the uncertainty budget."""
 SAME = (
     ("alpha", levels.LevelKind("sideslip", SAME_SIDESLIP.rad)),
     ("gamma", levels.LevelKind("camber", SAME_CAMBER.rad)),
@@ -31,19 +31,19 @@ SAME = (
     ("p", levels.PRESSURE),
     ("V", levels.SPEED),
 )
-"""What a repeated condition has in common, beside direction, mount, path and set-up."""
+"""Settings that must agree in a repeated condition, in addition to direction, mount, path and set-up."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepShares:
-    """By how much every sweep's forces exceed the usual, relative."""
+    """Relative deviation of every sweep's forces from the usual ones."""
 
-    sweeps: np.ndarray  #: (k,) their numbers
-    shares: tuple[UFloat, ...]  #: (k,)
+    sweeps: np.ndarray  #: (k,) indices of the sweeps
+    shares: tuple[UFloat, ...]  #: (k,) relative deviations
     drift: Drift
 
     def between(self, points: Points, one: np.ndarray, other: np.ndarray) -> UFloat | float:
-        """How much larger forces of the rows ``one`` are than those of the rows ``other``, relative; 0 if either is unknown."""
+        """Relative excess of the forces at rows ``one`` over those at rows ``other``; 0 if either is unknown."""
         first, second = (self._mean(points.sweep[rows]) for rows in (one, other))
         return 0.0 if first is None or second is None else first - second
 
@@ -53,10 +53,10 @@ class SweepShares:
 
 
 def shares_of_sweeps(points: Points) -> SweepShares | None:
-    """The drift of a test, if repeated conditions show one; None where none is repeated, or zeros that move explain more.
+    """The relative deviations of the sweeps; None without repeated conditions, or if shifting zeros explain the forces better.
 
-    Shares of sweeps scatter normally about a usual one. Their scatter is the likeliest, and each share its mean given the
-    readings.
+    The deviations are random effects with a normal distribution. Their standard deviation maximises the marginal likelihood, and
+    each deviation is its posterior mean.
     """
     sweeps = np.unique(points.sweep)
     conditions = list(_repeated(points, sweeps))
@@ -77,7 +77,7 @@ def shares_of_sweeps(points: Points) -> SweepShares | None:
     least, most = (known[f(shares.mean[known])] for f in (np.argmin, np.argmax))
     drift = Drift(
         scatter=shares.scatter,
-        # A scatter is not negative, so half of all sound tests show none.
+        # The standard deviation is at its bound 0 in half of all tests without drift.
         chance=0.5 * float(chdtrc(1, 2.0 * max(shares.evidence, 0.0))),
         least=points.sweep_names[sweeps[least]],
         most=points.sweep_names[sweeps[most]],
@@ -87,18 +87,19 @@ def shares_of_sweeps(points: Points) -> SweepShares | None:
 
 
 class _Scatter(NamedTuple):
-    """Numbers of sweeps (k,) that scatter normally about zero."""
+    """Random effects (k,) of sweeps, normal around zero."""
 
     scatter: float  #: standard deviation
-    evidence: float  #: its logarithm, over that of none
-    mean: np.ndarray  #: (k,) of each number, given the readings
-    root: np.ndarray  #: (k, k) of their covariance
+    evidence: float  #: gain of log marginal likelihood over no scatter
+    mean: np.ndarray  #: (k,) posterior mean
+    root: np.ndarray  #: (k, k) root of the posterior covariance
 
 
 def _likeliest(left: np.ndarray, slopes: np.ndarray, means: int) -> _Scatter:
-    """The scatter under which readings (m,) less ``means`` are likeliest, with their slopes (m, k) over the numbers of sweeps.
+    """The random effects of sweeps with the most likely scatter, from readings ``left`` (m,) with derivatives (m, k).
 
-    Noise is at least as stated; it is larger where readings contradict each other whatever the numbers are.
+    ``means`` is the number of means already subtracted. The noise is as stated, or larger if residuals of a free least-squares
+    fit show that.
     """
     rest = left - slopes @ np.linalg.lstsq(slopes, left, rcond=None)[0]
     freedom = len(left) - means - int(np.linalg.matrix_rank(slopes))
@@ -119,12 +120,12 @@ class _Condition(NamedTuple):
     """A condition that several sweeps repeat."""
 
     left: np.ndarray  #: (m,) forces less their mean, over their noise
-    own: np.ndarray  #: (m, k) change of these if a sweep reads more [1/N]
-    force: float  #: mean [N]
+    own: np.ndarray  #: (m, k) derivatives of ``left`` by a force added to each sweep [1/N]
+    force: float  #: mean force [N]
 
 
 def _repeated(points: Points, sweeps: np.ndarray) -> Iterator[_Condition]:
-    """The conditions without sideslip that several sweeps repeat: their force depends little on the exact angle."""
+    """The conditions without sideslip that several sweeps repeat; only these, because their force hardly depends on the angle."""
     used = np.flatnonzero(
         points.free_rolling
         & ~points.continuous
@@ -139,7 +140,7 @@ def _repeated(points: Points, sweeps: np.ndarray) -> Iterator[_Condition]:
     for rows in levels.rows_of_equal(same):
         if len(np.unique(part.sweep[rows])) < 2 or np.any(same[rows[0], : len(SAME)] == levels.NO_LEVEL):
             continue
-        # The load wanders, and the force with it.
+        # Scale the forces to the mean load.
         load = part.Fz[rows]
         force, weight = part.Fy[rows] * np.mean(load) / load, u[rows] ** -2.0
         mean = float(np.average(force, weights=weight))

@@ -1,4 +1,4 @@
-"""eps_gamma of one load: plain, corrected for finite spin and from the moments; and its law over load."""
+"""eps_gamma at one load: plain, corrected for finite spin, and from the moments; and its dependence on load."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ from mffit.rig_errors import AtZero
 class Factor(NamedTuple):
     """The estimates of eps_gamma from one camber stiffness."""
 
-    plain: UFloat  #: by (17), finite spin in its uncertainty
+    plain: UFloat  #: by (17), with the bias of finite spin in its uncertainty
     debiased: UFloat  #: corrected for finite spin
 
 
 def factor(
     evidence: DirectEvidence, C_gamma: UFloat, found: Turning, r_e: UFloat, stiffer: UFloat | float
 ) -> Factor:
-    """eps_gamma of one load.
+    """eps_gamma at one load.
 
     Parameters
     ----------
-    evidence : has the errors that are common to all loads
-    C_gamma : camber stiffness, less what the rig adds to it [N/rad]
+    evidence : supplies the errors common to all loads
+    C_gamma : camber stiffness, corrected for rig errors [N/rad]
     found : turn-slip force and stiffness
     r_e : effective radius [m]
-    stiffer : by how much the tyre was stiffer in the camber sweep than at zero, relative
+    stiffer : relative excess of the tyre's stiffness in the camber sweep over that at the zeros
 
     Notes
     -----
-    A secant is the published procedure, whose budget has neither finite spin nor temperature.
+    The secant follows the published procedure, whose budget has neither finite spin nor temperature.
     """
     if not evidence.published:
         C_gamma = C_gamma * (1.0 - stiffer)
@@ -58,7 +58,7 @@ def factor(
 
 
 def corrected(evidence: DirectEvidence, C_gamma: UFloat, C_alpha: UFloat | None) -> UFloat:
-    """A camber stiffness [N/rad] less what the rig errors add to it."""
+    """A camber stiffness [N/rad] corrected for rig errors."""
     if C_alpha is None or evidence.rig is None:
         return C_gamma
     at = AtZero(C_alpha.nominal_value, C_gamma.nominal_value, 0.0)
@@ -66,9 +66,9 @@ def corrected(evidence: DirectEvidence, C_gamma: UFloat, C_alpha: UFloat | None)
 
 
 def stiffer_in_camber(evidence: DirectEvidence, group: LoadGroup) -> UFloat | float:
-    """By how much the tyre was stiffer in the camber sweep than at its zeros, relative; 0 if nothing says so.
+    """Relative excess of the tyre's stiffness in the camber sweep over that at its zeros.
 
-    Repeated conditions show it; or the temperatures of both say how uncertain it is.
+    It follows from repeated conditions if there is a drift; else it is 0 with an uncertainty from the difference of temperatures.
     """
     points = evidence.points
     leaning = sweep(points, points.Fy, group, "gamma", evidence.config)
@@ -82,10 +82,10 @@ def stiffer_in_camber(evidence: DirectEvidence, group: LoadGroup) -> UFloat | fl
 def epsilon_from_moments(
     evidence: DirectEvidence, group: LoadGroup, found: Turning, r_e: UFloat
 ) -> float | None:
-    """The value from the self-aligning moments, without an uncertainty; None without a clear turn-slip moment.
+    """eps_gamma from the self-aligning moments, without uncertainty; None without a clear turn-slip moment.
 
-    Spin on a disc changes the trail far more than the side force, so the moments are not proportional to spin: on simulated
-    rigs the value is off by 0.3. No uncertainty of readings and rig states that, and the bias needs a model of the moment.
+    Spin on a disc changes the trail far more than the side force, so moments are not proportional to spin: on simulated rigs the
+    value is wrong by 0.3. Uncertainties of readings and rig do not cover this bias, and a correction needs a model of the moment.
     """
     moment, parts, rig = found.zeros.moment, evidence.parts, evidence.rig
     assert rig is not None
@@ -116,18 +116,20 @@ class LoadDependence(NamedTuple):
 def load_dependence(
     loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float
 ) -> LoadDependence:
-    """Fit the slope over load with eps_gamma at the nominal load held; rig errors common to all loads stay correlated.
+    """PECP1 and PECP2: eps_gamma at the nominal load, and a fitted slope over load.
+
+    Rig errors common to all loads are treated as correlated.
 
     Parameters
     ----------
     loads : [N]
-    epsilon : eps_gamma at each, with its correlations
-    nominal : which of them is the load nearest FNOMIN
+    epsilon : eps_gamma at each load, with its correlations
+    nominal : index of the load nearest FNOMIN
     Fz0 : FNOMIN [N]
 
     Notes
     -----
-    PECP2 is written only where slope and PECP1 are clearly not zero and eps_gamma stays below its limit within the loads.
+    PECP2 is not 0 only if slope and PECP1 clearly differ from zero and eps_gamma stays below its limit within the loads.
     """
     at_nominal = epsilon[nominal]
     pecp1 = float(at_nominal.nominal_value)

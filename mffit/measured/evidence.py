@@ -1,6 +1,6 @@
-"""Input of the direct method, common to all loads: declared errors, and points whose sideslip is corrected for the play.
+"""Inputs of the direct method common to all loads: declared errors, and points corrected for the play of the sideslip axis.
 
-The moment takes up the play of the sideslip axis, so that the reading is not the angle.
+The aligning moment pushes the wheel to one side of the play, so the true sideslip differs from the reading.
 """
 
 from __future__ import annotations
@@ -30,29 +30,29 @@ from tir import Tyre
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DirectEvidence:
-    """Points and declarations from which every load is measured, and errors of the tyre that are common to all loads."""
+    """Points, declarations and errors common to all loads, from which the results at every load are computed."""
 
     config: Config
-    points: Points  #: with sideslip angles corrected for the play
+    points: Points  #: points with sideslip corrected for the play
     parts: Parts
-    odd_slip: np.ndarray  #: (n,) sideslip to which the odd part of every point belongs [rad]
+    odd_slip: np.ndarray  #: (n,) sideslip of the odd part of every point [rad]
     rig: method.UncertainRig | None  #: None on a straight path
     radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
     base: Tyre | None
     conicity: UFloat  #: force over load
-    spin_left: UFloat  #: bias of finite spin in a value that is not corrected for it, as :data:`constants.SPIN_LOSS` [m^2]
-    spin_known: UFloat  #: the same with the usual value and its uncertainty, to correct with [m^2]
+    spin_left: UFloat  #: bias of finite spin in an uncorrected value, as :data:`constants.SPIN_LOSS` [m^2]: 0 with uncertainty
+    spin_known: UFloat  #: bias of finite spin for the correction: the usual value with its uncertainty [m^2]
     warming: UFloat  #: relative change of stiffness with temperature [1/K]
-    calibration: Mapping[str, UFloat]  #: errors that multiply what is read, by name
+    calibration: Mapping[str, UFloat]  #: multiplicative errors of the readings, by name
     excess: Mapping[str, UFloat] = field(default_factory=dict)
-    """Force by which each set-up scatters beyond what is declared [N]."""
-    shares: SweepShares | None = None  #: of sweeps, where they drift for an unknown cause
+    """By set-up, the force of its scatter beyond the declaration [N]."""
+    shares: SweepShares | None = None  #: relative deviations of the sweeps' forces, if they drift
     axes: Mapping[str, SetupAngle] = field(default_factory=dict)
     """alpha_M of every set-up that was run both ways."""
 
     @property
     def published(self) -> bool:
-        """Whether C_gamma is to be the secant: then the budget is that of the published procedure, too."""
+        """Whether C_gamma is the secant of the published procedure, which also determines the budget."""
         return self.config.camber_stiffness.method == "secant"
 
     @property
@@ -62,11 +62,11 @@ class DirectEvidence:
 
 
 def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None) -> DirectEvidence:
-    """The evidence in points with the angles as read, and the errors as declared or usual."""
+    """The inputs of the direct method from points with the angles as read, and from declared or usual errors."""
     R = measured_path_radius(config)
     u = {error.name: config.rig.u(error.name) for error, _ in DECLARED}
     loss = float(constants.SPIN_LOSS)
-    u_loss = 0.5 * loss  # a brush that does not slide has no loss, and other tyres may have twice as much
+    u_loss = 0.5 * loss  # covers no loss (a brush that does not slide) and twice the usual loss
     return DirectEvidence(
         config=config,
         points=backlash_corrected(points, config),
@@ -76,7 +76,7 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
         radii=measured_effective_radius(config, R),
         base=base,
         conicity=named(0.0, config.rig.u_conicity, "conicity", "-"),
-        # JCGM 100, F.2.4.5: a known effect that is left uncorrected counts with its size.
+        # JCGM 100, F.2.4.5: a known but uncorrected effect enlarges the uncertainty by its size.
         spin_left=named(0.0, math.hypot(loss, u_loss), FINITE_SPIN, "m^2"),
         spin_known=named(loss, u_loss, FINITE_SPIN, "m^2"),
         calibration={
@@ -91,7 +91,7 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
 def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.ndarray, np.ndarray]:
     """Sideslip that the play adds to the reading, ISO-W: -(play/2) sign(Mz), and its standard uncertainty [rad].
 
-    If the moment is within its noise, its sign is uncertain: the shift is then the expectation over both signs.
+    If the moment is within its noise, its sign is uncertain, so the shift is the expectation over both signs.
     """
     noise = np.where(np.isfinite(u_Mz) & (u_Mz > 0), u_Mz, USUAL_U_MOMENT)
     positive = ndtr(Mz / noise)
@@ -101,7 +101,7 @@ def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.nd
 def backlash_corrected(points: Points, config: Config) -> Points:
     """The points with true sideslip angles; u_Fy includes the uncertainty of the side of the play.
 
-    Points without Mz take the sign of the moment that the path curvature causes at zero slip.
+    Without Mz, the sign of the moment is that of the path curvature at zero slip.
     """
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
@@ -114,18 +114,18 @@ def backlash_corrected(points: Points, config: Config) -> Points:
 
 
 def rest_of_play(config: Config) -> UFloat:
-    """What the correction leaves of sideslip zeros, as the wheel floats where the moment changes sign [rad]."""
+    """Remaining error of sideslip zeros after the correction [rad]: the wheel floats where the moment changes sign."""
     half = 0.5 * math.radians(config.rig.backlash_deg)
     return named(0.0, constants.REST_OF_PLAY * half, "play near zero moment", "rad")
 
 
 def odd_alpha(points: Points, parts: Parts, config: Config) -> np.ndarray:
-    """Sideslip (n,) to which the odd part of every point belongs: half the difference of the true angles of the pair.
+    """Sideslip (n,) of the odd part of every point: half the difference of the true angles of a mirror pair [rad].
 
     Parameters
     ----------
-    points : with the angles as read
-    parts : their decomposition, by reading
+    points : points with the angles as read
+    parts : odd and even parts of the points
     """
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:

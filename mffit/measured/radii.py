@@ -15,7 +15,7 @@ from tir import Tyre
 
 
 def measured_path_radius(config: Config) -> UFloat | None:
-    """R [m] from the four tape measures or as given; None on a flat track."""
+    """R [m] with its uncertainty, from the tape measures or as given; None on a flat track."""
     rig = config.rig
     if rig.radius is None:
         return None
@@ -23,7 +23,7 @@ def measured_path_radius(config: Config) -> UFloat | None:
 
 
 def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, UFloat]:
-    """r_e [m] by load [N]: distance of one disc revolution over the wheel's angle (18), or as given."""
+    """r_e [m] by load [N]: distance of one disc revolution over the angle of the wheel (18), or as given."""
     out = {}
     for row in config.rolling_radius:
         load = row.load_N or config.tyre.nominal_load
@@ -40,12 +40,12 @@ def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, U
 
 
 class RadiusReading(NamedTuple):
-    """A measured effective radius as a reading: its own uncertainty, and whether it follows the path radius."""
+    """A measured effective radius as a reading of the fit."""
 
     load: float  #: [N]
-    value: float  #: at the declared path radius [m]
-    u: float  #: without that of the path radius [m]
-    follows_path: bool  #: from a disc revolution (18), so proportional to R
+    value: float  #: radius for the declared path radius [m]
+    u: float  #: standard uncertainty without the contribution of the path radius [m]
+    follows_path: bool  #: True if measured by a disc revolution (18), hence proportional to R
 
 
 def radius_readings(config: Config) -> tuple[RadiusReading, ...]:
@@ -68,7 +68,7 @@ def radius_readings(config: Config) -> tuple[RadiusReading, ...]:
 
 
 def effective_radius_at(load: float, measured: Mapping[float, UFloat], base: Tyre | None) -> UFloat | None:
-    """r_e [m] at a load [N]: measured there, else the nearest measurement moved along the base file's Re(Fz)."""
+    """r_e [m] at a load [N]: the measurement at the nearest load, scaled by the base file's Re(Fz) if there is a base file."""
     if not measured:
         return None
     nearest = min(measured, key=lambda other: abs(np.log(other / load)))

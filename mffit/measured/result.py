@@ -20,7 +20,7 @@ from tir import Quantity
 from tir.parameters import BY_NAME
 
 FINITE_SPIN = "finite spin of the disc"
-"""Its name in the budget."""
+"""Name of the bias of finite spin in the budget."""
 
 
 def usual_ply_steer() -> float:
@@ -31,7 +31,7 @@ def usual_ply_steer() -> float:
 
 
 class SideslipReading(NamedTuple):
-    """alpha_M as the zeros both ways at one load and path give it."""
+    """alpha_M from forward and backward zeros at one load and path."""
 
     load: float  #: [N]
     phi_t: float  #: turn slip of the path [1/m]
@@ -39,40 +39,40 @@ class SideslipReading(NamedTuple):
 
 
 class SideslipZeros(NamedTuple):
-    """How well the zeros both ways of one set-up agree on its sideslip zero."""
+    """Consistency of the sideslip zeros at the loads and paths of one set-up."""
 
     setup: str
-    chance: float  #: probability that zeros of one set-up differ by so much
-    one: SideslipReading  #: the two that are farthest apart
-    other: SideslipReading
+    chance: float  #: probability of such differences in one set-up
+    one: SideslipReading  #: one of the two readings that are farthest apart
+    other: SideslipReading  #: the other of the two
 
 
 class Drift(NamedTuple):
-    """How far forces of one condition differ from sweep to sweep, relative."""
+    """Relative differences between sweeps of the forces at the same condition."""
 
     scatter: float  #: standard deviation between sweeps
-    chance: float  #: probability that sweeps of one tyre in one state differ by so much
+    chance: float  #: probability of such differences if the state of the tyre does not change
     least: str  #: sweep with the smallest forces
     most: str  #: sweep with the largest forces
-    apart: float  #: by which the two differ
+    apart: float  #: difference of these two
 
     @property
     def counts(self) -> bool:
-        """Whether chance does not explain it, and it is more than the uncertainty that every slope at zero has anyway."""
+        """Whether the drift is significant and larger than the uncertainty of a slope at zero from its shape."""
         return self.chance < FALSE_ALARM and self.scatter > constants.SLOPE_SHAPE
 
 
 class SetupResult(NamedTuple):
-    """The zeros of one set-up of the rig on one path and at one load, by themselves."""
+    """Results from the zeros of one set-up on one path at one load alone."""
 
-    name: str  #: of the set-up
+    name: str  #: name of the set-up
     phi_t: float  #: turn slip of the path [1/m]
     F_phit: Quantity  #: turn-slip force, corrected (23) [N]
     C_phit: Quantity  #: [Nm]
     epsilon_gamma: Quantity
     alpha_M: Quantity | None  #: of the set-up, at this load [rad]; None without backward runs
-    misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves
-    axis_off: bool = False  #: its split supports that the axis, and not the tyre, causes it
+    misaligned: bool  #: whether alpha_M exceeds the rig's alignment uncertainty
+    axis_off: bool = False  #: whether moreover the misalignment of the axis is clearly not zero
 
     @property
     def path(self) -> str:
@@ -86,15 +86,15 @@ def path_in_words(phi_t: float) -> str:
 
 
 class SetupScatter(NamedTuple):
-    """Scatter of the zeros of repeated set-ups on one path, in addition to what is declared; one-way analysis of variance."""
+    """Scatter of the zeros of repeated set-ups on one path, by one-way analysis of variance."""
 
-    load: float  #: at which it was measured [N]
-    setups: tuple[str, ...]  #: the repeated ones
-    between: float  #: standard deviation of the force at zero from set-up to set-up [N]
+    load: float  #: load of the zeros [N]
+    setups: tuple[str, ...]  #: the repeated set-ups
+    between: float  #: standard deviation of the force at zero between set-ups [N]
     degrees_of_freedom: int
-    declared: float  #: the same as the uncertainties in [rig] give it [N]
-    chance: float  #: probability of so much scatter if the declaration holds
-    excess: float  #: force by which a set-up scatters beyond what is declared [N]
+    declared: float  #: standard deviation expected from the uncertainties in [rig] [N]
+    chance: float  #: probability of such scatter if the declaration holds
+    excess: float  #: standard deviation in excess of the declared one [N]
 
 
 def is_clear(misalignment: Quantity | None) -> bool:
@@ -104,12 +104,12 @@ def is_clear(misalignment: Quantity | None) -> bool:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class LoadResult(Brief):
-    """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
+    """Results of the direct method at one load; quantities in SI and ISO signs, u with k = 1."""
 
     load: float  #: [N]
     C_alpha: Quantity | None = None  #: slope at zero on the path [N/rad]
-    C_alpha_straight: Quantity | None = None  #: the same without spin, by the model of a build [N/rad]
-    C_gamma: Quantity | None = None  #: the chosen estimate on the path, corrected for rig errors [N/rad]
+    C_alpha_straight: Quantity | None = None  #: as C_alpha, on a straight path, by the fitted model [N/rad]
+    C_gamma: Quantity | None = None  #: by the chosen method on the path, corrected for rig errors [N/rad]
     r_e: Quantity | None = None  #: [m]
     R: Quantity | None = None  #: [m]
     F_phit: Quantity | None = None  #: turn-slip force, corrected (23) [N]
@@ -120,41 +120,39 @@ class LoadResult(Brief):
     epsilon_secant: float | None = None
     epsilon_moment: float | None = None  #: from moments; informational, so without uncertainty
     alpha_M: Quantity | None = None  #: sum of misalignment and ply-steer, of the set-up [rad]
-    misalignment: Quantity | None = None  #: its part of the axis, by the priors of both [rad]
-    ply_steer: Quantity | None = None  #: its part of the tyre [rad]
+    misalignment: Quantity | None = None  #: part of alpha_M from the axis, by the priors of both parts [rad]
+    ply_steer: Quantity | None = None  #: part of alpha_M from the tyre [rad]
     conicity: Quantity | None = None  #: from zeros on both mounts [N]
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()  #: of epsilon_gamma
     budgets: Mapping[str, tuple[Contribution, ...]] = field(default_factory=dict)
-    """Of the other quantities that were measured, by their name in :data:`KEYS`."""
-    paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
-    setups: tuple[
-        SetupResult, ...
-    ] = ()  #: the zeros of every path and set-up by themselves, if there are several
+    """Budgets of the other measured quantities, by their name in :data:`KEYS`."""
+    paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual path first [1/m]
+    setups: tuple[SetupResult, ...] = ()  #: results from every path and set-up alone, if there are several
 
     def slip_force(self, angle: float) -> float:
-        """Side force [N] of a small sideslip angle [rad], by the usual stiffness if none was measured."""
+        """Side force [N] of a small sideslip angle [rad], with the usual stiffness if none was measured."""
         C_alpha = -USUAL_CORNERING_STIFFNESS * self.load if self.C_alpha is None else self.C_alpha.value
         return C_alpha * angle
 
     def slips_beyond(self, u_force: float) -> bool:
-        """Whether the side force of alpha_M exceeds what the alignment of the axis is declared to leave [N]."""
+        """Whether the side force of alpha_M exceeds ``u_force``, the declared alignment uncertainty as a force [N]."""
         return self.alpha_M is not None and abs(self.slip_force(self.alpha_M.value)) > u_force
 
     def axis_off(self, u_force: float) -> bool:
-        """Whether it does, and the axis, not the tyre, clearly causes it."""
+        """Whether alpha_M exceeds the alignment uncertainty and the misalignment of the axis is clearly not zero."""
         return self.slips_beyond(u_force) and is_clear(self.misalignment)
 
     def shift_by(self, force: float) -> float:
-        """Change of eps_gamma by a force [N] that is taken for turn slip."""
+        """Change of eps_gamma if a force [N] is wrongly counted as turn-slip force."""
         assert self.epsilon_gamma is not None
         assert self.F_phit is not None
         return abs((1.0 - self.epsilon_gamma.value) * force / self.F_phit.value)
 
     @property
     def secant_bias(self) -> float | None:
-        """How much larger eps_gamma by the secant is than by the slope at zero."""
+        """eps_gamma by the secant less eps_gamma by the slope at zero; None without both."""
         if self.epsilon_secant is None or self.epsilon_slope is None:
             return None
         return self.epsilon_secant - self.epsilon_slope
@@ -183,27 +181,25 @@ class Measured(Brief):
     pecp1: float | None
     pecp2: float
     u_pecp2: float | None
-    r_e_loads: Mapping[float, float]  #: by load, where it was measured
-    misaligned: (
-        bool  #: the slip force is beyond what the alignment leaves; the fit corrects the points for alpha_M
-    )
-    notes: tuple[str, ...]  #: to know beside the numbers
-    warnings: tuple[str, ...]  #: to act on
+    r_e_loads: Mapping[float, float]  #: measured effective radius [m] by load [N]
+    misaligned: bool  #: whether alpha_M exceeds the alignment uncertainty; the fit then accounts for alpha_M
+    notes: tuple[str, ...]  #: remarks that need no action
+    warnings: tuple[str, ...]  #: warnings that need action
     load_note: str = ""  #: the value of PECP2, or why it is 0
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
-    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
-    drift: Drift | None = None  #: None where nothing repeated shows one, or warmth is known
+    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros in both directions
+    drift: Drift | None = None  #: None without repeated conditions, or if the temperature varies
     misaligned_setups: Mapping[str, float] = field(default_factory=dict)
-    """alpha_M [rad] of the set-ups that are beyond what the alignment leaves, each known from any of its loads."""
-    axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
+    """By set-up whose alpha_M exceeds the alignment uncertainty, alpha_M at the nominal load [rad]."""
+    axis_off: bool = False  #: whether moreover the misalignment of the axis is clearly not zero
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
     made: Made | None = None  #: set by ``mffit spin``
-    reasons: tuple[str, ...] = ()  #: against trusting it, set by ``mffit spin``; a build judges the whole
+    reasons: tuple[str, ...] = ()  #: reasons against trust, set by ``mffit spin``
 
     @property
     def trusted(self) -> bool:
-        """Whether ``mffit spin`` found nothing against the result."""
+        """Whether there is no reason against trusting the result."""
         return not self.reasons
 
     @property
@@ -234,7 +230,7 @@ class Measured(Brief):
 
     @property
     def epsilon_gamma_debiased(self) -> Quantity | None:
-        """Corrected for the finite spin of the disc."""
+        """eps_gamma corrected for the finite spin of the disc."""
         return self.nominal.epsilon_debiased if self.nominal else None
 
     @property
@@ -259,7 +255,7 @@ class Measured(Brief):
 
     @property
     def budgets(self) -> dict[str, tuple[Contribution, ...]]:
-        """Of every other quantity at the nominal load, by its key in JSON."""
+        """Budgets of all other quantities at the nominal load, by their keys in JSON."""
         return {KEYS[name]: rows for name, rows in self.nominal.budgets.items()} if self.nominal else {}
 
     def by_load(self, key: str) -> dict[float, float]:
@@ -268,9 +264,9 @@ class Measured(Brief):
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
     def debiased(self, bias: float) -> Measured:
-        """The record with the bias of finite spin as a fitted model predicts it, in place of the usual bias.
+        """The record with the bias of finite spin that a fitted model predicts, instead of the usual bias.
 
-        The measured value still contains the bias, so its uncertainty does too.
+        The plain eps_gamma still contains the bias, so its uncertainty includes it.
         """
         row, direct = self.nominal, self.epsilon_gamma
         assert row is not None
@@ -296,7 +292,7 @@ class Measured(Brief):
         return dataclasses.replace(self, nominal=row, per_load=rows)
 
     def quantities(self) -> dict[str, Quantity]:
-        """What goes into the property file's structured comments."""
+        """The quantities at the nominal load for the structured comments of the property file."""
         if self.nominal is None:
             return {}
         found = {key: getattr(self.nominal, name) for name, key in KEYS.items()}
@@ -319,7 +315,7 @@ KEYS = {
     "R": "R_m",
     "F_phit": "F_phit_N",
 }
-"""What the quantities of a load are called, with their unit, in property files and JSON; by attribute."""
+"""By attribute of :class:`LoadResult`, the key with unit in property files and JSON."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,7 +330,7 @@ class AlignmentStep:
     F_slip: float  #: (7) [N]
     C_alpha: float  #: used for the correction, ISO, negative [N/rad]
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
-    source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
+    source: str  #: origin of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
 
 
@@ -358,12 +354,12 @@ class Alignment(Brief):
 
     @property
     def u_deg(self) -> float:
-        """Its standard uncertainty."""
+        """Standard uncertainty of the next correction."""
         return float(np.linalg.norm(self._weights() * [step.u_deg for step in self.last]))
 
     @property
     def u_axis_deg(self) -> float:
-        """Standard uncertainty of the axis's own misalignment, of which ply-steer takes an unknown part."""
+        """Standard uncertainty of the misalignment of the axis alone, including the unknown ply-steer."""
         return math.hypot(self.u_deg, math.degrees(usual_ply_steer()))
 
     @property

@@ -1,4 +1,4 @@
-"""Set-ups of the rig: the zeros of each by themselves, and the scatter of repeated ones in addition to what is declared."""
+"""Set-ups of the rig: results of each set-up alone, and the scatter of repeated set-ups beyond the declared uncertainty."""
 
 from __future__ import annotations
 
@@ -25,19 +25,20 @@ from mffit.rig_errors import DECLARED, AtZero
 from mffit.scatter import rms
 
 SCATTER = "scatter of repeated set-ups"
-"""Its name in the uncertainty budget."""
+"""Name of the scatter in the uncertainty budget."""
 
 
 def results_of_setups(
     evidence: DirectEvidence, found: Turning, C_alpha: UFloat | None, C_gamma: UFloat, r_e: UFloat
 ) -> tuple[SetupResult, ...]:
-    """Turn slip and eps_gamma of every path and set-up alone; empty if there is only one.
+    """Turn-slip force and eps_gamma of every path and set-up alone; empty if there is only one.
 
     Parameters
     ----------
-    evidence : has alpha_M of the set-ups that were run both ways
-    found : the zeros and turn-slip forces of one load
-    C_alpha, C_gamma : cornering and camber stiffness, this less what the rig adds to it [N/rad]
+    evidence : supplies alpha_M of the set-ups that were run both ways
+    found : the zeros and turn-slip forces at one load
+    C_alpha : cornering stiffness [N/rad]
+    C_gamma : camber stiffness, corrected for rig errors [N/rad]
     r_e : effective radius [m]
     """
     if len(found.paths) < 2:
@@ -68,10 +69,10 @@ def results_of_setups(
 def setup_scatter(
     evidence: DirectEvidence, stiffnesses: Sequence[tuple[LoadGroup, LoadSlopes]]
 ) -> SetupScatter | None:
-    """Scatter of the zeros of set-ups that were repeated on one path, at the load nearest to the nominal one; None without.
+    """Scatter of the zeros of repeated set-ups on one path, at the load nearest to the nominal one; None without repetition.
 
-    One-way analysis of variance: where the set-ups differ by more than their zeros are declared and read, the difference becomes
-    a source of uncertainty of its own, a type A evaluation with as many degrees of freedom as set-ups less paths (JCGM 100, 4.2).
+    One-way analysis of variance. If set-ups scatter by more than declared zeros and noise explain, the excess is a source of
+    uncertainty of its own: a type A evaluation whose degrees of freedom are set-ups less paths (JCGM 100, 4.2).
     """
     config, rig = evidence.config, evidence.rig
     assert rig is not None
@@ -111,7 +112,7 @@ def setup_scatter(
 
 
 def excess_forces(scatter: SetupScatter | None, setups: Iterable[str]) -> dict[str, UFloat]:
-    """The force [N] of each set-up that scatters beyond what is declared; empty if it does not."""
+    """By set-up, the force [N] of its scatter in excess of the declared one; empty without excess."""
     if scatter is None or not scatter.excess:
         return {}
     shown = {"kind": "A", "dof": float(scatter.degrees_of_freedom)}
@@ -121,7 +122,7 @@ def excess_forces(scatter: SetupScatter | None, setups: Iterable[str]) -> dict[s
 def warnings_of_setups(
     points: Points, row: LoadResult | None, scatter: SetupScatter | None, config: Config
 ) -> list[str]:
-    """What to do about the set-ups of a disc, from the results at the nominal load; nothing if there is only one."""
+    """Warnings about the set-ups of a disc, from the results at the nominal load; empty with only one set-up."""
     used = points.used_setups
     if not config.rig.on_disc or len(used) < 2:
         return []
@@ -131,7 +132,7 @@ def warnings_of_setups(
         if not len(zeros(points, LoadGroup(math.nan, steady), 1)):
             out.append(wording.setup_without_zeros(name))
     out += _undeclared(config)
-    # The axis of the first one is that of the verdict on the whole test.
+    # The first set-up is covered by the sentence on the alignment of the whole test.
     for found in row.setups[1:] if row else ():
         if found.axis_off and found.alpha_M is not None:
             out.append(wording.setup_misaligned(found.name, found.alpha_M))

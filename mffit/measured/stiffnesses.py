@@ -1,6 +1,7 @@
-"""Cornering and camber stiffness of one load, as read off its sweeps in both directions.
+"""Cornering and camber stiffness at one load, from its sweeps in both directions.
 
-A slope at zero is that of a saturating shape, cross-checked by a local cubic; the secant is the published procedure's.
+The slope at zero comes from a fitted saturating curve and is cross-checked by a local cubic; the secant is that of the published
+procedure.
 """
 
 from __future__ import annotations
@@ -28,12 +29,12 @@ class SlopeAtZero(NamedTuple):
 
     value: float
     u_noise: float  #: standard uncertainty from the scatter of the points
-    u_shape: float  #: half the difference of two shapes, beyond noise; common to curves of one tyre
+    u_shape: float  #: half the difference of the two fitted shapes beyond noise; common to curves of one tyre
     dof: float  #: degrees of freedom of ``u_noise``
 
 
 class Secant(NamedTuple):
-    """Secant of an odd curve at one angle, the paper's (20)."""
+    """Secant of an odd curve at one angle, (20)."""
 
     value: float
     u: float
@@ -47,9 +48,9 @@ def slope_at_zero(
     Parameters
     ----------
     x : (n,) angles > 0 [rad]
-    y : (n,) odd part there
+    y : (n,) odd part of the curve at these angles
     u : (n,) standard uncertainties of y
-    local : up to where a cubic may describe the curve [rad]
+    local : largest angle up to which a cubic describes the curve [rad]
     curvature : prior standard deviation of the curvature E of the shape; 0 holds it at 0
 
     Returns
@@ -60,7 +61,7 @@ def slope_at_zero(
         return None
     shape, u_noise, scatter = _saturating(x, y, u, curvature)
     if not curvature:
-        # A misfit of the shape at large angles is no scatter.
+        # Misfit of the stiff shape at large angles must not count as scatter.
         scatter = min(scatter, _saturating(x, y, u, float(constants.CURVATURE_SPREAD))[2])
     scatter = max(1.0, scatter)
     u_noise *= scatter
@@ -73,7 +74,7 @@ def slope_at_zero(
 
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
-    """Secant y/x at the angle [rad], interpolated between the neighbours; None beyond the sweep."""
+    """Secant y/x at the angle [rad], interpolated between neighbours; None outside the sweep."""
     reach = SAME_CAMBER.rad
     if not len(x) or not x.min() - reach < angle < x.max() + reach:
         return None
@@ -88,19 +89,19 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
 
 
 def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -> tuple[float, float, float]:
-    """Fit D sin(C atan(b - E (b - atan b))), b = x s / (C D): an odd curve of slope s at zero that saturates at D.
+    """Slope at zero, its standard error from ``u``, and the scatter of the points over ``u``, from a saturating curve.
 
-    Slope, its standard error from ``u``, and the scatter of the points over ``u``.
+    The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D.
     """
-    import lmfit  # loads matplotlib, so only when a slope is wanted
+    import lmfit  # loads matplotlib, so it is imported only on use
 
     first = np.argsort(x)[:3]
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
 
     shape = lmfit.Parameters()
-    shape.add("slope", 1.05, min=0.2, max=5.0)  # over its first estimate
-    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # over the largest value
+    shape.add("slope", 1.05, min=0.2, max=5.0)  # relative to its first estimate
+    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # relative to the largest value
     shape.add("C", 1.2, min=0.3, max=1.9)
     if curvature:
         shape.add("E", 0.0, min=-6.0, max=1.0)
@@ -124,7 +125,7 @@ CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
 
 
 class Estimates(NamedTuple):
-    """The two estimates of a stiffness at one load, and the largest angle that its sweep reaches [rad]."""
+    """The two estimates of a stiffness at one load, and the largest angle of its sweep [rad]."""
 
     slope: SlopeAtZero | None
     secant: Secant | None
@@ -133,24 +134,24 @@ class Estimates(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LoadSlopes:
-    """The stiffnesses of one load; the rig errors are still in them."""
+    """The stiffnesses at one load, not yet corrected for rig errors."""
 
-    C_alpha: UFloat | None  #: at the reading of zero [N/rad]
-    bend: UFloat | None  #: change of the slope with sideslip there [N/rad^2]
-    C_gamma: UFloat | None  #: of the forward sweep by the configured method [N/rad]
-    C_gamma_backward: UFloat | None  #: the same of a backward sweep
-    slope: UFloat | None  #: of the forward sweep at zero [N/rad]
-    secant: UFloat | None  #: of the forward sweep [N/rad]
+    C_alpha: UFloat | None  #: cornering stiffness at zero reading [N/rad]
+    bend: UFloat | None  #: change of the slope with sideslip at zero reading [N/rad^2]
+    C_gamma: UFloat | None  #: camber stiffness of the forward sweep by the configured method [N/rad]
+    C_gamma_backward: UFloat | None  #: camber stiffness of a backward sweep [N/rad]
+    slope: UFloat | None  #: slope at zero of the forward camber sweep [N/rad]
+    secant: UFloat | None  #: secant of the forward camber sweep [N/rad]
 
     def of_camber(self, better: Callable[[UFloat], UFloat]) -> LoadSlopes:
-        """The same with better estimates of the camber stiffness."""
+        """The record with ``better`` applied to all camber stiffnesses of the forward sweep."""
         C_gamma, slope, secant = (
             None if C is None else better(C) for C in (self.C_gamma, self.slope, self.secant)
         )
         return replace(self, C_gamma=C_gamma, slope=slope, secant=secant)
 
     def calibrated(self, of_sideslip: UFloat, of_camber: UFloat) -> LoadSlopes:
-        """The same with the stiffnesses times a factor each."""
+        """The record with cornering and camber stiffness multiplied by their calibration factors."""
         own = self.of_camber(lambda C_gamma: C_gamma * of_camber)
         return own if self.C_alpha is None else replace(own, C_alpha=self.C_alpha * of_sideslip)
 
@@ -161,14 +162,14 @@ class LoadSlopes:
 
 
 def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes, list[str]]:
-    """The stiffnesses, from the odd curves on a disc and from the curves themselves on a straight path; and warnings."""
+    """The stiffnesses at one load, and warnings; from odd parts on a disc, from the readings themselves on a straight path."""
     C_alpha = cornering_stiffness(evidence, group)
     camber, backward = (_camber_estimates(evidence, group, C_alpha, direction) for direction in (1, -1))
     chosen, trouble = _chosen(evidence.config, camber, group.load)
     chosen_backward, _ = _chosen(evidence.config, backward, group.load)
     if evidence.rig is None:
         chosen_backward = None
-    # Both directions have one shape of curve, so its error drops out of their difference.
+    # Both directions have the same shape of curve, so its error cancels in their difference.
     curved = [x for x in (camber.slope, chosen, chosen_backward) if isinstance(x, SlopeAtZero)]
     shape = _shape_error(curved, CAMBER)
     slope, secant = _number(camber.slope, CAMBER, shape), _number(camber.secant, CAMBER)
@@ -184,7 +185,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
 
 
 def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
-    """Slope of the side force over sideslip at zero [N/rad]; the secant where there are too few angles."""
+    """Slope of the side force over sideslip at zero [N/rad]; the secant if there are too few angles; None without either."""
     config, local = evidence.config, constants.CUBIC_SIDESLIP.rad
     i = sweep(evidence.points, evidence.odd_Fy, group, "alpha", config)
     spread = float(constants.CURVATURE_SPREAD)
@@ -220,7 +221,7 @@ def _camber_estimates(
     """Slope and secant of the camber sweep in one direction."""
     config, odd_Fy = evidence.config, evidence.odd_Fy
     i = sweep(evidence.points, odd_Fy, group, "gamma", config, direction)
-    if C_alpha is not None:  # less the force of the sideslip that backlash leaves in a camber sweep
+    if C_alpha is not None:  # subtract the force of the sideslip that backlash causes in a camber sweep
         odd_Fy = odd_Fy - direction * C_alpha.nominal_value * evidence.odd_slip
     local, angle = CAMBER_OF_SLOPES.rad, math.radians(config.camber_stiffness.angle_deg)
     return _estimates(evidence, i, evidence.points.gamma, odd_Fy, local, angle)
@@ -239,10 +240,10 @@ def _estimates(
 
     Parameters
     ----------
-    evidence : states the uncertainties of the readings
-    index : (m,) of the points to use
+    evidence : supplies the uncertainties of the readings
+    index : (m,) indices of the points to use
     angle, odd : (n,) angles [rad] and odd part of the side force [N]
-    local : up to where a cubic describes the curve [rad]
+    local : largest angle up to which a cubic describes the curve [rad]
     at : angle of the secant [rad]
     curvature : prior standard deviation of the curvature of the shape
     """
@@ -254,7 +255,7 @@ def _estimates(
 
 
 def _chosen(config: Config, found: Estimates, load: float) -> tuple[SlopeAtZero | Secant | None, str | None]:
-    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
+    """C_gamma by the configured method, or by the other one with a warning if the sweep is too short."""
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
     slope_possible = found.slope is not None and 2.0 * found.largest >= CAMBER_OF_SLOPES.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
@@ -293,8 +294,8 @@ def _number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | 
     Parameters
     ----------
     estimate : slope or secant
-    source : its name in the budget
-    shape : relative error of the slope due to the shape of the curve, where several slopes share it
+    source : name of the source in the budget
+    shape : relative error of the slope due to the shape of the curve, if several slopes share it
     """
     if estimate is None:
         return None

@@ -1,4 +1,4 @@
-"""Turn-slip force and stiffness of one load, from the zeros of every path and of both mounts."""
+"""Turn-slip force and stiffness at one load, from the zeros of every path and of both mounts."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Turning:
     C_phit: UFloat  #: turn-slip stiffness [Nm]
     force: UFloat  #: on the usual path [N]
     conicity: UFloat | None  #: from both mounts [N]
-    alpha_M: UFloat | None  #: sum of misalignment and ply-steer of the first set-up whose one is known [rad]
+    alpha_M: UFloat | None  #: misalignment plus ply-steer, of the first set-up with a known sum [rad]
 
     def calibrated(self, factor: UFloat) -> Turning:
-        """The same with all turn-slip forces times a factor."""
+        """The record with all turn-slip forces multiplied by a factor."""
         paths = tuple(path._replace(force=path.force * factor) for path in self.paths)
         return replace(self, paths=paths, C_phit=self.C_phit * factor, force=self.force * factor)
 
@@ -88,7 +88,7 @@ def turning(
     paths = tuple(
         PathForce(
             zero,
-            # The wheel is moved from path to path by known distances, so one error of R is common to all.
+            # Distances between paths are known, so all paths share one error of R.
             R=rig.R + (1.0 / abs(zero.phi_t) - usual),
             force=_force(zero, stiffness, slopes.C_gamma, evidence, angles.get(zero.setup))
             - expected
@@ -118,8 +118,8 @@ def _force(
 ) -> UFloat:
     """The turn-slip force (23) of one path in one set-up [N].
 
-    Of both directions the mean counts, in which alpha_M drops out; a forward reading alone is corrected for its force, if
-    any load of the set-up was run both ways. The angles are already corrected for the play.
+    With both directions it is their mean, in which alpha_M cancels. A forward reading alone is corrected for the force of alpha_M
+    if another load of the set-up was run both ways. The angles are already corrected for the play.
     """
     assert evidence.rig is not None
     load = math.copysign(zero.group.load, zero.phi_t)
@@ -136,10 +136,10 @@ def _force(
 
 
 def turn_slip_stiffness(of_paths: Sequence[UFloat], radii: Sequence[float]) -> Combined:
-    """C_phit of paths at these radii [m], weighted for the least uncertainty.
+    """C_phit from paths at these radii [m], by generalised least squares.
 
-    The zeros are common to the paths of one set-up: a force of the same sign on both sides of the disc, or on two radii,
-    cancels there. Between set-ups they are independent.
+    Zeros are common to the paths of one set-up, so a zero force cancels between the two sides of the disc, or between two radii.
+    Zeros of different set-ups are independent.
     """
     spin = np.array([1.0 / R**2 for R in radii])
     of_spin = constants.SPIN_LOSS * np.mean([C.nominal_value for C in of_paths]) * (spin - spin[0])
@@ -149,9 +149,9 @@ def turn_slip_stiffness(of_paths: Sequence[UFloat], radii: Sequence[float]) -> C
 def _conicity(
     evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, normal: Sequence[PathZeros]
 ) -> tuple[UFloat | None, UFloat]:
-    """The conicity force [N] from both mounts, None with one mount only; and the one to correct with.
+    """The measured conicity force [N], None with one mount only; and the conicity force used for the correction.
 
-    The tyre turned on its rim has the opposite conicity; everything else keeps its sign.
+    Turning the tyre on its rim reverses conicity; everything else keeps its sign.
     """
     declared = evidence.conicity * (0.0 if evidence.published else group.load)
     turned = flipped(evidence.points, group)

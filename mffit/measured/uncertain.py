@@ -1,4 +1,4 @@
-"""Numbers that know the sources of their uncertainty: combined by least squares, and listed in a budget (JCGM 100)."""
+"""Uncertain numbers with named sources: generalised least squares of them, and uncertainty budgets (JCGM 100)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Source(NamedTuple):
 
 
 def named(value: float, u: float, source: str, unit: str, **more: Any) -> UFloat:
-    """An input quantity with its standard uncertainty, of which the configuration may state dof and distribution.
+    """An input quantity with its standard uncertainty; the configuration may state degrees of freedom and distribution.
 
     ``more`` are further fields of its :class:`Source`.
     """
@@ -38,20 +38,20 @@ def named(value: float, u: float, source: str, unit: str, **more: Any) -> UFloat
 
 
 def quantity(x: UFloat, unit: str) -> Quantity:
-    """A number with uncertainty as the record that leaves this folder."""
+    """An uncertain number as a plain record of value and standard uncertainty."""
     return Quantity(float(x.nominal_value), float(x.std_dev), unit)
 
 
 def quantity_if(x: UFloat | None, unit: str) -> Quantity | None:
-    """The same of a number that may be missing."""
+    """As :func:`quantity`; None for None."""
     return None if x is None else quantity(x, unit)
 
 
 def covariance(numbers: Sequence[UFloat]) -> np.ndarray:
-    """Covariance (n, n) of numbers with uncertainty, their independent sources in order of first appearance.
+    """Covariance matrix (n, n) of uncertain numbers, reproducible to the last digit.
 
-    ``uncertainties.covariance_matrix`` goes through the sources as a set, whose order, and with it the last digit of the
-    sums, differs from run to run.
+    ``uncertainties.covariance_matrix`` sums over the sources in the order of a set, which differs from run to run; here the order
+    is that of first appearance.
     """
     sources = list(dict.fromkeys(source for number in numbers for source in number.derivatives))
     slopes = np.array(
@@ -61,19 +61,19 @@ def covariance(numbers: Sequence[UFloat]) -> np.ndarray:
 
 
 class Combined(NamedTuple):
-    """Numbers found by generalised least squares."""
+    """Result of generalised least squares."""
 
     numbers: tuple[UFloat, ...]  #: (k,)
-    weights: np.ndarray  #: (k, n) of the readings in them
-    chance: float  #: probability that readings of such numbers differ by so much; 1 if nothing is left over
+    weights: np.ndarray  #: (k, n) weights of the readings in the numbers
+    chance: float  #: probability of residuals as large as these; 1 without degrees of freedom
 
 
 def combined(
     readings: Sequence[UFloat], design: np.ndarray | None = None, beside: np.ndarray | float = 0.0
 ) -> Combined:
-    """The numbers of least uncertainty whose combination by ``design`` (n, k) the readings are; default their mean.
+    """The generalised least-squares solution of readings = ``design`` (n, k) @ numbers; by default their weighted mean.
 
-    ``beside`` is a further covariance (n, n) of the readings; it counts for the chance only.
+    ``beside`` is a further covariance (n, n) of the readings; it enters only the chi-square test behind ``chance``.
     """
     n = len(readings)
     A, errors = np.ones((n, 1)) if design is None else design, covariance(readings)
@@ -87,12 +87,12 @@ def combined(
 
 
 def _defined(errors: np.ndarray) -> np.ndarray:
-    """The covariance with a ridge, which keeps weights defined where all errors are shared."""
+    """The covariance with a small ridge, which keeps it invertible if all errors are shared."""
     return np.asarray(errors + 1e-9 * np.diag(np.diag(errors)))
 
 
 def _estimator(A: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Weights (k, n) of least uncertainty."""
+    """Weights (k, n) of the generalised least-squares estimator."""
     weighted = np.linalg.solve(_defined(errors), A)
     return np.asarray(np.linalg.solve(A.T @ weighted, weighted.T))
 
@@ -100,14 +100,14 @@ def _estimator(A: np.ndarray, errors: np.ndarray) -> np.ndarray:
 def polynomial(
     x: np.ndarray, y: np.ndarray, u: np.ndarray, powers: Sequence[int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients (k,) of these powers through readings (n,), and their standard uncertainties."""
+    """Coefficients (k,) of a polynomial with these powers fitted to readings (n,), and their standard uncertainties."""
     A = x[:, None] ** np.array(powers) / u[:, None]
     errors = np.linalg.inv(A.T @ A)
     return errors @ A.T @ (y / u), np.sqrt(np.diag(errors))
 
 
 def agreed(declared: UFloat, measurements: Sequence[UFloat]) -> UFloat:
-    """The mean of a declared number and its measurements; of these alone if they contradict the declared uncertainty."""
+    """The weighted mean of a declared number and its measurements; without the declared one if the measurements contradict it."""
     (found,) = combined(measurements).numbers
     difference = found - declared
     if abs(difference.nominal_value) > COVERAGE_FACTOR_95 * difference.std_dev:
@@ -139,17 +139,17 @@ class Expanded(NamedTuple):
 
 
 def budget(result: UFloat) -> tuple[Contribution, ...]:
-    """What each source contributes to the uncertainty of a result, largest first; variables of one source share a row."""
+    """The contribution of each source to the uncertainty of a result, largest first; variables of one source share a row."""
     sources: dict[str, list[Any]] = {}
     for variable in result.derivatives:
         sources.setdefault(variable.tag.name, []).append(variable)
     rows = (_row(result, variables) for variables in sources.values())
-    least = 1e-6 * result.std_dev  # the sources that are exact
+    least = 1e-6 * result.std_dev  # exact sources contribute less
     return tuple(sorted((row for row in rows if row.contribution > least), key=lambda row: -row.contribution))
 
 
 def _row(result: UFloat, variables: Sequence[Any]) -> Contribution:
-    """The row of one source; of several variables the largest is shown, and the contribution is that of all."""
+    """The row of one source; with several variables it shows the largest one and the contribution of all."""
     parts = result.error_components()
     largest = max(variables, key=lambda variable: parts[variable])
     source, size = largest.tag, math.degrees(1.0) if largest.tag.unit == "rad" else 1.0
@@ -176,7 +176,7 @@ def _effective_dof(parts: Sequence[tuple[float, float]]) -> float:
 def expanded(rows: Sequence[Contribution]) -> Expanded:
     """The expanded uncertainty for a coverage probability of 95 % from the rows of a budget."""
     dof = _effective_dof([(row.contribution, row.dof) for row in rows])
-    # JCGM 100, G.4.1: the t distribution of the next lower whole number of degrees of freedom.
+    # JCGM 100, G.4.1: t distribution with the next lower integer of degrees of freedom.
     k = (
         float(stdtrit(max(1.0, math.floor(dof + 1e-6)), 0.5 + COVERAGE / 2.0))
         if math.isfinite(dof)

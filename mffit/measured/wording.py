@@ -1,4 +1,4 @@
-"""The sentences of the direct method: notes to know, warnings to act on, and what page and terminal say of results."""
+"""Sentences of the direct method: notes, warnings, and statements on results for page and terminal."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a rel
 
 
 def nothing_measured(*, camber: bool, zeros: bool, radius: bool) -> str:
-    """What eps_gamma lacks: ``camber``, ``zeros`` and ``radius`` say what there is at any load."""
+    """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist at any load."""
     needed = {
         "a camber sweep at zero sideslip": camber,
         "points at zero sideslip and camber": zeros,
@@ -40,7 +40,10 @@ def slope_too_steep(largest: float) -> str:
 
 
 def alignment(row: LoadResult, u: float) -> str:
-    """What the zeros say of the sideslip axis, declared to leave ``u`` [N]; empty if both sides of the disc cancel it."""
+    """A sentence on the sideslip axis from the zeros; empty if both sides of the disc cancel its effect.
+
+    ``u`` is the declared alignment uncertainty as a force [N].
+    """
     assert row.F_phit is not None
     if row.alpha_M is None:
         return "" if min(row.paths) < 0.0 < max(row.paths) else _not_separable(row, row.F_phit.value, u)
@@ -64,7 +67,7 @@ def alignment(row: LoadResult, u: float) -> str:
 
 
 def _not_separable(row: LoadResult, force: float, u: float) -> str:
-    """Without backward runs; a sideslip sweep gives the angle of a force."""
+    """The sentence for data without backward runs; C_alpha from a sideslip sweep converts the force to an angle."""
     angle = (
         "an unknown angle (no sideslip sweep gives C_alpha)"
         if row.C_alpha is None
@@ -184,7 +187,7 @@ def setup_scatter(found: SetupScatter) -> str:
 
 
 def epsilon_values(measured: Measured) -> str:
-    """How the estimates of eps_gamma differ, and why; empty with one estimate."""
+    """A comparison of the estimates of eps_gamma, in words; empty with one estimate."""
     direct, debiased, model = (
         measured.epsilon_gamma,
         measured.epsilon_gamma_debiased,
@@ -200,7 +203,7 @@ def epsilon_values(measured: Measured) -> str:
 
 
 def steering(compliance: float, change: float) -> str:
-    """What a steering that yields would do to C_alpha."""
+    """A sentence on the change of C_alpha by a compliance of the steering."""
     return (
         f"C_alpha holds for a rigid steering, as declared: one that yields by {compliance:g} deg per Nm of Mz would change it by "
         f"{100 * change:.1f} %. Measure the compliance and state it as u_steering_compliance_deg_per_Nm; without a model of the "
@@ -209,7 +212,7 @@ def steering(compliance: float, change: float) -> str:
 
 
 def expanded(measured: Measured) -> str:
-    """The expanded uncertainty with its coverage factor; empty without a budget."""
+    """The expanded uncertainty with its coverage factor, in words; empty without a budget."""
     found = measured.nominal.expanded if measured.nominal else None
     if found is None:
         return ""
@@ -218,7 +221,7 @@ def expanded(measured: Measured) -> str:
 
 
 def advice(found: Alignment) -> list[str]:
-    """The next adjustment of the axis."""
+    """Sentences on the next adjustment of the axis."""
     correction, u = found.correction_deg, found.u_deg
     step = f"{correction:+.3f} +- {u:.3f} deg of the rig's own scale (k = 1)"
     if found.aligned:

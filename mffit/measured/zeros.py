@@ -1,4 +1,4 @@
-"""Points by load, path and set-up, and the forces and moments at zero sideslip and camber in them."""
+"""Points grouped by load, path and set-up, and the forces and moments of each group at zero sideslip and camber."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ class LoadGroup:
     """The freely rolling points of one load at the main pressure, normal mount."""
 
     load: float  #: mean load [N]
-    index: np.ndarray  #: (m,) into the points
+    index: np.ndarray  #: (m,) indices of the points
 
     def of(self, mask: np.ndarray) -> LoadGroup:
-        """Those of a mask (m,)."""
+        """The group restricted to a mask (m,)."""
         return LoadGroup(self.load, self.index[mask])
 
 
 def load_groups(points: Points) -> tuple[LoadGroup, ...]:
-    """Group the steady, freely rolling points at the programme's main pressure by load, rising; none between loads."""
+    """The steady, freely rolling points at the main pressure, grouped by rising load; points between two loads are left out."""
     used = np.flatnonzero(_usual(points) & (points.mount > 0))
     level = levels.labels(points.Fz[used], levels.LOAD)
     parts = [used[level == k] for k in range(level.max(initial=levels.NO_LEVEL) + 1)]
@@ -73,9 +73,9 @@ class PathZeros:
 
     phi_t: float  #: turn slip of the path [1/m]
     setup: str  #: name of the set-up
-    group: LoadGroup  #: the points that they are from
-    forward: UFloat  #: [N], corrected for the sideslip of backlash
-    backward: UFloat | None  #: None without backward runs
+    group: LoadGroup  #: points of this load, path and set-up
+    forward: UFloat  #: force rolling forwards, corrected for the sideslip of backlash [N]
+    backward: UFloat | None  #: force rolling backwards [N]; None without backward runs
     moment: UFloat | None  #: turn-slip moment [Nm]
     side_of_play: (
         float  #: sign of the sideslip that backlash adds to a forward reading of zero; 0 without play
@@ -83,17 +83,17 @@ class PathZeros:
 
     @property
     def readings(self) -> tuple[UFloat, ...]:
-        """The forces forwards, and backwards if that was run [N]."""
+        """The force rolling forwards and, if it was run, backwards [N]."""
         return (self.forward,) if self.backward is None else (self.forward, self.backward)
 
     def mean(self, *, both: bool) -> UFloat:
-        """Force at zero [N]: the mean of both directions, or that of the forward runs."""
+        """Force at zero [N]: the mean of both directions, or that of the forward runs only."""
         readings = self.readings if both else (self.forward,)
         return sum(readings) / len(readings)
 
     @property
     def slip(self) -> UFloat:
-        """Half the difference of both directions [N], the force of the sideslip zero."""
+        """Half the difference of both directions [N]: the force of the misaligned sideslip zero."""
         return (self.forward - self.backward) / 2.0
 
 
@@ -123,7 +123,10 @@ def zeros_by_path(
 
 
 def force_at_zero(points: Points, group: LoadGroup, way: int, slope: float) -> UFloat | None:
-    """Side force [N] at zero sideslip and camber, rolling one way, with a cornering stiffness [N/rad]; None if it was not run."""
+    """Side force [N] at zero sideslip and camber in one direction of rolling; None if it was not run.
+
+    ``slope`` is the cornering stiffness [N/rad].
+    """
     return _at_zero(points, group, way, "Fy", f"noise of the {WAYS[way]} zeros", way * slope)
 
 
@@ -134,16 +137,16 @@ def u_of(points: Points, channel: str) -> np.ndarray:
 
 
 def _slope(C_alpha: UFloat | None, group: LoadGroup) -> float:
-    """Cornering stiffness [N/rad]; the usual one where none was measured."""
+    """Cornering stiffness [N/rad]; the usual one if none was measured."""
     return -USUAL_CORNERING_STIFFNESS * group.load if C_alpha is None else float(C_alpha.nominal_value)
 
 
 def _at_zero(
     points: Points, group: LoadGroup, direction: int, channel: str, source: str, slope: float = 0.0
 ) -> UFloat | None:
-    """Value at zero sideslip: a local parabola through five angles or more, else the mean of the zeros.
+    """Value at zero sideslip: from a local parabola if there are enough angles, else the mean of the zeros.
 
-    With ``slope``, zeros shifted by backlash are moved back. None if the direction was not run.
+    ``slope`` corrects zeros that backlash has shifted. None if the direction was not run.
     """
     y, u, unit = points.channel(channel), u_of(points, channel), "N" if channel == "Fy" else "Nm"
     i = zeros(points, group, direction)
@@ -168,14 +171,14 @@ def _at_zero(
 
 
 def forces_of_sweeps(points: Points, rows: np.ndarray, direction: int, slope: float) -> dict[int, float]:
-    """By sweep, the mean force [N] of its zeros (m,), moved to zero sideslip with a stiffness [N/rad]."""
+    """By sweep, the mean force [N] of its zeros (m,), corrected to zero sideslip with a stiffness [N/rad]."""
     rows = rows[np.isfinite(points.Fy[rows])]
     force, sweep = points.Fy[rows] - direction * slope * points.alpha[rows], points.sweep[rows]
     return {int(k): float(np.mean(force[sweep == k])) for k in np.unique(sweep)}
 
 
 def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> list[str]:
-    """Warnings about sweeps of one load, path, set-up and direction whose zeros differ by more than chance explains."""
+    """Warnings about sweeps of one load, path, set-up and direction with significantly different zeros."""
     u = math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
     out = []
     for direction, word in WAYS.items():

@@ -1,4 +1,4 @@
-"""What the sweeps of a project identify, and which further runs would lower an uncertainty most."""
+"""Identifiability of the coefficients by the sweeps of a project, and the most informative further runs."""
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal

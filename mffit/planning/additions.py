@@ -1,4 +1,4 @@
-"""What ``mffit plan`` may add to a programme: one record per kind of run."""
+"""The kinds of runs that ``mffit plan`` may add to a programme, one record each."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from mffit.planning import constants
 
 
 class LineOfPoints(NamedTuple):
-    """Set-points along one angle or slip; everything not given here is as in most of the programme."""
+    """Set-points along one angle or slip; all other settings are those of most of the programme."""
 
     over: Literal["alpha", "gamma", "kappa"]
-    shares: Sequence[float]  #: of the largest angle or slip
-    largest_deg: float | None = None  #: None: the largest that was run
+    shares: Sequence[float]  #: set-points over the largest angle or slip
+    largest_deg: float | None = None  #: largest angle; None: the largest that was run
     direction: Literal[1, -1] = 1  #: 1 forward, -1 backward
-    side: Literal[-1, 0, 1] = 0  #: of the addition's ``held_deg``
+    side: Literal[-1, 0, 1] = 0  #: sign of the addition's ``held_deg``; 0: not held
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,15 +28,15 @@ class Addition:
     id: str  #: ``kind`` in plan.json, and the word for ``--without``
     title: str
     reason: str  #: what it measures and why that helps
-    loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
+    loads: Literal["each", "nominal", "new"] = "each"  #: "each" and "nominal" of the programme
     lines: tuple[LineOfPoints, ...]
     rig: Literal["any", "disc", "belt"] = "any"
-    measures: tuple[str, ...] = ()  #: channels, added to those of the programme
+    measures: tuple[str, ...] = ()  #: channels measured in addition to those of the programme
     mount: Literal[1, -1] = 1
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
-    held: Literal["alpha", "gamma"] = "gamma"  #: angle to which ``side`` of a line belongs
-    held_deg: Sequence[float] = (0.0,)  #: its values, one run each
-    pressures: Sequence[float] = (1.0,)  #: over the programme's pressure, one run each
+    held: Literal["alpha", "gamma"] = "gamma"  #: angle that is held at ``side`` times ``held_deg``
+    held_deg: Sequence[float] = (0.0,)  #: values of the held angle, one run each
+    pressures: Sequence[float] = (1.0,)  #: pressures over the programme's pressure, one run each
 
 
 _NEW_SETUP = (
@@ -190,12 +190,12 @@ ADDITIONS = (
         measures=("Fx",),
     ),
 )
-"""In the order in which they are tried; of equally good ones with as many points the first is taken."""
+"""In the order of trial; among equally good runs with equally many points the first is taken."""
 BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS}
 
 
 def addition_named(word: str) -> Addition:
-    """The addition with this id; an InputError lists the ids if none has it."""
+    """The addition with this id; raises an InputError that lists the ids if there is none."""
     if word not in BY_ID:
         raise InputError(f'"{word}" is not a kind of run; the kinds are {", ".join(BY_ID)}')
     return BY_ID[word]

@@ -1,4 +1,4 @@
-"""The goals of a plan: numbers whose uncertainty is to fall."""
+"""The goals of a plan: numbers whose uncertainty should decrease."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from tir.parameters import BY_NAME
 
 EPSILON, JOINT, BANDS, FILE = "eps_gamma", "eps_gamma:joint", "bands", "file"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", FILE)
-"""How goals are written; the name of a coefficient is a goal too."""
+"""Goals as the user writes them; the name of a coefficient is a goal too."""
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """The number whose uncertainty is to fall."""
+    """The number whose uncertainty should decrease."""
 
     kind: str  #: EPSILON (direct method), JOINT, BANDS, FILE or "coefficient"
-    name: str = ""  #: of the coefficient, or the channel of the bands
+    name: str = ""  #: name of the coefficient, or channel of the bands
     unit: str = "-"
 
     @property
@@ -39,7 +39,10 @@ class Goal:
 def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
     """A goal from its text: ``eps_gamma``, ``bands``, ``file`` or a coefficient's name.
 
-    An InputError says that the goal is not known, needs a disc, or is a coefficient that is ``held`` by hand.
+    Raises
+    ------
+    InputError
+        The goal is unknown, needs a disc, needs recordings of steps, or is a coefficient ``held`` by hand.
     """
     if text in held or (text == JOINT and "PECP1" in held):
         text = "PECP1" if text == JOINT else text

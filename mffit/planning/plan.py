@@ -1,4 +1,4 @@
-"""What the sweeps identify, and the shortest list of runs towards a goal: each step takes the run that lowers u most."""
+"""Identifiability by the present sweeps, and a short list of runs: each step takes the run that lowers the uncertainty most."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ from mffit.points import Points
 from mffit.progress import Progress, silent
 
 U = Callable[[Sequence[PlannedRun]], float]
-"""The uncertainty of the goal after some runs."""
+"""Returns the uncertainty of the goal after some runs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """What the present sweeps identify."""
+    """Identifiability of the coefficients by the present sweeps."""
 
-    cover: tuple[StageCoverage, ...]  #: per stage: what is freed, what is held and why
-    from_prior: tuple[str, ...]  #: freed coefficients that the prior determines more than the data
-    correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients and their correlation
+    cover: tuple[StageCoverage, ...]  #: per stage: free coefficients, held ones and why
+    from_prior: tuple[str, ...]  #: free coefficients that depend on their priors as much as on the data
+    correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients with strong correlations
     budget: tuple[Contribution, ...]  #: of eps_gamma by the direct method; empty on a flat track
     unseen_skew: float | None = None
-    """Change of eps_gamma by a camber skew of 1 deg, where no backward camber sweep shows the skew; else None."""
+    """Change of eps_gamma by a camber skew of 1 deg; None if backward camber sweeps measure the skew."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """A run, of the list or made alone."""
+    """A run, either in the list or alone, and its effect on the uncertainty."""
 
     run: PlannedRun
-    before: float  #: uncertainty of the goal without it, in its unit
-    after: float  #: with it
+    before: float  #: uncertainty of the goal without the run, in the unit of the goal
+    after: float  #: uncertainty of the goal with the run
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +52,8 @@ class Plan(Brief):
     goal: Goal
     identified: Identified
     now: float  #: present uncertainty of the goal; infinite if it is not measured
-    steps: tuple[PlanStep, ...]  #: the list, in the order in which the runs are made
-    trials: tuple[PlanStep, ...]  #: every candidate made alone, best first
+    steps: tuple[PlanStep, ...]  #: the list of runs, in order
+    trials: tuple[PlanStep, ...]  #: every candidate alone, best first
 
     @property
     def then(self) -> float:
@@ -78,17 +78,17 @@ def plan(
     without: Collection[Addition] = (),
     progress: Progress = silent,
 ) -> Plan:
-    """What these points identify, and the runs that lower the goal's uncertainty most.
+    """Identifiability by these points, and the runs that lower the goal's uncertainty most.
 
     Parameters
     ----------
-    config : what is declared of tyre and rig
+    config : declarations of tyre and rig
     points : the programme so far, with readings
-    measured, found : the build of these points
-    goal : the number whose uncertainty is to fall
-    direct : the direct method's own u(eps_gamma), as a build would state it
+    measured, found : direct measurement and fit of these points
+    goal : the number whose uncertainty should decrease
+    direct : returns u(eps_gamma) of the direct method for given points
     most : largest number of runs in the list
-    without : additions that this rig cannot make
+    without : additions that this rig cannot run
     progress : called with a sentence before each step
     """
     prospect = Prospect(config, points, measured, found, direct)
@@ -140,7 +140,7 @@ def _unseen_skew(measured: Measured) -> float | None:
 
 
 def _chosen(u: U, possible: Sequence[PlannedRun], most: int, progress: Progress) -> list[PlannedRun]:
-    """Up to ``most`` runs, in the order in which they were found."""
+    """Up to ``most`` runs by forward selection, in the order of selection."""
     chosen: list[PlannedRun] = []
     while len(chosen) < most:
         progress(f"looking for run {len(chosen) + 1}")
@@ -162,7 +162,7 @@ def _chosen(u: U, possible: Sequence[PlannedRun], most: int, progress: Progress)
 def _best(
     u: U, chosen: Sequence[PlannedRun], possible: Sequence[Sequence[PlannedRun]]
 ) -> Sequence[PlannedRun]:
-    """The best choice of one or several runs to add; empty if none lowers the uncertainty enough."""
+    """The best run or pair of runs to add; empty if none lowers the uncertainty enough."""
     after = [u([*chosen, *more]) for more in possible]
     if not min(after, default=float("inf")) < (1.0 - constants.WORTHWHILE_FALL) * u(chosen):
         return ()
@@ -175,7 +175,7 @@ def _best(
 
 
 def _without_superfluous(u: U, chosen: Sequence[PlannedRun]) -> list[PlannedRun]:
-    """The list without runs whose information later runs supply as well."""
+    """The list without runs that later runs have made superfluous."""
     kept = list(chosen)
     for run in chosen:
         fewer = [other for other in kept if other is not run]

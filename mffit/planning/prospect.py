@@ -1,4 +1,4 @@
-"""The posterior of a build with the rows of further runs added: one linear model of every number of tyre and rig."""
+"""The posterior of a build with further runs added, from one linear model of all numbers of tyre and rig."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ PECP1 = "PECP1"
 class DirectU(NamedTuple):
     """u(eps_gamma) of the direct method."""
 
-    stated: float  #: as a build states it
-    held: float  #: with which the fit holds PECP1
+    stated: float  #: standard uncertainty that a build states
+    held: float  #: standard uncertainty with which the fit holds PECP1
 
 
 Direct = Callable[[Points], DirectU | None]
-"""The direct method on some points; None where it fails."""
+"""Applies the direct method to points; None if it fails."""
 
 
 class Prospect:
-    """What a build of a longer programme would state, linearised at the present solution.
+    """Uncertainties that a build of a longer programme would state, linearised at the present solution.
 
-    The build is assumed to free what its coverage allows, with the priors and weights of this build.
+    The longer build is assumed to free the coefficients that its coverage allows, with the priors and weights of this build.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Prospect:
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
         self._sigma = {channel: _usual(s) for channel, s in search.problem.sigma.items()}
-        if unseen:  # nothing is known of the noise of Fx: forces usually scatter alike
+        if unseen:  # the noise of Fx is unknown and assumed equal to that of Fy
             self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
         self._base = _information(self.problem.free(self.names).linear(self._at).slope)
         self._of_run: dict[str, np.ndarray] = {}
@@ -89,8 +89,8 @@ class Prospect:
     ) -> Posterior:
         """The posterior of a build with these runs.
 
-        ``free`` and ``held`` are spreads of numbers that the build would fit, or hold without letting the points inform them,
-        other than this build does.
+        ``free`` and ``held`` give prior standard deviations of numbers that the longer build, unlike this one, would fit or would
+        hold without learning from the points.
         """
         free, held = free or {}, held or {}
         new = {name: self._new_zeros[name] for name in self._new_of(runs)}
@@ -104,7 +104,7 @@ class Prospect:
         return beside_held(names, covariance, beside, information[np.ix_(f, h)])
 
     def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
-        """Uncertainty of a goal in its unit after any runs; infinite if it is not measured at all."""
+        """A function that returns the uncertainty of a goal, in its unit, after given runs; infinite if it is not measured."""
         curves = self._curves_of(goal) if goal.kind in (BANDS, FILE) else None
         known: dict[tuple[str, ...], float] = {}
 
@@ -136,7 +136,7 @@ class Prospect:
         return None if found is None else found.stated
 
     def as_built(self, runs: Sequence[PlannedRun]) -> Posterior:
-        """The posterior with PECP1 as the file takes it: held by hand, from the direct method, or from the joint fit."""
+        """The posterior with PECP1 from the source that the file uses: held by hand, direct method, or joint fit."""
         by_hand = PECP1 in self.hand.held
         if self.config.spin.pecp1 == "model" and self.config.rig.on_disc and not by_hand:
             return self._with_free_epsilon(runs)
@@ -148,7 +148,7 @@ class Prospect:
         return self.posterior(runs, free={PECP1: math.inf if prior is None else prior.spread})
 
     def _direct(self, runs: Sequence[PlannedRun]) -> DirectU | None:
-        """The direct method on the present points and the predicted readings of the new ones, asked once."""
+        """The direct method applied to the present points and the predicted readings of new ones; cached."""
         if not self.config.rig.on_disc:
             return None
         relevant = [r for r in runs if np.any(self._decides_epsilon(r.points))]
@@ -159,22 +159,22 @@ class Prospect:
         return self._known_directly[key]
 
     def _decides_epsilon(self, points: Points) -> np.ndarray:
-        """Mask (n,) of the points from which the direct method reads eps_gamma at the nominal load."""
+        """Mask (n,) of the points from which the direct method determines eps_gamma at the nominal load."""
         near = np.abs(np.log(points.Fz / self._nominal)) < levels.LOAD.tolerance
         main = np.abs(points.p - self._pressure) < levels.PRESSURE.tolerance
         deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
         return deciding
 
     def _channels_of(self, run: PlannedRun) -> tuple[str, ...]:
-        """Channels that a run measures: those of the programme, and what it adds."""
+        """Channels that a run measures: those of the programme and those of the addition."""
         return tuple(c for c in self._sigma if c in (*self.problem.channels, *run.addition.measures))
 
     def _with_readings(self, run: PlannedRun) -> Points:
-        """The set-points of a run with the readings that the fitted rig would give."""
+        """The set-points of a run with readings simulated by the fitted tyre and rig."""
         return run.points.replace(**self.simulation.readings(run.points, self._channels_of(run)))
 
     def _spread_of_unseen(self, known: Mapping[str, float]) -> dict[str, float]:
-        """Standard deviation of the coefficients that only a run of longitudinal slip would free; empty once one was made."""
+        """Prior standard deviation of the coefficients that only longitudinal slip would free; empty if slip was run already."""
         if self.config.rig.on_disc or "Fx" in self.problem.channels:
             return {}
         values, shown = self.found.tyre.values, self._shown(candidates(self.config, self.points))
@@ -186,19 +186,19 @@ class Prospect:
         }
 
     def _shown(self, runs: Sequence[PlannedRun]) -> dict[str, None]:
-        """Coefficients that the coverage of a programme with some more runs allows to free, as keys."""
-        # Coverage asks only whether there are readings, not which.
+        """Coefficients that the coverage of the programme with further runs allows to free, as keys."""
+        # Coverage depends on whether there are readings, not on their values.
         new = [run.points.replace(**dict.fromkeys(run.addition.measures, 0.0)) for run in runs]
         cover = coverage(concatenate([self.points, *new]), self.config.tyre.side, self.hand.held)
         return dict.fromkeys(name for row in cover for name in row.free)
 
     def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
-        """What this build fitted, what more runs show beyond it, and their new zeros."""
+        """Names of the numbers that this build fitted, of those that further runs free, and of the runs' new zeros."""
         beyond = [name for name in self._shown(runs) if name not in self._shown_now]
         return list(dict.fromkeys([*self._fitted, *beyond, *self._new_of(runs)]))
 
     def _zeros_of_new_setups(self) -> dict[str, float]:
-        """Prior spread of the zeros of set-ups that runs may add, by number."""
+        """By number, prior standard deviation of the zeros of set-ups that runs may add."""
         present, new = self.points.used_setups, new_setups(self.config, self.points)
         if not self.rig or not new:
             return {}
@@ -206,24 +206,24 @@ class Prospect:
         return {n.name: n.spread for n in numbers if n.name.partition(OF_RUN)[2] in new}
 
     def _new_of(self, runs: Sequence[PlannedRun]) -> list[str]:
-        """Numbers of the zeros of the new set-ups that some runs are in."""
+        """Names of the zeros of the new set-ups that these runs use."""
         used = {name for run in runs for name in run.points.used_setups}
         return [name for name in self._new_zeros if name.partition(OF_RUN)[2] in used]
 
     def _added(self, run: PlannedRun) -> np.ndarray:
-        """Information of the rows of one run."""
+        """Information matrix of one run."""
         if run.name not in self._of_run:
             sigma = {c: np.full(run.cost, self._sigma[c]) for c in self._channels_of(run)}
             points = self._with_readings(run)
             seen = replace(self.problem, points=points, sigma=sigma, envelope=None, radii=())
             slope = seen.free(self.names).linear(self._at).slope
-            if self._new_of([run]):  # zeros of its own instead of those without a set-up
+            if self._new_of([run]):  # the run has its own zeros instead of the common ones
                 slope[:, [self._row[e.name] for e in ZEROS if e.name in self.rig]] = 0.0
             self._of_run[run.name] = _information(slope)
         return self._of_run[run.name]
 
     def _curves_of(self, goal: Goal) -> _Curves:
-        """Curves over sideslip and camber at three loads on a straight path, and over slip where it counts."""
+        """Curves over sideslip and camber at three loads on a straight path, and over longitudinal slip if relevant."""
         names = [n for n in self.names if error_of(n) is None]
         tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
         channels = [goal.name]
@@ -236,7 +236,7 @@ class Prospect:
         return _Curves(names, [slopes[c] / size[c] for c in channels])
 
     def _on_curves(self, *, driven: bool) -> Points:
-        """Conditions of the curves; ``driven``: over slip too, without and with sideslip."""
+        """Conditions of the curves; with ``driven`` also over longitudinal slip, without and with sideslip."""
         tyre, tested = self.found.tyre, tested_ranges(swept(self.points))
         loads = [tested["FZMIN"], float(tyre["FNOMIN"]), tested["FZMAX"]]
         n = int(ANGLES_OF_A_CURVE)
@@ -256,10 +256,10 @@ class _Curves(NamedTuple):
     """Curves of the tyre whose band is the goal."""
 
     names: Sequence[str]  #: (k,) coefficients
-    slopes: Sequence[np.ndarray]  #: (n, k) by these, per channel; of several channels over the largest force
+    slopes: Sequence[np.ndarray]  #: per channel, derivatives (n, k); for FILE, over the largest force
 
     def band(self, posterior: Posterior) -> float:
-        """Half width of the 95 % band, rms."""
+        """Rms half width of the 95 % band."""
         rows = [posterior.names.index(n) for n in self.names if n in posterior.names]
         columns = [k for k, n in enumerate(self.names) if n in posterior.names]
         covariance = posterior.covariance[np.ix_(rows, rows)]

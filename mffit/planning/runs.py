@@ -1,4 +1,4 @@
-"""The runs that could be added to a programme, each of which a build can use."""
+"""The runs that could be added to a programme, in the form of points."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class PlannedRun:
 
     addition: Addition
     load: float  #: [N]
-    points: Points  #: set-points in ISO-W, without readings
+    points: Points  #: set-points in ISO-W axes, without readings
     held_deg: float = 0.0  #: camber of coupled sweeps, sideslip of sweeps of combined slip
-    pressure_kPa: float | None = None  #: where it differs from the programme's
+    pressure_kPa: float | None = None  #: pressure if it differs from the programme's
 
     @property
     def cost(self) -> int:
@@ -44,7 +44,7 @@ class PlannedRun:
 
 
 def candidates(config: Config, points: Points) -> tuple[PlannedRun, ...]:
-    """Every run that a rig could add to these points."""
+    """Every run that this rig could add to these points."""
     programme = _Programme(config, points)
     here = "disc" if config.rig.on_disc else "belt"
     return tuple(
@@ -65,27 +65,27 @@ def _runs_of(programme: _Programme, addition: Addition, load: float) -> Iterator
 
 
 def swept(points: Points) -> Points:
-    """Points at which the wheel was steered, leaned or driven; all of them if it only rolled straight."""
+    """Points with sideslip, camber or longitudinal slip; all points if there are none."""
     found = _beyond(points.alpha, levels.SIDESLIP) | _beyond(points.gamma, levels.CAMBER)
     found |= ~points.free_rolling
     return points.select(found) if np.any(found) else points
 
 
 def _beyond(values: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
-    """Whether values (n,) are not of the level of zero."""
+    """Mask (n,) of the values that differ from zero by more than the tolerance of their kind."""
     out: np.ndarray = np.abs(values) > kind.tolerance
     return out
 
 
 def largest_slip(points: Points) -> float:
-    """Largest longitudinal slip of sweeps; a usual one where none was run."""
+    """Largest longitudinal slip that was run; a usual value if none was run."""
     largest = float(np.max(np.abs(points.kappa), initial=0.0))
-    # Recordings of a relaxation length step slip to little more than a level.
+    # Step tests for a relaxation length use slips too small to count as sweeps.
     return largest if largest > 2.0 * levels.SLIP.tolerance else float(constants.LARGEST_SLIP)
 
 
 class _Programme:
-    """What has been run, and new set-points like it."""
+    """The present programme, and new set-points like its own."""
 
     def __init__(self, config: Config, points: Points) -> None:
         main = main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
@@ -113,7 +113,7 @@ class _Programme:
         return [low * self.loads[0], high * self.loads[-1]]
 
     def held_deg(self, addition: Addition, load: float) -> list[float]:
-        """Angles [deg] of an addition's runs, of coupled sweeps those that the programme lacks at a load."""
+        """Held angles [deg] of an addition's runs; for coupled sweeps only those that the programme lacks at this load."""
         if addition.held == "alpha" or addition.rig == "belt" or not any(addition.held_deg):
             return list(addition.held_deg)
         near = np.abs(np.log(self.main.Fz / load)) < levels.LOAD.tolerance
@@ -142,7 +142,7 @@ class _Programme:
 
 
 def setup_on(config: Config, points: Points, phi_t: float) -> str:
-    """Name of the set-up in which a run on a path would be: that of the points there, else a new one, as a build calls it."""
+    """Name of the set-up of a run on a path: that of the points on this path, else a new one, named as in a build."""
     there = np.flatnonzero(np.isclose(points.phi_t, phi_t))
     if len(there):
         return str(points.setups[points.setup[there[-1]]])
@@ -154,7 +154,7 @@ def setup_on(config: Config, points: Points, phi_t: float) -> str:
 
 
 def new_setups(config: Config, points: Points) -> tuple[str, ...]:
-    """Names of the set-ups that a plan may add: one for every path that was not run."""
+    """Names of the set-ups that a plan may add: one for every new path."""
     paths = {main_path(points) / addition.radius for addition in ADDITIONS}
     names = {setup_on(config, points, phi_t) for phi_t in paths if phi_t}
     return tuple(sorted(names - set(points.used_setups)))

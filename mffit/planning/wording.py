@@ -1,4 +1,4 @@
-"""The sentences about a plan, for page, terminal and JSON: written here and nowhere else."""
+"""The sentences about a plan, for page, terminal and JSON."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def measure(plan: Plan) -> str:
 
 
 def shown(plan: Plan, u: float) -> str:
-    """An uncertainty of the goal with its unit; three digits, also if the last is 0, so that rows can be compared."""
+    """An uncertainty of the goal with three digits and its unit."""
     if not math.isfinite(u):
         return "not measured"
     unit = "" if plan.goal.unit in ("", "-") else f" {plan.goal.unit}"
@@ -63,7 +63,7 @@ OF_COEFFICIENT = "the standard error in the file, from the posterior, linearised
 
 
 def promise(plan: Plan) -> str:
-    """What the numbers mean, and for which estimate they hold."""
+    """A sentence on the meaning of the numbers and the estimate for which they hold."""
     kind = plan.goal.kind
     debiased = plan.config.spin.pecp1 == "debiased"
     which = " (debiased, without the line of finite spin)" if debiased else ""
@@ -73,7 +73,7 @@ def promise(plan: Plan) -> str:
 
 
 def identified(found: Identified) -> list[str]:
-    """What the sweeps identify, in words."""
+    """Sentences on the identifiability by the present sweeps."""
     return [
         *_first_of_all(found),
         *_coverage(found),
@@ -86,7 +86,7 @@ def identified(found: Identified) -> list[str]:
 
 
 def _coverage(found: Identified) -> list[str]:
-    """Per stage: coefficients that the data determine, those that the prior determines, those that are held."""
+    """Per stage, the coefficients that the data determine, those that the prior determines, and the held ones."""
     out = []
     for row in found.cover:
         by_data = [name for name in row.free if name not in found.from_prior]
@@ -108,7 +108,7 @@ def _coverage(found: Identified) -> list[str]:
 
 
 def _first_of_all(found: Identified) -> list[str]:
-    """The run that shows an error which nothing else shows."""
+    """A sentence on the backward camber sweep, the only run that detects a camber skew; empty if it exists."""
     if found.unseen_skew is None:
         return []
     return [

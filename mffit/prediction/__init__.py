@@ -1,4 +1,4 @@
-"""Forces at any conditions, with how far a new run of the tyre may lie from them."""
+"""Predicted forces at any conditions, with the uncertainty for the tyre and for a new run."""
 
 from mffit.prediction.conditions import write_table
 from mffit.prediction.correction import CorrectionTable, correction, write_correction

@@ -1,4 +1,4 @@
-"""A table of conditions, as a user writes it, and the table of the answers."""
+"""Reading and checking a user's table of conditions, and writing the table of predictions."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ PATH = "phi_t_per_m"
 REQUIRED = ("alpha_deg", "gamma_deg", "Fz_N")
 OPTIONAL = ("kappa", "p_kPa", "V_mps", "T_degC", PATH)
 UNITS = {**{name: CONDITIONS[name].unit for name in (*REQUIRED, *OPTIONAL) if name != PATH}, PATH: "1/m"}
-"""Units of the columns that are used."""
+"""Units of the columns that a prediction uses."""
 
 
 def read_conditions(path: Path) -> pd.DataFrame:
-    """The conditions (n,) of a file, in its order and in the units of their names; other columns are repeated as they are.
+    """The conditions (n,) of a file, in its order and in the units of the column names; other columns are kept unchanged.
 
     Raises
     ------
     InputError
-        A required column is missing, or a value is no number or impossible; names file, line and column.
+        A required column is missing, or a value is not a number or is impossible; names file, line and column.
     """
     raw = read(path)
     return checked(pd.DataFrame({heading: raw.column(heading) for heading in raw.headings}), raw)
 
 
 def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
-    """The table with numbers in the columns that are used; those that must be stated are finite.
+    """The table with numbers in the columns that a prediction uses; required columns are finite.
 
     Parameters
     ----------
     table : conditions (n,)
-    raw : the file that it comes from, which may state units
+    raw : the file of the table, which may state units
 
     Raises
     ------
@@ -64,12 +64,12 @@ def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
 
 
 def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:
-    """A column (n,) in the unit of its name; NaN where an optional one is empty."""
+    """A column (n,) in the unit of its name; NaN where an optional column is empty."""
     values = pd.to_numeric(cells, errors="coerce").to_numpy(dtype=float)
     is_empty = (cells.isna() | (cells.astype(str).str.strip() == "")).to_numpy(dtype=bool)
 
     def refuse_if(wrong: np.ndarray, why: str) -> None:
-        """``why`` may quote the first wrong cell."""
+        """Raise an InputError if any value is wrong; ``why`` may quote the first wrong cell."""
         if np.any(wrong):
             row = int(wrong.argmax())
             cell = cells.iloc[row] if raw is None else text_of(cells.iloc[row])
@@ -101,12 +101,12 @@ def _numbers(cells: pd.Series, name: str, raw: RawTable | None) -> np.ndarray:
 
 
 def write_table(found: pd.DataFrame, out: Path, conditions: Path) -> None:
-    """Write a prediction completely or not at all; only an earlier prediction is replaced.
+    """Write a prediction completely or not at all; of existing files, only an earlier prediction is replaced.
 
     Raises
     ------
     InputError
-        The path is that of another file or of the conditions, or it cannot be written.
+        The path is not a CSV file, belongs to the conditions or another existing file, or cannot be written.
     """
     if out.suffix.lower() != ".csv":
         raise InputError("is written as CSV; name a file that ends in .csv with --out", file=out)

@@ -1,4 +1,4 @@
-"""What the formula misses as a table over a grid of the inputs, for simulations: ``<name>-correction.csv``."""
+"""The model error as a table over a grid of the inputs, for simulations: ``<name>-correction.csv``."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from tir.correction import AXES, COEFFICIENTS, FADING, FILE, MISSED, PATH, diges
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CorrectionTable:
-    """What a file misses over a grid of the inputs."""
+    """The estimated model error of a property file over a grid of the inputs."""
 
     table: pd.DataFrame
-    """Of every node: the inputs, and of every channel what is missed and its standard uncertainty; ISO-W."""
+    """One row per node: the inputs, and for every channel the model error and its standard uncertainty; ISO-W axes."""
     fading: Mapping[str, Mapping[str, float]]
-    """By channel and input, the length over which the miss fades outside of the grid [unit of the input]."""
+    """By channel and input, the length over which the model error fades outside the grid [unit of the input]."""
     path: float  #: curvature of the path [1/m]
     added: float
-    """What linear interpolation adds, over the miss [-]: rms of the worst channel within the grid."""
-    coefficients: str  #: digest of those of the file
+    """Rms error of linear interpolation over the rms model error [-], for the worst channel."""
+    coefficients: str  #: digest of the file's coefficients
 
 
 def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> CorrectionTable | None:
-    """The table of the channels that the formula is ``proven`` to miss; None if there is none.
+    """The table for the channels with a ``proven`` model error; None if there is none.
 
-    ``fitted`` is the file of the fitted model, to whose forces the table is added.
+    ``fitted`` is the file of the fitted model, to whose forces a simulation adds the table.
     """
     names = [name for name in MISSED if name in proven]
     inputs: dict[str, tuple[float, float]] = {}
@@ -57,7 +57,7 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
     found, table = known.predict(fitted, fitted, _whole(at, fitted), names), at.copy()
     for name in names:
         u = found[f"u_{column(name, 'best')}"].to_numpy()
-        digits = 2 - int(np.floor(np.log10(np.median(u))))  # three of a usual uncertainty
+        digits = 2 - int(np.floor(np.log10(np.median(u))))  # three digits of a typical uncertainty
         table[MISSED[name]] = of_nodes[name].round(digits)
         table[f"u_{MISSED[name]}"] = u.round(digits)
     return CorrectionTable(
@@ -66,7 +66,7 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
 
 
 def text_of(found: CorrectionTable, file: str) -> str:
-    """The content of the file; ``file`` is the property file to whose forces the table is added."""
+    """The content of the correction file; ``file`` is the property file to whose forces the table is added."""
     head = [
         f"What the formula misses, to be added to the forces of {file}; ISO-W axes. See docs/correction.md.",
         f"Between the nodes linear in every input, which adds {100.0 * found.added:.1f} % of the miss (rms).",
@@ -80,13 +80,13 @@ def text_of(found: CorrectionTable, file: str) -> str:
 
 
 def write_correction(path: Path, found: CorrectionTable, file: str) -> None:
-    """Write the table; ``file`` is the property file that it belongs to."""
+    """Write the table; ``file`` is the property file to which it belongs."""
     path.write_text(text_of(found, file), encoding="utf-8", newline="")
 
 
 @dataclass(frozen=True, slots=True)
 class _Missed:
-    """What a file misses at conditions in the units of their columns, on the path of the measurement."""
+    """Function of conditions, in the units of their columns: the model error by channel, on the path of the measurement."""
 
     known: Predictor
     fitted: Tyre
@@ -101,22 +101,22 @@ class _Missed:
 class _Grid(NamedTuple):
     """The nodes of a table."""
 
-    nodes: dict[str, np.ndarray]  #: by input
-    at: pd.DataFrame  #: all of them
-    missed: dict[str, np.ndarray]  #: there, by channel
+    nodes: dict[str, np.ndarray]  #: by input, values of the nodes
+    at: pd.DataFrame  #: conditions of all nodes
+    missed: dict[str, np.ndarray]  #: by channel, model error at the nodes
     added: float  #: as in :class:`CorrectionTable`
 
 
 def _whole(at: pd.DataFrame, fitted: Tyre) -> pd.DataFrame:
-    """The conditions with those that a test did not vary."""
+    """The conditions, completed by required columns that the test did not vary."""
     held = {"alpha_deg": 0.0, "gamma_deg": 0.0, "Fz_N": float(fitted["FNOMIN"])}
     return at.assign(**{name: value for name, value in held.items() if name not in at})
 
 
 def _grid(missed: _Missed, inputs: Mapping[str, tuple[float, float]]) -> _Grid:
-    """The fewest nodes of every input between which a line follows the miss along each.
+    """The coarsest grid whose interpolation error along every input stays within the allowed share.
 
-    Each input has the same share of what may be added. A grid of too many nodes gets fewer, and adds more.
+    All inputs get the same share of the allowed error. If the grid has too many nodes, the allowed error is increased.
     """
     random = np.random.default_rng(0)
     n = max(len(missed.known.channels[name].missed) for name in missed.names)
@@ -145,7 +145,7 @@ def _nodes(
     ends: tuple[float, float],
     share: float,
 ) -> np.ndarray:
-    """The fewest nodes of an input between which lines along it miss no channel by more than a share of its size."""
+    """The fewest nodes of an input with an interpolation error of at most ``share`` of the model error in every channel."""
     x, intervals = at[name].to_numpy(), 1
     while True:
         nodes = np.array([float(f"{node:.4g}") for node in np.linspace(*ends, intervals + 1)])
@@ -158,12 +158,12 @@ def _nodes(
         )
         if off <= share:
             return nodes
-        # What a line adds falls with the square of the distance.
+        # The error of linear interpolation is proportional to the square of the spacing.
         intervals = max(intervals + 1, int(intervals * np.sqrt(off / share)))
 
 
 def _fading(known: Predictor, name: str, nodes: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """The lengths of a channel along the inputs of the table; no end to those that it does not change with."""
+    """The fading lengths of a channel along the inputs of the table; infinite for inputs over which it does not change."""
     channel = known.channels[name]
     found = dict.fromkeys(nodes, np.inf)
     for one, length in zip(channel.smooth.inputs, channel.components.lengths, strict=True):

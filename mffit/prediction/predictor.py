@@ -1,4 +1,4 @@
-"""What a build knows about the forces of its tyre at any conditions."""
+"""Predictor of a build: forces of its tyre at any conditions, with model error and uncertainty."""
 
 from __future__ import annotations
 
@@ -25,17 +25,16 @@ from tir import Tyre
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MissedChannel:
-    """What the formula misses of a channel, how its runs scatter, and how far its coefficients may be off."""
+    """Model error of a channel, scatter of its runs, and uncertainty of its coefficients."""
 
     smooth: SmoothFunctions  #: m functions
     components: Components
     missed: np.ndarray
-    """(m,) weights of the functions with the coefficients as they are in the file [unit of the channel]."""
+    """(m,) estimated weights of the functions with the file's coefficients [unit of the channel]."""
     root: np.ndarray
-    """(m + k, r) whose product with its transpose is the covariance of the weights and of changes of coefficients and
-    calibrations."""
-    noise: float  #: of a usual reading [unit of the channel]
-    size: float  #: rms of what the formula misses at the readings [unit of the channel]
+    """(m + k, r): root @ root.T is the covariance of the weights and of changes of coefficients and calibrations."""
+    noise: float  #: standard deviation of the noise of a typical reading [unit of the channel]
+    size: float  #: rms model error at the readings [unit of the channel]
 
     @property
     def covariance(self) -> np.ndarray:
@@ -46,13 +45,17 @@ class MissedChannel:
     def at(
         self, settings: np.ndarray, slopes: np.ndarray, path: np.ndarray, of_tyre: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the file misses (n,), and two variances (n,): of the tyre's force, and of a reading of it.
+        """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
-        The estimate keeps the coefficients of the file, so that it is the file where the tyre is as the formula; that they may be
-        off counts in its variance.
+        The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
+        coefficients count in the variance.
 
-        ``settings`` (n, d) are the conditions, ``slopes`` (n, k) derivatives by coefficients and calibrations, ``path`` (n,) the
-        correlation of what the formula misses with that on the measured path, ``of_tyre`` (k,) which of them are coefficients.
+        Parameters
+        ----------
+        settings : (n, d) conditions
+        slopes : (n, k) derivatives of the force by coefficients and calibrations
+        path : (n,) correlation of the model error with that on the measured path
+        of_tyre : (k,) mask of the coefficients among the k numbers
         """
         likeness, functions = self._functions(settings, path)
         of_functions, of_numbers = np.split(self.root, [len(self.missed)])
@@ -62,11 +65,11 @@ class MissedChannel:
         return functions @ self.missed, mean + unlike, reading + unlike
 
     def mean(self, settings: np.ndarray, path: np.ndarray) -> np.ndarray:
-        """What the file misses (n,), as :meth:`at`."""
+        """The model error (n,) alone, as in :meth:`at`."""
         return np.asarray(self._functions(settings, path)[1] @ self.missed)
 
     def _functions(self, settings: np.ndarray, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Correlation (n,) with what is missed at the nearest tested conditions, and the functions (n, m) times it."""
+        """Correlation (n,) with the model error at the nearest tested conditions, and the functions (n, m) times it."""
         likeness = path * self.smooth.likeness(settings, np.array(self.components.lengths))
         return likeness, likeness[:, None] * self.smooth.columns(settings)
 
@@ -75,28 +78,28 @@ class MissedChannel:
 class PredictedForce:
     """The force of a tyre at conditions (n,) and its variances, in the unit of the channel."""
 
-    file: np.ndarray  #: of the property file
-    best: np.ndarray  #: with what the formula misses
-    variance: np.ndarray  #: of that as the mean force of the tyre
+    file: np.ndarray  #: force of the property file
+    best: np.ndarray  #: best estimate: force of the fitted model plus the estimated model error
+    variance: np.ndarray  #: variance of the best estimate as the mean force of the tyre
     of_run: np.ndarray  #: variance of a reading of a new run on the same rig around the best estimate
 
     @property
     def u_file(self) -> np.ndarray:
-        """Standard uncertainty with which a reading of a new run lies around the file."""
+        """Standard deviation of a reading of a new run around the force of the file."""
         return np.asarray(np.sqrt((self.best - self.file) ** 2 + self.of_run))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Predictor:
-    """What the file of a build misses at any conditions, with its uncertainty."""
+    """Predicts forces at any conditions, with model error and uncertainty."""
 
-    path: float  #: path curvature of most readings [1/m], taken where none is stated; 0 on a flat track
-    names: tuple[str, ...]  #: (k,) of the uncertain coefficients, and of the rig's calibrations
+    path: float  #: path curvature of most readings [1/m], the default of predictions; 0 on a flat track
+    names: tuple[str, ...]  #: (k,) names of the uncertain coefficients and of the rig's calibrations
     channels: Mapping[str, MissedChannel]
     zeros: Mapping[
         str, float
-    ]  #: of the rig as the fit found them, the largest of all set-ups; a reading contains them
-    beside: Mapping[str, float]  #: numbers of the tyre that the file has no coefficient for
+    ]  #: fitted zeros of the rig, each the largest of all set-ups; they are part of a reading
+    beside: Mapping[str, float]  #: effects of the tyre for which a property file has no coefficient
 
     @property
     def curved(self) -> bool:
@@ -111,10 +114,10 @@ class Predictor:
         Parameters
         ----------
         tyre : the plain file of the build
-        fitted : the file of its fitted model, which is the plain one unless that is meant for turn slip off on a disc
-        conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; others of a sweep and ``phi_t_per_m`` are optional. In
-            ISO-W.
-        channels : those to predict; all that were fitted if None
+        fitted : the file of the fitted model; on a disc it differs from a plain file for turn slip off
+        conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; other columns of a sweep and ``phi_t_per_m`` are
+            optional. ISO-W axes.
+        channels : channels to predict; all fitted ones if None
 
         Returns
         -------
@@ -136,9 +139,9 @@ class Predictor:
     def forces(
         self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
     ) -> dict[str, PredictedForce]:
-        """The forces of a file of the build at points, whose conditions are used, in some or all fitted channels.
+        """By channel, the forces and variances at the conditions of ``points``, for some or all fitted channels.
 
-        ``file`` and the fitted model are on a rig without errors.
+        ``file`` and ``fitted`` simulate a file of the build and the fitted model on a rig without errors.
         """
         names = [name for name in self.channels if channels is None or name in channels]
         fitted = fitted.with_numbers(self.beside)
@@ -158,25 +161,25 @@ class Predictor:
     def band(
         self, file: Simulation, fitted: Simulation, points: Points, channels: Iterable[str] | None = None
     ) -> Readings:
-        """Half widths (n,) of the 95 % bands of readings of a new run around a file of the build, as :meth:`forces`."""
+        """Half widths (n,) of the 95 % bands around a file for readings of a new run; arguments as in :meth:`forces`."""
         found = self.forces(file, fitted, points, channels)
         return Readings(**{name: COVERAGE_FACTOR_95 * one.u_file for name, one in found.items()})
 
     def beyond(self, fitted: Tyre, points: Points, names: Collection[str]) -> Readings:
-        """What the file lacks (n,) because it has no coefficient for it, by channel."""
+        """By channel, the force (n,) of effects for which a property file has no coefficient."""
         file = Simulation.of(fitted, turn_slip=self.curved)
         whole, plain = (one.readings(points, names) for one in (file.with_numbers(self.beside), file))
         return Readings(**{name: whole[name] - plain[name] for name in names})
 
     def missed(self, name: str, points: Points) -> np.ndarray:
-        """What the formula misses (n,) of a channel, without uncertainty."""
+        """The estimated model error (n,) of a channel, averaged over conditions that are not stated."""
         channel = self.channels[name]
         path = self._of_path(channel, points)
         found = [channel.mean(settings, path) for settings in _settings(points, channel.smooth.inputs)]
         return np.asarray(np.mean(found, axis=0))
 
     def points(self, tyre: Tyre, conditions: pd.DataFrame) -> Points:
-        """The conditions as points; a temperature that is not stated is NaN, all others are nominal then."""
+        """The conditions as points; a missing temperature is NaN, other missing conditions get nominal values."""
 
         def stated(name: str, otherwise: float) -> np.ndarray:
             if name not in conditions:
@@ -198,7 +201,10 @@ class Predictor:
     def _missed(
         self, channel: MissedChannel, points: Points, slopes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the file misses (n,), its variance (n,), and that of a reading (n,), what the conditions do not state included."""
+        """Model error (n,), variance of the force (n,) and of a reading (n,), averaged over conditions that are not stated.
+
+        The variance of a reading includes the scatter over the conditions that are not stated.
+        """
         path, of_tyre = self._of_path(channel, points), np.array([error_of(n) is None for n in self.names])
         found = [
             channel.at(settings, slopes, path, of_tyre)
@@ -208,7 +214,7 @@ class Predictor:
         return means.mean(axis=0), variances.mean(axis=0), readings.mean(axis=0) + means.var(axis=0)
 
     def _of_path(self, channel: MissedChannel, points: Points) -> np.ndarray:
-        """Correlation (n,) of what the formula misses with that on the measured path, as over a length of its curvature."""
+        """Correlation (n,) of the model error with that on the measured path, with the path's curvature as length scale."""
         if not self.curved or any(one.name == "phi_t" for one in channel.smooth.inputs):
             return np.ones(len(points))
         found: np.ndarray = np.exp(-0.5 * (points.phi_t / self.path - 1.0) ** 2)
@@ -216,7 +222,7 @@ class Predictor:
 
 
 def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
-    """The conditions (n, d) with every combination of the values of those that are not stated."""
+    """The conditions (n, d), once for every combination of values of the conditions that are not stated."""
     unstated = np.full(len(points), np.nan)
     stated = [getattr(points, one.name, unstated) for one in inputs]
     for values in itertools.product(*(one.averaged or (np.nan,) for one in inputs)):
@@ -227,21 +233,21 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
 def predictor(
     points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
 ) -> Predictor:
-    """What a build knows, for its folder.
+    """The predictor of a build.
 
     Parameters
     ----------
-    points : of the build
-    left : what its fitted model leaves of them
-    rig : errors of the rig as fitted
-    known : those of them that count as exactly known, for what they cost otherwise
+    points : points of the build
+    left : linear model of the fitted model's residuals
+    rig : fitted rig errors
+    known : rig errors to take as exactly known, to find how much they widen the bands
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():
         error = error_of(number)
         if error in ZEROS and number not in known and abs(value) >= abs(zeros.get(error.name, 0.0)):
             zeros[error.name] = value
-    # Coefficients, and what a further run on the same rig has in common with the readings: calibrations and lasting zeros.
+    # Coefficients, and rig errors that a further run shares with the readings: calibrations and lasting zeros.
     kept = [
         i
         for i, n in enumerate(left.numbers)
@@ -264,10 +270,10 @@ def predictor(
 
 
 def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:
-    """(m + k, r) whose product with its transpose is the covariance of the weights and of the numbers kept.
+    """Root (m + k, r) of the covariance of the functions' weights and the numbers ``kept``.
 
-    Numbers that the fit took as exact keep their values whatever the readings tell of them: they are as uncertain as before
-    (``spread``, by place among all numbers), and the others follow them.
+    Numbers that the fit took as exact are not updated by the readings: they keep their prior standard deviation ``spread`` (by
+    index among all numbers), and the other numbers are conditioned on them.
     """
     functions, found = len(own.missed), own.posterior.root
     of_numbers = own.turn @ found[functions:]
@@ -276,5 +282,5 @@ def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, floa
         return whole
     held = of_numbers[list(spread)]
     back = np.linalg.pinv(held, rcond=1e-9)
-    follow = whole @ back  # also of themselves: 1
+    follow = whole @ back  # regression on the held numbers; the identity for these themselves
     return np.hstack([whole - follow @ held, follow * [*spread.values()]])

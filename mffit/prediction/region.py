@@ -1,4 +1,4 @@
-"""Where the formula misses a channel most, for certain and in relation to its force: a region of few conditions."""
+"""The region of conditions with the largest significant model error of a channel, relative to its force."""
 
 from __future__ import annotations
 
@@ -24,54 +24,54 @@ from mffit.scatter import rms
 from tir import Tyre
 
 SIDES = ("", "positive", "negative", "apart")
-"""Of the force: both signs, one of them, and the positive less the negative ones."""
+"""Signs of the force: both, positive only, negative only, and the difference between positive and negative."""
 
 SLIP = {"Fx": "kappa", "Fy": "alpha"}
-"""By channel, the slip over which its force has a largest value, the grip."""
+"""By channel, the slip over which its force reaches a maximum, the grip."""
 
 
 @dataclass(frozen=True, slots=True)
 class MissedRegion:
-    """Conditions under which the largest forces of every sweep are missed in one sense."""
+    """Conditions under which the model misses the largest forces of every sweep with the same sign."""
 
     side: str  #: one of ``SIDES``
     over: Mapping[str, tuple[float, float]]
-    """Conditions of which it has not all levels, with the lowest and the highest level in it [unit of the column]."""
-    lower: float  #: 95 % interval of the mean of all sweeps of the force of the tyre over that of the model, less 1
-    upper: float
+    """Conditions that restrict the region, with their lowest and highest level in it [unit of the column]."""
+    lower: float  #: lower end of the 95 % interval of tyre force / model force - 1, mean of all sweeps
+    upper: float  #: upper end of this interval
     sweeps: int  #: sweeps, or groups of readings at equal settings, in the region
 
 
 @dataclass(frozen=True, slots=True)
 class MissedAtReadings:
-    """What the formula misses of a channel at the readings of a build, at the usual temperature."""
+    """Model error of a channel at the readings of a build, at the usual temperature."""
 
     channel: str
-    size: float  #: root mean square [unit of the channel]
+    size: float  #: rms model error [unit of the channel]
     largest: float  #: size of the channel's largest force in the file
-    is_grip: bool  #: whether sweeps over its own slip reach its largest forces
-    region: MissedRegion | None  #: where it misses most; None if nowhere in one sense for certain
+    is_grip: bool  #: whether sweeps over the channel's own slip reach its grip
+    region: MissedRegion | None  #: region of the largest model error; None if no region is significant
 
 
 class _Seen(NamedTuple):
-    """What the largest forces of one sweep at its settings show, of one side."""
+    """Relative error of the largest forces of one sweep on one side."""
 
-    level: np.ndarray  #: (d,) of the held conditions
+    level: np.ndarray  #: (d,) levels of the held conditions
     share: float  #: measured less model, over the model
-    u: float  #: standard uncertainty of that as a statement about the tyre: runs differ
+    u: float  #: standard uncertainty of ``share``, scatter between runs included
 
 
 def missed_at_readings(
     known: Predictor, fitted: Tyre, points: Points, model: Readings, proven: Collection[str]
 ) -> dict[str, MissedAtReadings]:
-    """By channel, what is missed at the readings, and in which region most.
+    """By channel, the model error at the readings and the region of the largest one.
 
     Parameters
     ----------
-    known : what the file of the ``fitted`` model misses
+    known : predictor of the ``fitted`` file
     points : the readings (n,)
-    model : what the fitted model reads there, with the errors of the rig
-    proven : channels whose miss is proven
+    model : readings of the fitted model at the points, rig errors included
+    proven : channels with a proven model error
     """
     swept = set(swept_of(points, inputs_of(points)).values())
     level = {
@@ -118,23 +118,23 @@ def missed_at_readings(
 
 
 def _clearest(names: Sequence[str], seen: Mapping[str, Sequence[_Seen]]) -> MissedRegion | None:
-    """The simplest region that chance does not explain, of these the one missed most; None if there is none."""
+    """The significant region with the fewest restrictions, among these the one with the largest error; None without any."""
     found = [one for side, own in seen.items() for one in _regions(side, names, own)]
     clear = [one for one in found if len(found) * one.chance < FALSE_ALARM]
     return max(clear, key=lambda one: (-one.restrictions, one.weight)).region if clear else None
 
 
 class _Candidate(NamedTuple):
-    """A region, and how it is chosen."""
+    """A region, and the criteria of its choice."""
 
     region: MissedRegion
-    chance: float  #: that the mean is so far from zero because runs differ
+    chance: float  #: p-value of the mean error, given the scatter between runs
     restrictions: int
-    weight: float  #: mean miss over the force, times the root of the number of sweeps
+    weight: float  #: mean relative error times the root of the number of sweeps
 
 
 def _regions(side: str, names: Sequence[str], seen: Sequence[_Seen]) -> Iterator[_Candidate]:
-    """Regions of at most two conditions, each from an end of what was tested."""
+    """Regions restricted in at most two conditions, each region reaching to an end of the tested range."""
     if len(seen) < 2:
         return
     level, share, u = (np.array(own) for own in zip(*seen, strict=True))

@@ -1,4 +1,4 @@
-"""``mffit predict``, and ``prediction.json``: what it needs of a build, in its folder."""
+"""``mffit predict``, and ``prediction.json``, the file in a build's folder from which it predicts."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ABOUT = "What mffit predict needs; arrays are base64 of little-endian numbers, r
 
 
 def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
-    """Write what is known; ``file`` is the plain property file in the same folder, ``fitted`` that of the fitted model."""
+    """Write a predictor; ``file`` names the plain property file in the same folder, ``fitted`` that of the fitted model."""
     content = {
         "about": ABOUT,
         "file": file,
@@ -54,12 +54,12 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
 
 
 def load(folder: Path) -> tuple[Predictor, Tyre, Tyre]:
-    """What is known, the plain file and that of the fitted model, of the folder of a build.
+    """The predictor, the plain property file and that of the fitted model, from the folder of a build.
 
     Raises
     ------
     InputError
-        The folder is not that of a build that states what it knows.
+        The folder has no sound prediction.json of a build.
     TirError
         A property file of the build is missing or damaged.
     """
@@ -83,22 +83,22 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
 
     Parameters
     ----------
-    folder : of a build
-    conditions : table, or the path of one, with the columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``, in ISO-W; ``kappa``,
-        ``p_kPa``, ``V_mps``, ``T_degC`` and, of a disc, ``phi_t_per_m`` are optional
+    folder : folder of a build
+    conditions : table, or its path, with the columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``, in ISO-W axes; ``kappa``,
+        ``p_kPa``, ``V_mps``, ``T_degC`` and, for a disc, ``phi_t_per_m`` are optional
 
     Returns
     -------
     DataFrame
-        The conditions in the units of their names, and for each fitted channel, here Fy: ``Fy_N`` of the plain file;
-        ``u_Fy_N``, with which a reading of a new run lies around it; ``Fy_best_N`` with what the formula misses;
-        ``u_Fy_best_N`` of that as the tyre's mean force; ``u_Fy_run_N`` of a reading of a new run around it. Columns of these
-        names in the conditions are replaced.
+        The conditions in the units of their names, and for each fitted channel, here Fy: ``Fy_N``, the force of the plain file;
+        ``u_Fy_N``, the standard deviation of a reading of a new run around it; ``Fy_best_N``, the best estimate, with the
+        estimated model error; ``u_Fy_best_N``, its standard uncertainty as the tyre's mean force; ``u_Fy_run_N``, the standard
+        deviation of a reading of a new run around it. Columns with these names in the conditions are replaced.
 
     Raises
     ------
     InputError
-        The folder is not that of a build, or the table lacks a column or has a value that is no number or impossible.
+        The folder is not that of a build, or the table lacks a column, or has a value that is not a number or is impossible.
     """
     known, tyre, fitted = load(Path(folder))
     if isinstance(conditions, pd.DataFrame):

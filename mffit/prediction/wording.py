@@ -1,4 +1,4 @@
-"""The sentence about what the formula misses of a channel."""
+"""The sentence about the model error of a channel."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ SIDES = {
     ("Fy", "positive"): "at negative sideslip",
     ("Fy", "negative"): "at positive sideslip",
 }
-"""Where a channel has a sign, in ISO-W; otherwise the sign is said."""
+"""Words for a sign of a channel in ISO-W axes; without an entry, the sentence names the sign."""
 BECAUSE = {
     "Fz_N": ("Fx", "Fy", "the formula's grip is linear in the load"),
     "apart": ("Fx", "the formula's grip is the same driving and braking"),
 }
-"""By condition or side, the channels of whose grip a structure of the formula explains such a miss, and that structure."""
+"""By condition or side, the channels whose error of grip a property of the formula explains, and that property."""
 
 
 def missed_sentence(found: MissedAtReadings) -> str:
-    """What limits a channel: the formula, with the size of what it misses, and where most."""
+    """A sentence on a channel that model error limits: size of the error and region of the largest one."""
     name, unit = found.channel, CHANNELS[found.channel].unit
     where = "" if found.region is None else f"; {_most(found, found.region)}"
     return (
@@ -32,7 +32,7 @@ def missed_sentence(found: MissedAtReadings) -> str:
 
 
 def _most(found: MissedAtReadings, region: MissedRegion) -> str:
-    """The region of the largest miss, in words."""
+    """The region of the largest error, in words."""
     over = [_interval(heading, *ends) for heading, ends in region.over.items()]
     name, what = found.channel, "grip" if found.is_grip else f"largest {found.channel}"
     where = f" at {listed(over)}" if over else ""
@@ -51,7 +51,7 @@ def _most(found: MissedAtReadings, region: MissedRegion) -> str:
 
 
 def _side(name: str, side: str) -> str:
-    """A sign of the force in words; none for both."""
+    """A sign of the force in words; empty for both signs."""
     return f" {SIDES.get((name, side), f'of {side} sign')}" if side else ""
 
 

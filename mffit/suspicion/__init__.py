@@ -1,4 +1,4 @@
-"""Which readings are suspected, and what follows: ``rules`` lists all suspicions."""
+"""Rules by which readings are suspected, and the outcome of each; ``rules`` lists them all."""
 
 from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.groups import parts_of_sweeps

@@ -1,4 +1,4 @@
-"""Checks of all files together: copies, a file or sweep of another sign than all others, and the needs of a disc."""
+"""Checks of all files together: copied sweeps, reversed signs, moment point, nominal load, and the points that a disc needs."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
 
 
 def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
-    """The signatures of several files, every slope with the scatter of all files."""
+    """The signatures of several files, with standard errors from the pooled scatter of all files."""
     names = ("cornering", "camber", "aligning", "backward")
     slopes = (pooled([getattr(own, name) for own in each]) for name in names)
     return [
@@ -155,13 +155,13 @@ class LevelsOfLoad(NamedTuple):
 
     @classmethod
     def of(cls, points: Points) -> LevelsOfLoad:
-        """Those of some points."""
+        """The lowest and the highest level of load of some points."""
         loads = points.Fz[np.isfinite(points.Fz)]
         found = levels.level_values(loads, levels.LOAD) if len(loads) else np.array([np.nan])
         return cls(float(found.min()), float(found.max()))
 
     def below(self, nominal: float) -> bool:
-        """Whether a nominal load [N] is above all of them."""
+        """Whether a nominal load [N] is clearly above the highest level."""
         return nominal > NOMINAL_OVER_HIGHEST_LOAD * self.highest
 
 

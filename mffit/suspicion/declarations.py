@@ -1,7 +1,7 @@
 """Search for other axes, frames and path centres if the data contradict the declared ones.
 
-Every alternative is tried on the data. A sideslip axis that is a degree out does not look like wrong axes, as it
-shifts the curves without reversing a slope.
+Every alternative is tried on the data. A misaligned sideslip axis is not mistaken for wrong axes, because it shifts the curves
+without reversing a slope.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from tir.conventions import FLIPPED
 
 
 class Alternative(NamedTuple):
-    """Another declaration."""
+    """An alternative declaration."""
 
-    remedy: str  #: what to write
+    remedy: str  #: what to write in tyre.toml
     key: str
-    points: Callable[[], Points]  #: as they would be then
+    points: Callable[[], Points]  #: the points under this declaration
 
 
 @rule(
@@ -41,7 +41,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
         return
 
     def fits(other: Alternative) -> bool:
-        """Whether the data agree with another declaration, and also show a camber response under it."""
+        """Whether the data agree with another declaration and show a clear camber response under it."""
         seen = signatures(other.points())
         return not contradictions(seen) and not seen.camber.value > -constants.SMALLEST_CAMBER_THRUST
 
@@ -65,7 +65,10 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
 
 
 def _or_misaligned(points: Points, found: Signatures, contradictions: int) -> str:
-    """The other cause of a turn-slip force towards the centre, if that is all that is wrong and no backward run decides."""
+    """Words on a misaligned sideslip axis as another cause of a turn-slip force towards the centre; empty if it is excluded.
+
+    It is excluded by a second contradiction or by backward runs.
+    """
     inward = found.outward < -constants.WEAK_TURN_SLIP_FORCE
     if (
         not inward
@@ -85,7 +88,7 @@ def _declared(config: Config) -> str:
 
 
 def _alternatives(points: Points, config: Config) -> list[Alternative]:
-    """Every declaration that differs in one thing."""
+    """Every declaration that differs in one respect."""
     rig = config.rig
     frame = "C" if rig.force_frame == "W" else "W"
     side = "right" if rig.path_centre == "left" else "left"
@@ -122,7 +125,7 @@ def _alternatives(points: Points, config: Config) -> list[Alternative]:
 
 
 def _pairs(points: Points, config: Config) -> list[Alternative]:
-    """Other axes together with the other path centre or frame."""
+    """Every declaration with other axes and also the other path centre or frame."""
     pairs = []
     for axes in FLIPPED:
         if axes == config.rig.axes:
@@ -135,16 +138,16 @@ def _pairs(points: Points, config: Config) -> list[Alternative]:
 
 
 def under_axes(points: Points, declared: str, other: str) -> Points:
-    """The points as they would be if ``other`` axes had been declared."""
+    """The points as read if ``other`` axes had been declared."""
     changed = FLIPPED[declared] ^ FLIPPED[other]
     turned = [name for name in ("alpha", "Fy", "Mz") if name in changed]
     return points.replace(**{name: -getattr(points, name) for name in turned})
 
 
 def _other_frame(points: Points, frame: str, vertical: bool) -> Points:
-    """The points as they would be in the other ``frame``; ``vertical``: the load is vertical in both."""
+    """The points as read if the other ``frame`` had been declared; ``vertical``: the load is vertical in both frames."""
     c, s = np.cos(points.gamma), np.sin(points.gamma)
-    # From C to W where C is the alternative, and back to what the rig gave where C was declared.
+    # If C is the alternative, rotate from C to W; if C was declared, undo that rotation.
     s = s if frame == "C" else -s
     if not vertical:
         return points.replace(Fy=c * points.Fy - s * points.Fz, Fz=c * points.Fz + s * points.Fy)

@@ -1,4 +1,4 @@
-"""Points that share a mistake, if there is one: every sweep, and every condition of a sweep that holds several."""
+"""Groups of points that would share a mistake: every sweep, and every condition of a sweep with several conditions."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from mffit.suspicion import constants
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group:
-    """Points that share a mistake, if there is one."""
+    """Points that would share a mistake."""
 
-    name: str  #: for sentences
+    name: str  #: in sentences
     file: str
-    index: np.ndarray  #: (m,) rows of the points
-    whole: bool  #: all points of a sweep rather than those of one condition
+    index: np.ndarray  #: (m,) indices of the points
+    whole: bool  #: True for a whole sweep, False for one of its conditions
 
 
 def groups(points: Points) -> list[Group]:
-    """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
+    """Every sweep, and every condition (load, pressure, direction, mount, camber) of a sweep with several conditions."""
     found = [*_sweeps(points), *_conditions(points)]
     unique = {group.index.tobytes(): group for group in reversed(found)}
-    # A minority contradicts a majority, never the other way round.
+    # Only a minority can be said to contradict the rest.
     return [g for g in reversed(unique.values()) if constants.FEWEST <= len(g.index) <= 0.5 * len(points)]
 
 
@@ -37,7 +37,7 @@ def _sweeps(points: Points) -> Iterator[Group]:
 
 
 def parts_of_sweeps(points: Points) -> np.ndarray:
-    """Number (n,) of each point's part, from 0: a sweep, or each load, pressure, direction and camber of one with several."""
+    """Index (n,) of each point's part, from 0: a sweep, or one condition of a sweep with several conditions."""
     out = np.empty(len(points), dtype=int)
     for k, (_, rows, _) in enumerate(_parts(points)):
         out[rows] = k
@@ -55,7 +55,7 @@ def _conditions(points: Points) -> Iterator[Group]:
 
 
 def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
-    """Each sweep with the rows (m,) of one of its conditions, and whether camber is one of the conditions."""
+    """Every sweep with the indices (m,) of one of its conditions, and whether camber distinguishes the conditions."""
     load = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
     pressure = levels.nearest_labels(points.p, levels.PRESSURE)
     camber = levels.nearest_labels(points.gamma, levels.CAMBER)
@@ -63,7 +63,7 @@ def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
         i = sweep.index
         own = levels.count(points.gamma[i], levels.CAMBER)
         keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
-        # In a sweep of camber the angles are not conditions.
+        # In a camber sweep camber varies continuously and is not a condition.
         few = own * constants.FEWEST <= len(i)
         by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
         if by_camber:

@@ -1,6 +1,6 @@
-"""The one sweep that a simulation misses because it was recorded wrongly.
+"""Detection of a single sweep that a simulation misses because it was recorded wrongly.
 
-It is reversed, in another unit, or labelled with another load, camber or pressure than it was run at.
+Its sign is reversed, its unit is another one, or its label states a wrong load, camber or pressure.
 """
 
 from __future__ import annotations
@@ -21,31 +21,31 @@ from mffit.suspicion.rule import Outcome, When, rule
 
 LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
-"""From SI to the unit of the column."""
+"""Factors from SI to the unit of the column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Misread:
-    """One sweep that looks like a known mistake."""
+    """A sweep whose errors a known mistake explains."""
 
     sweep: str
     file: str
     looks: str
     column: str
     remedy: str
-    before: float  #: how far it is off, as a share of the usual size of the channel that is worst
-    after: float  #: with the mistake undone
+    before: float  #: median error of the worst channel, as a share of its usual size
+    after: float  #: largest such error of any channel with the mistake undone
 
     @property
     def sentence(self) -> str:
-        """The remark about it."""
+        """The remark about the sweep."""
         return misread_sweep.said(asdict(self) | {"percent": 100 * self.before, "left": 100 * self.after})
 
 
 def misread(
     points: Points, simulation: Simulation, signs: Mapping[str, float], channels: Collection[str] = SIDEWAYS
 ) -> Misread | None:
-    """The one sweep that contradicts a simulation in some channels as a known mistake would."""
+    """The single sweep whose contradiction to a simulation a known mistake explains; None if there is none or several."""
     return next(iter(misread_sweep.find(points, simulation, signs, channels)), None)
 
 
@@ -63,9 +63,9 @@ def misread_sweep(
 ) -> Iterator[Misread]:
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
-    The sweep that is twice as far off as any other is found if a known mistake explains it. If several sweeps look like that,
-    the model or the rig is at fault. A small error is a wrong label only if sound sweeps of the same kind at or around
-    that label show that the model is right there. ``signs`` lead from ISO-W to the rig's axes.
+    A sweep is found if its error is twice that of any other sweep and a known mistake explains it. If this holds for several
+    sweeps, the model or the rig is at fault. A small error counts as a wrong label only if sound sweeps of the same kind at or
+    around that label confirm the model there. ``signs`` convert from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
     numbers = numbers[counts >= constants.FEWEST]
@@ -116,7 +116,7 @@ def misread_sweep(
 
 
 def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
-    """Known mistakes, and labels of other sweeps, with the points of a sweep as they are without them."""
+    """Known mistakes and wrong labels, each with the points of a sweep corrected for it."""
     wrong_labels = (_wrong_labels(part, points, signs, *label) for label in LABELS)
     for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
         yield mistake, mistake.undone(part, signs)
@@ -125,7 +125,7 @@ def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Ite
 def _confirmed_labels(
     part: Points, points: Points, signs: Mapping[str, float], others: Sequence[Points]
 ) -> Iterator[tuple[Mistake, Points]]:
-    """Labels of other sweeps for each condition of a sweep at or around which ``others`` confirm the model."""
+    """Wrong labels of those conditions of a sweep at or around which ``others`` confirm the model, with the corrected points."""
     for label in LABELS:
         channel, _, kind = label
         here = _held(part, channel)
@@ -137,17 +137,17 @@ def _confirmed_labels(
 
 
 def _held(part: Points, channel: str) -> float:
-    """Mean of a condition of a sweep; camber without its sign."""
+    """Absolute mean of a condition of a sweep."""
     return float(abs(np.mean(getattr(part, channel))))
 
 
 def _near(kind: levels.LevelKind, value: float) -> float:
-    """How far values are from one of a condition that count as the same."""
+    """Difference up to which values of a condition count as equal."""
     return kind.tolerance * (value if kind.relative else 1.0)
 
 
 def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
-    """Whether two sweeps are of the same angle, in the same direction and mount, and alike in all labels but one."""
+    """Whether two sweeps vary the same angles, in the same direction and mount, and agree in all labels except ``channel``."""
     if any((np.ptp(getattr(part, a)) > 0.0) != (np.ptp(getattr(other, a)) > 0.0) for a in ("alpha", "gamma")):
         return False
     if part.direction[0] != other.direction[0] or part.mount[0] != other.mount[0]:
@@ -167,7 +167,7 @@ def _wrong_labels(
     column: str,
     kind: levels.LevelKind,
 ) -> Iterator[Mistake]:
-    """A sweep that was run at another level of a condition than its column says, for every other level."""
+    """For every other level of a condition, the mistake that the sweep was run there and not at the level in its column."""
     held = getattr(part, channel)
     here = float(np.mean(held))
     if levels.spread(held, kind):
@@ -190,7 +190,7 @@ def _moved(points: Points, signs: Mapping[str, float], channel: str, step: float
 
 
 def _off(part: Points, simulation: Simulation, size: Mapping[str, float]) -> dict[str, float]:
-    """Median error of each channel of some points, as a share of its usual size."""
+    """By channel, the robust size of the errors of some points, as a share of the channel's usual size."""
     load = float(np.mean(part.Fz))
     return {
         name: robust((part.channel(name) - read) / (size[name] * load))

@@ -1,4 +1,4 @@
-"""Whether all files are of one tyre, and of the one that is declared: by its radii."""
+"""Check by the measured radii that all files are of one tyre, and of the declared one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from mffit.suspicion.slopes import at_zero
 
 
 class MeasuredRadius(NamedTuple):
-    """A radius that every point of a rolling wheel may give."""
+    """A radius of the rolling wheel that points may contain."""
 
     words: str
     column: str
@@ -91,12 +91,12 @@ def other_radius(points: Points, config: Config) -> Iterator[Finding]:
 
 
 def _rolls_upright(points: Points) -> np.ndarray:
-    """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
+    """Mask (n,) of free-rolling points without sideslip and camber, whose radii depend on load, pressure and speed only."""
     return np.asarray(points.free_rolling & at_zero(points))
 
 
 def _cells(points: Points, radius: MeasuredRadius) -> pd.DataFrame:
-    """Median and number of the radii by file and by load [N], pressure [Pa] and speed [m/s] of their levels."""
+    """Median and number of the radii by file and by level of load [N], pressure [Pa] and speed [m/s]."""
     settings = (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
     keys = {name: levels.level_values(getattr(points, name), kind) for name, kind in settings}
     table = pd.DataFrame({"file": points.file, **keys, "radius": radius.of(points)})

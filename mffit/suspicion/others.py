@@ -1,7 +1,7 @@
-"""Every sweep against all others: sweeps that contradict them, by the linear model of the fit without them.
+"""Sweeps that contradict all others, judged by prediction from a fit without them.
 
-A sweep that is far off bends the fit, widens what counts as usual, and hides in both. So whoever is suspected by the fit to all
-sweeps is judged by one to the others: its numbers, what it misses, and what its runs differ by say what to expect of the sweep.
+A wrong sweep distorts the fit and widens the estimated scatter, so it can hide in a fit to all sweeps. The fit to all sweeps
+therefore only names suspects. Each suspect is judged by a fit to the other sweeps, with its model error and scatter of runs.
 """
 
 from __future__ import annotations
@@ -29,31 +29,31 @@ from mffit.suspicion.rule import Finding, Outcome, When, rule
 
 
 class FittedModel(NamedTuple):
-    """A fit and what it leaves of all points."""
+    """A fit, and the linear model of its residuals at all points."""
 
     simulation: Simulation
     left: LinearisedFit
 
 
 class JudgedSweeps(NamedTuple):
-    """What the judgement of all sweeps needs."""
+    """Inputs for the judgement of all sweeps."""
 
     points: Points  #: raw points (n,)
     signs: Mapping[str, float]  #: +1 or -1 per channel: from ISO-W to the rig's axes
-    fitted: FittedModel  #: to all points
+    fitted: FittedModel  #: fit to all points
     refit: Callable[[np.ndarray], FittedModel]
-    """The fit to all points but some rows (m,), and what it leaves of all points, found without these."""
+    """Returns the fit without some rows (m,), and the linear model of residuals at all points, estimated without these rows."""
 
 
 class Error(NamedTuple):
-    """How far a channel of a sweep is from what all others predict."""
+    """Error of one channel of a sweep as predicted from all other sweeps."""
 
     channel: str
     rms: float  #: [N] or [Nm], without the worst points
-    ratio: float  #: over what noise, runs and the prediction leave open
-    share: float  #: of the channel's usual size at this load, less the prediction's uncertainty
-    chance: float  #: probability that a sound sweep is as far off
-    vague: float  #: standard error of the prediction, noise included, as a share of the usual size
+    ratio: float  #: rms error in units of its standard uncertainty from noise, scatter of runs and prediction
+    share: float  #: rms error less its uncertainty, as a share of the channel's usual size at this load
+    chance: float  #: probability of such an error for a sound sweep
+    vague: float  #: standard uncertainty of the prediction, noise included, as a share of the usual size
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -63,40 +63,40 @@ class Error(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Doubt:
-    """A sweep, or one condition of it, that the others do not predict."""
+    """A sweep, or one of its conditions, that the other sweeps do not predict."""
 
-    sweep: str  #: its name, with the condition where only that is meant
+    sweep: str  #: name of the sweep, with the condition if only one is meant
     file: str
-    index: np.ndarray  #: (m,) rows of the points
-    errors: tuple[Error, ...]  #: the worst first
+    index: np.ndarray  #: (m,) indices of the points
+    errors: tuple[Error, ...]  #: by channel, the worst first
     whole: bool = True  #: False if one condition is meant
-    looks: str = ""  #: what would explain it; empty if no known cause does
-    mistake: Mistake | None = None  #: that explains a gross error
-    left: float = 1.0  #: share of the usual size that is left when the mistake is undone
+    looks: str = ""  #: possible explanation in words; empty if no known cause fits
+    mistake: Mistake | None = None  #: recording mistake that explains a gross error
+    left: float = 1.0  #: error after undoing the mistake, as a share of the usual size
 
     @property
     def channel(self) -> str:
-        """The worst one."""
+        """The channel with the worst error."""
         return self.errors[0].channel
 
     @property
     def rms(self) -> float:
-        """Error of its prediction [N] or [Nm]."""
+        """Rms error of the worst channel [N] or [Nm]."""
         return self.errors[0].rms
 
     @property
     def ratio(self) -> float:
-        """The same over what noise, runs and the prediction leave open."""
+        """Error of the worst channel in units of its standard uncertainty."""
         return self.errors[0].ratio
 
     @property
     def share(self) -> float:
-        """The same over the channel's usual size at this load."""
+        """Error of the worst channel as a share of the channel's usual size at this load."""
         return self.errors[0].share
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Those in which chance does not explain it."""
+        """Channels with a significant error."""
         certain = float(ndtr(-constants.CERTAIN_SIGMA))
         return tuple(
             e.channel for e in self.errors if e.ratio > constants.DISTRUSTED_MISFIT and e.chance < certain
@@ -104,18 +104,18 @@ class Doubt:
 
     @property
     def gross(self) -> Error:
-        """The error that is largest beside the usual size."""
+        """The error with the largest share of the usual size."""
         return max(self.errors, key=lambda e: e.share)
 
     @property
     def sentence(self) -> str:
-        """The warning about it."""
+        """The warning about the sweep."""
         explained = f"; it looks like {self.looks}" if self.looks else ""
         return doubtful_sweep.said({"sweep": self.sweep, "explained": explained, **self.errors[0].facts})
 
 
 def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
-    """Sweeps that do not fit the others, judged by what all others predict; one beyond plausibility is refused."""
+    """Sweeps that contradict the others; raises InputError for a sweep whose error is beyond plausibility."""
     seen = doubts(campaign)
     for finding in contradicting_sweep.find(seen):
         raise contradicting_sweep.refusal(finding)
@@ -123,9 +123,9 @@ def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
 
 
 def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
-    """The suspected sweeps, as fits without them see them, the worst first; none with too few sweeps to compare.
+    """The suspected sweeps judged by fits without them, the worst suspect first; empty with too few sweeps to compare.
 
-    The search ends at the first sweep that a known mistake explains.
+    The search stops at the first sweep that a known mistake explains.
     """
     points = campaign.points
     found = groups(points)
@@ -188,7 +188,7 @@ def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
 def doubtful_sweep(seen: Sequence[Doubt]) -> Iterator[Doubt]:
     """Error of the prediction from a fit to all other sweeps, over what noise, runs and formula leave open.
 
-    Conditions of a sweep are named only if it is sound as a whole.
+    Single conditions of a sweep are named only if the sweep as a whole is not.
     """
     named: list[set[int]] = []
     for doubt in sorted(seen, key=lambda d: (not d.whole, -d.ratio)):
@@ -198,9 +198,10 @@ def doubtful_sweep(seen: Sequence[Doubt]) -> Iterator[Doubt]:
 
 
 def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str, float]) -> list[Group]:
-    """Groups that the others do not predict, if runs did not differ, and that are odder than is usual; the worst first.
+    """Groups with significant prediction errors, clearly larger than the median group's; the worst first.
 
-    With what the formula misses, which hides what only one sweep shows, and without it, as the numbers of the fit predict them.
+    Runs are assumed not to differ. Errors are computed both with and without the estimated model error, because the model error
+    can hide a fault that only one sweep shows.
     """
     worst: dict[int, float] = {}
     points, channels = campaign.points, campaign.fitted.left.channels
@@ -241,7 +242,7 @@ def _error(name: str, found: LeftOutReadings, size: float) -> Error:
 
 
 def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> Doubt | None:
-    """The group against a fit without it; None if the other points are too few for a fit."""
+    """The group judged by a fit without it; None if the other points are too few for a fit."""
     try:
         fitted = campaign.refit(group.index)
     except InputError:
@@ -271,7 +272,7 @@ def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> D
 
 
 def _part(points: Points, group: Group, found: Errors) -> Points:
-    """The points of a group with those readings only that are judged."""
+    """The points of a group, with readings that are not judged set to NaN."""
     part = points.select(group.index)
     readings = {
         name: np.where(np.isin(group.index, found[name].rows), part.channel(name), np.nan)
@@ -285,7 +286,7 @@ def _part(points: Points, group: Group, found: Errors) -> Points:
 def _away(
     part: Points, simulation: Simulation, found: Errors, size: Mapping[str, float], changed: Points
 ) -> dict[str, Away]:
-    """By channel, how far a sweep is from the prediction of all others if it is read as ``changed``."""
+    """By channel, the error of a sweep against the prediction from all others if it is read as ``changed``."""
     out = {}
     for name, error in moved(part, found, simulation, changed).items():
         measured = changed.channel(name)[np.isfinite(part.channel(name))]

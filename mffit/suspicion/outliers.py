@@ -1,4 +1,4 @@
-"""Single readings that do not fit their sweep: they are listed, and have no weight in the fit."""
+"""Single outlying readings: they are listed and have zero weight in the fit."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from mffit.suspicion.rule import Outcome, Rule, When
 
 @dataclass(frozen=True, slots=True)
 class Outlier:
-    """One reading without weight."""
+    """One reading with zero weight."""
 
     file: str
     line: int  #: counted from 1; 0 if unknown
     sweep: str
-    row: int  #: of the points
+    row: int  #: index of the point
     channel: str
-    measured: float  #: [N] or [Nm], in ISO-W as all of these
-    expected: float  #: by the fitted model
-    ratio: float  #: their difference in units of the uncertainty
+    measured: float  #: [N] or [Nm], in ISO-W axes
+    expected: float  #: reading of the fitted model, in the same unit and axes
+    ratio: float  #: difference of the two in units of the stated uncertainty
 
     @property
     def place(self) -> str:
@@ -37,13 +37,13 @@ def outliers(
     weights: Mapping[str, np.ndarray],
     model: Mapping[str, np.ndarray],
 ) -> tuple[Outlier, ...]:
-    """The readings to which the fit gave no weight, in the order of the points.
+    """The readings to which the fit gave zero weight, in the order of the points.
 
     Parameters
     ----------
     points : (n,)
     stated : by channel, uncertainty (n,); inf where not measured
-    weights : by channel, the uncertainty that the fit used in the end (n,)
+    weights : by channel, uncertainty (n,) that the last fit used; inf for outliers
     model : by channel, readings of the fitted model (n,)
     """
     out = []
@@ -66,7 +66,7 @@ def outliers(
 
 
 def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
-    """Outlying channels of every point (n,): such as "", "Fy" or "Fy Mz"."""
+    """Outlying channels of every point (n,), such as "", "Fy" or "Fy Mz"."""
     out = np.full(n, "", dtype=object)
     for o in found:
         out[o.row] = f"{out[o.row]} {o.channel}".strip()

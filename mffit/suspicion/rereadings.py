@@ -1,6 +1,6 @@
-"""Other ways to read a sweep, one record each, and the one that makes it agree with what is expected of it.
+"""Alternative readings of a sweep, one record each, and the search for the one that makes it agree with its prediction.
 
-A mistake in a recording is undone; a number of the rig that may be off has the size that explains most of the errors.
+A recording mistake is undone; an offset or gain of the rig is fitted to the errors.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from mffit.sweeps.units import factor
 Signs = Mapping[str, float]
 """+1 or -1 by channel: from ISO-W to the rig's axes."""
 Errors = Mapping[str, LeftOutReadings]
-"""By channel, measured less expected where a channel was measured."""
+"""By channel, prediction errors of the measured readings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mistake:
-    """A way in which a recording says something else than was run."""
+    """A mistake in a recording, such as a reversed sign or a wrong unit."""
 
-    looks: str  #: what the sweep looks like
+    looks: str  #: appearance of the sweep, in words
     column: str  #: heading at fault
-    remedy: str  #: what to do about it
-    undone: Callable[[Points, Signs], Points]  #: the points without it
-    beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost like it
+    remedy: str  #: how to correct it
+    undone: Callable[[Points, Signs], Points]  #: the points corrected for the mistake
+    beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost the same
 
 
 def _negated(points: Points, _: Signs, *, fields: tuple[str, ...]) -> Points:
@@ -129,11 +129,14 @@ MISTAKES: tuple[Mistake, ...] = (
         beyond_doubt=False,
     ),
 )
-"""In the order in which they are thought of where several would do."""
+"""In order of preference, if several explain the errors equally well."""
 
 
 def moved(points: Points, errors: Errors, simulation: Simulation, changed: Points) -> dict[str, np.ndarray]:
-    """By channel, the errors of points that are read as ``changed``, to first order; without channels that lack readings then."""
+    """By channel, the errors of the points if they are read as ``changed``, to first order.
+
+    Channels of which ``changed`` lacks readings are left out.
+    """
     here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
     out = {}
     for name, one in errors.items():
@@ -145,18 +148,18 @@ def moved(points: Points, errors: Errors, simulation: Simulation, changed: Point
 
 
 class Away(NamedTuple):
-    """How far one channel of a sweep is from what is expected."""
+    """Error of one channel of a sweep."""
 
     error: float  #: in any unit that is the same before and after
-    share: float  #: of the channel's usual size
-    matched: bool = True  #: False if the error is not small beside what was measured and expected
+    share: float  #: error as a share of the channel's usual size
+    matched: bool = True  #: False if the error is not small compared with measured and expected values
 
 
 class ExplainingMistake(NamedTuple):
     """A mistake that explains a sweep."""
 
     mistake: Mistake
-    left: float  #: largest share of the usual size by which a channel is still away
+    left: float  #: largest remaining error of a channel, as a share of its usual size
 
 
 def explaining(
@@ -165,10 +168,10 @@ def explaining(
     away: Callable[[Points], Mapping[str, Away]],
     tolerated: Mapping[str, float],
 ) -> ExplainingMistake | None:
-    """The mistake that leaves least when it is undone; None if no mistake explains the errors.
+    """The mistake with the smallest remaining error once it is undone; None if no mistake explains the gross errors.
 
-    ``candidates`` come with the points of the sweep as they are without the mistake. ``tolerated`` limits the share by which a
-    channel may be away in the end, so that no new error is made elsewhere.
+    ``candidates`` are mistakes with the corrected points of the sweep. ``tolerated`` limits the remaining error of every channel,
+    so that a correction makes no new error elsewhere.
     """
     best = None
     for mistake, points in candidates:
@@ -187,21 +190,21 @@ def explaining(
 
 DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
-"""Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
+"""Step of the finite difference over a set-point [rad], relative for load and pressure."""
 Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
-"""Change of measured less expected in some channels, per unit of a number, by channel."""
+"""Returns, by channel, the change of the errors per unit of an offset or gain."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """One number of a sweep that may be off."""
+    """An offset, gain or wrong set-point of a sweep, with a size to be fitted."""
 
-    looks: str  #: with {} for the number
+    looks: str  #: words with {} for the size
     shape: Shape
-    possible: tuple[float, float] = (-math.inf, math.inf)  #: least and largest number that a rig can have
-    unit: float = 1.0  #: by which the number is multiplied in the sentence
-    start: float = 0.0  #: added to it there
-    sign: str = ""  #: channel whose sign in the rig's axes the number has
+    possible: tuple[float, float] = (-math.inf, math.inf)  #: smallest and largest possible size
+    unit: float = 1.0  #: factor on the size in the sentence
+    start: float = 0.0  #: added to the size in the sentence
+    sign: str = ""  #: channel from whose sign in the rig's axes the size takes its sign
 
 
 def _constant(channel: str) -> Shape:
@@ -225,7 +228,7 @@ def _set_point(name: str, relative: bool = False) -> Shape:
 
 
 POSITIVE = (-1.0, math.inf)
-"""Of a change relative to a number that is positive in any case."""
+"""Possible relative changes of a quantity that must stay positive."""
 SHIFTS = (
     *(
         Shift(f"a zero offset of {{}} {known.unit} in {heading(name)}", _constant(name), sign=name)
@@ -248,7 +251,7 @@ SHIFTS = (
 
 
 def explanation(points: Points, errors: Errors, simulation: Simulation, signs: Signs) -> str:
-    """What explains most of the errors of a sweep, in words; empty if no known cause does."""
+    """The cause that explains most of the errors of a sweep, in words; empty if no known cause does."""
     before = _chi2(errors, {name: one.error for name, one in errors.items()})
     best, said = (1.0 - EXPLAINED_SHARE) * before, ""
     for mistake in MISTAKES:
@@ -265,7 +268,7 @@ def explanation(points: Points, errors: Errors, simulation: Simulation, signs: S
 
 
 def _fitted(points: Points, errors: Errors, shapes: Mapping[str, np.ndarray]) -> tuple[float, float, float]:
-    """Chi-square that a multiple of the shapes removes, the multiple and its standard uncertainty."""
+    """Decrease of chi-square by the best multiple of the shapes, this multiple, and its standard uncertainty."""
     curvature = gradient = 0.0
     for name in (name for name in errors if name in shapes):
         shape = shapes[name][np.isfinite(points.channel(name))]
@@ -278,7 +281,7 @@ def _fitted(points: Points, errors: Errors, shapes: Mapping[str, np.ndarray]) ->
 
 
 def _chi2(errors: Errors, left: Mapping[str, np.ndarray]) -> float:
-    """Of errors as they are left; infinite if readings of a channel are lacking then."""
+    """Chi-square of the remaining errors ``left``; infinite if a channel lacks readings."""
     if left.keys() != errors.keys():
         return math.inf
     return sum(float(left[n] @ np.linalg.solve(one.covariance, left[n])) for n, one in errors.items())

@@ -1,4 +1,4 @@
-"""Readings where a moving sweep turns back: the rig accelerates there, and its inertia and filters are in what it reads."""
+"""Readings where a moving sweep turns back: the rig accelerates there, so its inertia and filters distort the readings."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Rule, When
 
 NEAR = int(constants.FEWEST)
-"""Readings of a leg through which a line foretells the next, and the most beside a turn that are looked at: farther away, smooth
-misses of a formula look like departures."""
+"""Number of readings of a leg that extrapolate to the next reading, and number of readings examined on each side of a turn.
+Farther from the turn, smooth model error would look like a departure."""
 
 
 class Leg(NamedTuple):
-    """Places from which the next reading towards one end of its leg is foretold."""
+    """Readings that a line through the preceding readings of the same leg extrapolates to, in one direction along the legs."""
 
-    rows: np.ndarray  #: (k,) that are foretold
-    behind: np.ndarray  #: (k, NEAR) the readings of the same leg behind each of them
-    lines: np.ndarray  #: (k, NEAR) factors of these, by which a line foretells it
-    from_turn: np.ndarray  #: (k,) readings between it and the turn ahead; NEAR: it is not beside one
+    rows: np.ndarray  #: (k,) indices of the extrapolated readings
+    behind: np.ndarray  #: (k, NEAR) indices of the preceding readings of the same leg
+    lines: np.ndarray  #: (k, NEAR) weights of these readings in the extrapolation
+    from_turn: np.ndarray  #: (k,) number of readings to the turn ahead; NEAR if no turn is near
 
 
 class Reversals:
@@ -43,10 +43,11 @@ class Reversals:
         self.legs = tuple(_legs(x, _senses(points, x, swept))) if self.n > NEAR else ()
 
     def off(self, residual: np.ndarray) -> np.ndarray:
-        """Mask (n,) of the readings beside turns that depart from their legs as others do not.
+        """Mask (n,) of the readings near turns whose residuals depart significantly from their legs.
 
-        ``residual`` (n,), measured less model in any unit, is NaN where a reading is not used. From every leg inwards to the
-        turn: from the first place at which the departures of all turns together are beyond chance, nothing is steady.
+        ``residual`` (n,), measured less model in any unit, is NaN where a reading is not used. Positions are tested from the leg
+        towards the turn. From the first position with significant departures over all turns, all readings up to the turn are
+        marked.
         """
         out = np.zeros(self.n, dtype=bool)
         departures = [
@@ -72,7 +73,10 @@ class Reversals:
         return out if self._harm(residual, out) else np.zeros_like(out)
 
     def _harm(self, residual: np.ndarray, off: np.ndarray) -> bool:
-        """Whether readings misfit more than the others; those of one side of a turn are alike and count once."""
+        """Whether the readings ``off`` have significantly larger residuals than the others.
+
+        Residuals on one side of a turn are correlated, so each side counts as one reading.
+        """
         turns = sum(int(np.sum(off[leg.rows] & (leg.from_turn == 0))) for leg in self.legs)
         used = np.isfinite(residual)
         rest = used & ~off
@@ -84,12 +88,12 @@ class Reversals:
 
 @lru_cache(maxsize=4)
 def reversals_of(points: Points) -> Reversals:
-    """Of points that a fit asks for time and again."""
+    """The reversals of points, cached because a fit needs them repeatedly."""
     return Reversals(points)
 
 
 def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarray:
-    """Sense (n - 1,) in which the swept condition ``x`` (n,) moves to the next reading; 0 where another condition changes."""
+    """Sign (n - 1,) of the step of the swept condition ``x`` (n,) to the next reading; 0 where another condition changes."""
     same = points.sweep[1:] == points.sweep[:-1]
     names = np.array([swept[k] for k in points.sweep.tolist()])[:-1]
     for name, kind in LEVELS.items():
@@ -99,11 +103,11 @@ def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarr
 
 
 def _legs(x: np.ndarray, senses: np.ndarray) -> Iterator[Leg]:
-    """Before the turns, then behind them."""
+    """The extrapolations towards the turns ahead, then those towards the turns behind."""
     rows = np.arange(len(x))
     for ahead in (1, -1):
         steps = senses if ahead == 1 else senses[::-1]
-        # Along the way to the turn: row i is foretold by the NEAR rows passed before, all of one leg.
+        # Reading i is extrapolated from the NEAR preceding readings if all steps between them have one sign.
         passed = np.array([np.concatenate([np.zeros(NEAR), steps])[k : k + len(x)] for k in range(NEAR)]).T
         whole = np.all(passed == passed[:, -1:], axis=1) & (passed[:, -1] != 0.0)
         turn = np.zeros(len(x), dtype=bool)
@@ -121,7 +125,7 @@ def _legs(x: np.ndarray, senses: np.ndarray) -> Iterator[Leg]:
 
 
 def _line(x: np.ndarray, at: np.ndarray, behind: np.ndarray) -> np.ndarray:
-    """Factors (k, NEAR) of readings ``behind`` that give the value of the line of least squares through them ``at`` (k,)."""
+    """Weights (k, NEAR) of the readings ``behind`` that extrapolate their least-squares line to the readings ``at`` (k,)."""
     middle = x[behind].mean(axis=1, keepdims=True)
     away = x[behind] - middle
     return 1.0 / NEAR + away * (x[at][:, None] - middle) / np.sum(away**2, axis=1, keepdims=True)
@@ -142,7 +146,7 @@ TURNING = Rule(
 def turning_sentences(
     points: Points, model: Mapping[str, np.ndarray], turning: Mapping[str, np.ndarray]
 ) -> Iterator[str]:
-    """A warning for every channel with readings that count less because a sweep turns back; ``model`` are those expected."""
+    """A warning for every channel with readings of reduced weight at turns; ``model`` has the expected readings."""
     for name, rows in turning.items():
         if np.any(rows):
             left = points.channel(name) - model[name]

@@ -1,4 +1,4 @@
-"""The records: what a suspicion is, and what it found."""
+"""Records of a rule of suspicion and of its findings."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class When(StrEnum):
 
 
 class Outcome(StrEnum):
-    """What follows if a rule applies."""
+    """Consequence of a rule that applies."""
 
     REFUSED = "the command ends"
     CONTRADICTION = "the declaration is contradicted"
@@ -40,26 +40,26 @@ class Outcome(StrEnum):
 class Finding(NamedTuple):
     """One case in which a rule applies."""
 
-    facts: Mapping[str, Any]  #: fill the rule's sentence
+    facts: Mapping[str, Any]  #: values that fill the rule's sentence
     file: str | Path | None = None
     line: int | None = None
     column: str | None = None
-    key: str | None = None  #: of ``tyre.toml``
+    key: str | None = None  #: key of ``tyre.toml``
 
 
 Find = Callable[..., Iterable[Any]]
-"""Before the fit it takes points and configuration; later what its module says."""
+"""Finder of a rule. Before the fit its arguments are points and configuration; later they depend on the module."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
-    """One suspicion."""
+    """One rule of suspicion."""
 
     id: str
     when: When = When.BEFORE
-    looks_at: str  #: what is compared, in words
+    looks_at: str  #: the compared quantities, in words
     outcome: Outcome = Outcome.REFUSED
-    sentence: str  #: filled with the facts of a finding
+    sentence: str  #: template, filled with the facts of a finding
     find: Find
 
     def said(self, facts: Mapping[str, Any]) -> str:
@@ -73,12 +73,12 @@ class Rule:
 
 
 def rule(**told: Any) -> Callable[[Find], Rule]:
-    """Decorator that turns a finder into a rule; the first line of the finder's docstring names what is compared."""
+    """Decorator that turns a finder into a rule; the first line of the finder's docstring becomes ``looks_at``."""
     return lambda find: Rule(looks_at=(find.__doc__ or "").partition("\n")[0].rstrip("."), find=find, **told)
 
 
 def rule_of_files(**told: Any) -> Callable[[Find], Rule]:
-    """The same for a finder that is given one file at a time."""
+    """Decorator that turns a finder for the points of one file into a rule for all files."""
 
     def of(find: Find) -> Rule:
         @wraps(find)

@@ -1,7 +1,7 @@
-"""All suspicions, in the order in which they are applied.
+"""All rules of suspicion, in the order of their application.
 
-Each rule is made beside the function that finds its cases. Two kinds of checks are elsewhere: values outside the range of
-their column end the reading of a file (``sweeps``), and the fit decides the weight of single readings.
+Each rule is defined in the module of its finder. Two checks are elsewhere: ``sweeps`` refuses values outside the range of their
+column when it reads a file, and the fit decides the weight of single readings.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ SAMPLES = tuple(
     )
     for fault in FAULTS
 )
-"""Applied by ``points.reduction``, which leaves these samples out of its means."""
+"""Rules for single samples, applied by ``points.reduction``, which leaves the found samples out of its means."""
 
 RULES: tuple[Rule, ...] = (
     *SAMPLES,
@@ -69,10 +69,14 @@ RULES: tuple[Rule, ...] = (
 
 
 def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
-    """Warnings about points that are odd under their declaration.
+    """Warnings about points that are implausible under their declaration.
 
-    Points that were driven or braked are not judged, nor, on a disc, the samples of moving sweeps. An InputError says that the
-    points contradict every tyre or the declaration, or that a disc cannot do without what is missing.
+    Driven and braked points are not judged if there are free-rolling ones, nor, on a disc, the samples of moving sweeps.
+
+    Raises
+    ------
+    InputError
+        The points contradict every tyre or the declaration, or lack points that a disc needs.
     """
     judged = points.select(~points.continuous) if config.rig.on_disc else points
     if np.any(judged.free_rolling) and not np.all(judged.free_rolling):

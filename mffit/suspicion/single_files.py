@@ -1,6 +1,6 @@
-"""Checks of one file: what no tyre shows, and how the file must be read so that it is possible.
+"""Checks of single files: values that no tyre has, and the reading under which the file would be plausible.
 
-Numbers in another unit can be plausible one by one and impossible together.
+Numbers in a wrong unit can be plausible one by one and impossible in combination.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from mffit.suspicion.slopes import slope
 from tir.constants import CREDIBLE_FRICTION
 
 WEAKEST_CAMBER_IN_RADIANS = float(np.degrees(constants.SMALLEST_CAMBER_THRUST))
-"""Slope over load and camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
+"""Slope of Fy/Fz over camber [1/rad] of the tyre with the weakest camber force, if radians are read as degrees."""
 CAMBER_THAT_SHOWS_FORCE = float(constants.SMALLEST_FRICTION / constants.SMALLEST_CAMBER_THRUST)
-"""Camber [rad] from which every tyre has a side force that can be seen."""
+"""Camber [rad] from which every tyre has a visible side force."""
 AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
-"""Signs of the rig's axes, which do not matter for sizes."""
+"""Signs of the rig's axes; these checks use sizes only, so all are +1."""
 
 
 @rule_of_files(
@@ -70,10 +70,10 @@ def wild_force(part: Points, config: Config) -> Iterator[Finding]:
 
 
 class Impossible(NamedTuple):
-    """Something that no tyre shows."""
+    """A value that no tyre has."""
 
     column: str
-    said: str  #: in words, after the name of the column
+    said: str  #: words that follow the name of the column
 
 
 def _steep(part: Points, config: Config) -> Iterator[Impossible]:
@@ -91,7 +91,7 @@ def _steep(part: Points, config: Config) -> Iterator[Impossible]:
 
 
 def _reached(values: np.ndarray) -> float:
-    """The size that a few values (n,) reach; 0 with too few, of which single ones may be wild."""
+    """The absolute value that at least a few of the values (n,) reach, so that single wild ones do not count; 0 with too few."""
     sizes = np.sort(np.abs(values[np.isfinite(values)]))
     few = int(constants.FEWEST)
     return float(sizes[-few]) if len(sizes) >= few else 0.0
@@ -131,7 +131,7 @@ IMPOSSIBLE: tuple[Callable[[Points, Config], Iterator[Impossible]], ...] = (_sof
 
 
 def impossible(part: Points, config: Config) -> list[Impossible]:
-    """What a file shows that no tyre does."""
+    """The impossible values of a file; empty for a plausible file."""
     return [found for test in IMPOSSIBLE for found in test(part, config)]
 
 

@@ -1,8 +1,8 @@
-"""Slopes and forces whose sign and size all tyres share, read from points alone.
+"""Slopes and forces whose sign and size all tyres share, computed from points alone.
 
-For every tyre in ISO-W that rolls forwards, side force falls with sideslip and with camber, the aligning moment
-rises with sideslip, and the turn-slip force has the sign of phi_t: it points away from the path's centre. Rolling
-backwards, side force rises with the sideslip reading.
+For every tyre that rolls forwards, in ISO-W axes, side force falls with sideslip and with camber, the aligning moment rises with
+sideslip, and the turn-slip force has the sign of phi_t: it points away from the path's centre. Rolling backwards, side force
+rises with the sideslip reading.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class SlopeWithError(NamedTuple):
 
     @property
     def clear(self) -> float:
-        """How far it must be from a number to differ from it by more than chance (Student's t)."""
+        """Smallest significant difference of the slope from a given number (Student's t)."""
         return float(-stdtrit(max(self.freedom, 1), FALSE_ALARM / 2.0)) * self.error
 
     @property
@@ -44,7 +44,7 @@ UNKNOWN = SlopeWithError(value=np.nan, error=np.nan, freedom=0, scatter=np.nan)
 
 
 def pooled(slopes: Sequence[SlopeWithError]) -> list[SlopeWithError]:
-    """The slopes of several files with the scatter of all: five points alone hardly determine theirs."""
+    """The slopes of several files with standard errors from their pooled scatter, as few points of one file hardly show it."""
     known = [s for s in slopes if s.freedom]
     freedom = sum(s.freedom for s in known)
     if not freedom:
@@ -59,7 +59,7 @@ def pooled(slopes: Sequence[SlopeWithError]) -> list[SlopeWithError]:
 
 
 class Signatures(NamedTuple):
-    """Slopes and forces per unit of load, under some declaration."""
+    """Slopes and forces per unit of load, under one declaration."""
 
     cornering: SlopeWithError  #: dFy/dalpha forwards [1/rad]; negative
     camber: SlopeWithError  #: dFy/dgamma [1/rad]; negative
@@ -88,9 +88,9 @@ def signatures(points: Points) -> Signatures:
 
 
 def overturning_slope(points: Points) -> SlopeWithError:
-    """dMx/dgamma per load [m/rad], rolling forwards, also driven; negative for every tyre: its load moves with the lean.
+    """dMx/dgamma per load [m/rad], rolling forwards, also driven; negative for every tyre, because the load moves with the lean.
 
-    The slope over sideslip has either sign: QSX3 of public tyres makes it rise.
+    The slope of Mx over sideslip is not used: depending on QSX3 it has either sign.
     """
     points = points.select((points.mount > 0) & (points.direction > 0))
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
@@ -105,7 +105,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
 
 
 def line(x: np.ndarray, y: np.ndarray, used: np.ndarray, other: np.ndarray | None = None) -> SlopeWithError:
-    """Slope of y (n,) over x (n,) at some finite ones, with a linear term of another variable (n,) if it varies."""
+    """Slope of y (n,) over x (n,) at the ``used`` finite values, with a linear term of another variable (n,) if it varies."""
     used = used & np.isfinite(y)
     if np.sum(used) < constants.FEWEST:
         return UNKNOWN
@@ -128,7 +128,7 @@ def at_zero(points: Points) -> np.ndarray:
 
 
 def _outward(points: Points) -> float:
-    """Mean of forward and backward zeros, which sideslip misalignment and ply-steer do not change."""
+    """Turn-slip force over load: mean of forward and backward zeros, which cancels sideslip misalignment and ply-steer."""
     zero = at_zero(points) & (points.phi_t != 0.0)
     outward = points.Fy * np.sign(points.phi_t) / points.Fz
     ways = [outward[zero & (points.direction == way)] for way in (1, -1)]
@@ -149,7 +149,7 @@ def _thrust(points: Points) -> float:
 
 
 def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str) -> Rule:
-    """A slope of the signatures that no tyre has with this sign."""
+    """The rule that no tyre has a slope of this sign."""
 
     def find(found: Signatures) -> Iterator[Finding]:
         if getattr(found, slope).sign == sign:
@@ -165,7 +165,7 @@ def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str)
 
 
 def contradictions(found: Signatures) -> list[str]:
-    """What the signatures show that no tyre does, as beginnings of sentences; empty for plausible ones."""
+    """Contradictions of the signatures to every tyre, as clauses; empty for plausible signatures."""
     return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
 
 
@@ -216,4 +216,4 @@ SIGNS = tuple(
     )
 )  # fmt: skip
 NO_TYRE = (*SIGNS, camber_too_steep, camber_thrust, turn_slip_inwards)
-"""What no tyre does."""
+"""Rules on signs and sizes that no tyre has."""

@@ -1,10 +1,11 @@
-"""Whether a result is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+"""The judgement whether a result can be trusted, for terminal, page, JSON and file.
 
-Some rules look at the direct measurement only, and hold without a fit, too; all others judge a fitted model.
+Some rules judge the direct measurement and need no fit; all others judge a fitted model.
 
-Where a noise is stated, the misfit is compared with it. Real tyres do not follow the formula to within the scatter of a sensor:
-what it misses smoothly and alike in all sweeps is a limit, which is said with its size, and no fault of the readings. Sweeps that
-contradict the others, scatter beyond the noise, and errors of the rig that take the place of such a miss are reasons.
+If noise is stated, the misfit is compared with it. No formula describes a real tyre to within the noise of a sensor: smooth model
+error that is common to all sweeps is reported as a limit with its size, and does not count against the readings. Reasons against
+trust are sweeps that contradict the others, scatter beyond the noise, and misfit that a rig error explains better than smooth
+model error.
 """
 
 from __future__ import annotations
@@ -44,68 +45,68 @@ from tir.errors import listed
 
 @dataclass(frozen=True, slots=True)
 class LeftOutSweeps:
-    """How well sweeps are predicted from all others, one channel [N] or [Nm]."""
+    """Prediction errors of left-out sweeps in one channel [N] or [Nm]."""
 
-    sweeps: int
-    fitted: float  #: rms of the residuals of the fit
-    predicted: float  #: rms of the predictions of left-out sweeps
-    typical: float  #: median over the sweeps of the rms of their predictions
+    sweeps: int  #: number of sweeps
+    fitted: float  #: rms residual of the fit
+    predicted: float  #: rms prediction error of left-out sweeps
+    typical: float  #: median over the sweeps of their rms prediction error
 
 
 @dataclass(frozen=True, slots=True)
 class HeldNumber:
-    """A number that a bound or a physical limit holds."""
+    """A number at a bound or a physical limit, or held by hand."""
 
     name: str
-    sigma: float  #: standard deviations by which the readings contradict the bound
-    share: float  #: of the sum of squares of the residuals that is due to it
+    sigma: float  #: standard deviations by which the readings contradict the bound or value
+    share: float  #: share of the residual sum of squares that it causes
     by_hand: bool = False  #: whether [coefficients] holds or bounds it
 
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedMeasurement:
-    """What the rules of trust look at that need no fit."""
+    """Inputs of the rules of trust that need no fit."""
 
     points: Points
-    nominal: LoadResult | None = None  #: at the nominal load
+    nominal: LoadResult | None = None  #: result at the nominal load
     radius_counts: bool = True  #: False if r_e was measured along the path, so that an error of R cancels
-    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros both ways
-    drift: Drift | None = None  #: between sweeps, where the temperature is not known
+    sideslip_zeros: tuple[SideslipZeros, ...] = ()  #: of every set-up with several zeros in both directions
+    drift: Drift | None = None  #: drift between sweeps, if the temperature is unknown
 
 
 @dataclass(frozen=True, kw_only=True)
 class FinishedFit(JudgedMeasurement):
-    """What the rules of trust look at after a fit."""
+    """Inputs of the rules of trust after a fit."""
 
-    model: Readings  #: what the fitted model reads
-    used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
+    model: Readings  #: readings of the fitted model
+    used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings with non-zero weight
     r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
     left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
     linear: LinearisedFit | None = None
-    """What the fit leaves; None if all that the model misses counts as noise."""
+    """Linear model of the residuals; None if all residuals count as noise."""
     against: tuple[Doubt, ...] = ()  #: sweeps that contradict the others, the worst first
     cause: str = ""  #: the effect that would explain most of the residuals, in words
     undeclared: str = ""  #: key of [rig] that declares the cause as absent; empty if none does
-    cause_is_certain: bool = False  #: whether neither chance nor a smooth miss of the formula explains it
+    cause_is_certain: bool = False  #: whether neither chance nor smooth model error explains the residuals
     held: tuple[HeldNumber, ...] = ()
     rig: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Errors of the rig and terms of the environment as fitted, with standard uncertainties."""
+    """Fitted rig errors and environment terms: (value, standard uncertainty)."""
     at_limits: tuple[
         str, ...
     ] = ()  #: free coefficients at bounds, at physical limits or outside the range of usual tyres
-    free: int = 0  #: coefficients that the fit frees
-    left: float = 0.0  #: fall of the sum of squares that a step still promises: 0 at its minimum
-    broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
+    free: int = 0  #: number of free coefficients
+    left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
+    broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences
     stranger: str = (
         ""  #: why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model
     )
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
-        """Misfit over the stated noise at the used readings, some rows (mask (n,)) only."""
+        """Misfit over the stated noise at the used readings, or at those of them in the mask ``rows`` (n,)."""
         return self._over(self.points.u(channel), channel, rows)
 
     def over_scatter(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
-        """The same of the readings that state no noise, over the one that their neighbours show."""
+        """Misfit of the used readings without stated noise, over the noise estimated from neighbouring readings."""
         silent = ~stating(self.points.u(channel))
         return self._over(np.where(silent, self.scatter[channel], np.nan), channel, rows)
 
@@ -115,48 +116,48 @@ class FinishedFit(JudgedMeasurement):
 
     @cached_property
     def scatter(self) -> dict[str, float]:
-        """By channel, the noise of the readings that state none, as their neighbours show it."""
+        """By channel, the noise estimated from neighbouring readings, for readings without stated noise."""
         return estimated_noise(self.points, {name: self.model[name] for name in self.used})
 
     @property
     def over_noise(self) -> dict[str, float]:
-        """By channel, misfit over stated noise; NaN where none is stated."""
+        """By channel, misfit over stated noise; NaN if no noise is stated."""
         return {name: self.misfit(name).ratio for name in self.used}
 
     def rough(self, channel: str) -> OverNoise:
-        """The part of the misfit that is neither smooth and alike in all sweeps nor a difference of runs."""
+        """The part of the misfit that is neither smooth model error nor scatter between runs."""
         seen = self.misfit(channel)
         if self.linear is None or channel not in self.linear.channels:
             return seen
         return seen._replace(ratio=min(seen.ratio, self.linear.channels[channel].components.noise))
 
     def doubtful(self, channel: str) -> bool:
-        """Whether the rough part of a misfit is more than noise."""
+        """Whether the rough part of a misfit significantly exceeds the noise."""
         return far(self.rough(channel), constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
 
     def at_the_noise(self, channel: str) -> bool:
-        """Whether all that the model misses of a channel is noise, as stated or, where none is, as neighbours show it.
+        """Whether all residuals of a channel are noise, as stated or as estimated from neighbouring readings.
 
-        Readings that miss the model by far less than their stated noise are in another unit.
+        False if the misfit is far below the stated noise, because readings and noise are then in different units.
         """
         stated, seen = self.misfit(channel), self.over_scatter(channel)
-        seen = seen._replace(of_noise=EFFICIENCY * seen.n)  # what neighbours show is uncertain itself
+        seen = seen._replace(of_noise=EFFICIENCY * seen.n)  # the estimated noise is itself uncertain
         if any(far(one, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA) for one in (stated, seen)):
             return False
         return stated.ratio > constants.MISFIT_OF_ANOTHER_UNIT if stated.n else bool(seen.n)
 
     def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
-        """Whether a channel misses the noise so far that the fit is not trusted, whatever the misfit looks like."""
+        """Whether the misfit of a channel exceeds the noise so far that the fit is not trusted, smooth or not."""
         return far(self.misfit(channel, rows), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
 
     def contradicts(self, channel: str, k: int) -> bool:
-        """Whether the others do not predict a sweep."""
+        """Whether the sweep with index ``k`` contradicts the others; always True without a linear model."""
         return self.linear is None or any(
             k in self.points.sweep[one.index] and channel in one.channels for one in self.against
         )
 
     def of_the_formula(self, channel: str) -> bool:
-        """Whether the formula limits a channel: its misfit exceeds the noise by far, and smoothly."""
+        """Whether smooth model error, rather than noise, dominates the misfit of a channel."""
         if self.linear is None or channel not in self.linear.channels:
             return False
         seen = self.linear.channels[channel]
@@ -165,7 +166,7 @@ class FinishedFit(JudgedMeasurement):
 
 
 def far(found: OverNoise, limit: float, sigma: float) -> bool:
-    """Whether a misfit over the noise exceeds a limit, by more than chance explains."""
+    """Whether a misfit over the noise exceeds ``limit`` and is significant at ``sigma`` standard deviations."""
     if not found.n or not found.ratio > limit:
         return False
     square = found.ratio**2
@@ -178,21 +179,21 @@ def far(found: OverNoise, limit: float, sigma: float) -> bool:
 class Trust:
     """The judgement of a result."""
 
-    reasons: tuple[str, ...] = ()  #: against trusting it; empty for a sound one
-    doubts: tuple[str, ...] = ()  #: what the engineer should look at
-    remarks: tuple[str, ...] = ()  #: what limits a result that is sound
-    limited: tuple[str, ...] = ()  #: channels that the formula limits, not the noise
+    reasons: tuple[str, ...] = ()  #: reasons against trust; empty for a sound result
+    doubts: tuple[str, ...] = ()  #: points that the engineer should check
+    remarks: tuple[str, ...] = ()  #: limits of a sound result
+    limited: tuple[str, ...] = ()  #: channels in which smooth model error dominates the misfit
     over_noise: Mapping[str, float] = field(default_factory=dict)
-    """By channel, misfit over stated noise; NaN where none is stated."""
+    """By channel, misfit over stated noise; NaN if no noise is stated."""
 
     @property
     def trusted(self) -> bool:
-        """Whether nothing speaks against the result."""
+        """Whether there is no reason against the result."""
         return not self.reasons
 
 
 SOUND = Trust()
-"""Nothing was judged, and nothing is against it."""
+"""The judgement without reasons or doubts."""
 NONE_KNOWN = "no known effect explains it"
 of_model = partial(rule, when=When.AFTER)
 of_measurement = partial(rule, when=When.MEASURED)
@@ -263,7 +264,7 @@ SCATTER = (
 
 
 def _odd(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
-    """Misfit over the scatter of neighbours of the sweeps that state no noise and are much further off than the median sweep."""
+    """Misfit over the scatter of neighbouring readings, of sweeps without stated noise and with far more than median misfit."""
     missed = np.where(fit.used[channel], fit.model[channel] - fit.points.channel(channel), np.nan)
     own = {k: rms(missed[fit.points.sweep == k]) for k in np.unique(fit.points.sweep).tolist()}
     odd = ODD_SWEEP_RATIO * finite_median(np.array(list(own.values())))
@@ -470,7 +471,10 @@ def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 def judge(found: JudgedMeasurement) -> Trust:
-    """The judgement by all rules of trust, or without a fit by those that need none; another tyre's model ends the search."""
+    """The judgement by all rules of trust, or without a fit by those that need none.
+
+    If the model is of another tyre, this is the only reason given.
+    """
 
     def said(*rules: Rule, doubtful: bool) -> tuple[str, ...]:
         return tuple(
@@ -510,11 +514,11 @@ OF_TRUST = (
     effect_left,
     structure_left,
 )
-"""All rules of trust, the gravest first."""
+"""All rules of trust, the most serious first."""
 
 
 def _effect_is_left(fit: FinishedFit) -> bool:
-    """Whether an effect is in residuals of a stated noise, and no misfit says so already."""
+    """Whether residuals with stated noise contain a certain effect that no rule on the misfit has reported."""
     said = any(any(rule.find(fit)) for rule in (above_noise, sweep_above_noise))
     return fit.cause_is_certain and any(fit.misfit(name).n for name in fit.used) and not said
 
@@ -525,24 +529,24 @@ def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
-    """Whether residuals are judged by a noise: a channel states one, and the formula limits none of these."""
+    """Whether residuals can be judged by stated noise: a channel states it, and model error dominates no such channel."""
     stated = [name for name in fit.used if fit.misfit(name).n]
     return bool(stated) and not any(fit.of_the_formula(name) for name in stated)
 
 
 def _cause(fit: FinishedFit) -> str:
-    """What would explain a misfit, in words."""
+    """The certain cause of a misfit in words, or words for an unknown cause."""
     return fit.cause if fit.cause_is_certain else NONE_KNOWN
 
 
 def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, OverNoise]:
-    """Misfit over the stated noise of every sweep that states one."""
+    """By sweep, misfit over the stated noise; without sweeps that state none."""
     rows = {k: fit.misfit(channel, fit.points.sweep == k) for k in np.unique(fit.points.sweep).tolist()}
     return {k: seen for k, seen in rows.items() if seen.n}
 
 
 def _carriers(fit: FinishedFit, channel: str) -> str:
-    """The sweeps with most of a misfit, in words; at least the worst."""
+    """The sweeps with the largest misfits, in words; at least the worst one."""
     own = {k: seen.ratio for k, seen in _by_sweep(fit, channel).items()}
     worst = sorted(own, key=lambda k: -own[k])
     limit = constants.DISTRUSTED_MISFIT * fit.misfit(channel).ratio

@@ -1,4 +1,4 @@
-"""What each likely cause of an implausible camber reduction factor would have to be, in numbers."""
+"""Likely causes of an implausible camber reduction factor, with the size that each would need."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from mffit.suspicion import constants
 
 
 def causes(row: LoadResult, *, radius_counts: bool) -> str:
-    """The likely causes, each with the value that it would have to have or that eps_gamma would have without it.
+    """The likely causes in words, each with its required size or with eps_gamma after correction.
 
-    With 1 - eps_gamma = -C_gamma r_e / C_phit and C_phit = |F_phit| R, an error of R scales 1 - eps_gamma unless r_e was
-    measured along the path, a wrong sign of the camber or of the path's centre reverses it, and a skew adds C_alpha times its
+    1 - eps_gamma = -C_gamma r_e / C_phit and C_phit = |F_phit| R. Hence an error of R scales 1 - eps_gamma unless r_e was
+    measured along the path; a wrong sign of the camber or of the path's centre reverses it; and a skew adds C_alpha times its
     angle to C_gamma.
     """
     assert row.epsilon_gamma is not None

@@ -1,6 +1,7 @@
 """Coefficients converted to other nominal conditions: load, pressure, speed and free radius.
 
-Nearly all forms of the equations are closed under such a change, which is then exact. :func:`misfit` says what is left.
+Nearly all forms of the equations are closed under such a change, so the conversion is exact. :func:`misfit` returns the largest
+remaining difference.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ FACTOR_OVER_LOAD: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("PCFX1", "PCFX2"): ("LONGITUDINAL_STIFFNESS",),
     ("PCFY1", "PCFY2"): ("LATERAL_STIFFNESS",),
 }
-"""Coefficients of 1 + a dfz + b dfz^2, and those that this factor multiplies."""
+"""Coefficients of a factor 1 + a dfz + b dfz^2, and the coefficients that it multiplies."""
 FACTOR_OVER_PRESSURE: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("PPX1", "PPX2"): ("PKX1", "PKX2"),
     ("PPX3", "PPX4"): ("PDX1", "PDX2"),
@@ -66,11 +67,11 @@ FACTOR_OVER_PRESSURE: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("PCFY3",): ("LATERAL_STIFFNESS",),
     ("PCMZ1",): ("YAW_STIFFNESS",),
 }
-"""The same over dpi."""
+"""Coefficients of a factor 1 + a dpi + b dpi^2, and the coefficients that it multiplies."""
 
 
 class Powers(NamedTuple):
-    """How a coefficient grows with the nominal conditions if its force is to stay."""
+    """Powers of the nominal conditions by which a coefficient changes if its force stays constant."""
 
     load: float = 0.0
     radius: float = 0.0
@@ -91,7 +92,7 @@ POWERS: Mapping[str, Powers] = {
     "Q_V1": Powers(radius=-3.0, speed=2.0),
     "Q_V2": Powers(radius=-1.0, speed=1.0),
 }
-"""Coefficients without dfz and dpi; those of My have a factor of their own."""
+"""Coefficients outside the factors of dfz and dpi; for those of My see OF_ROLLING."""
 OF_ROLLING = {
     "QSY1": Powers(),
     "QSY2": Powers(load=1.0),
@@ -100,7 +101,7 @@ OF_ROLLING = {
     "QSY5": Powers(),
     "QSY6": Powers(load=1.0),
 }
-"""The same of the terms of My, which is relative to nominal load, nominal pressure and radius as a whole."""
+"""Powers of the terms of My, in addition to a common factor of nominal load, nominal pressure and radius."""
 
 
 KEYS = ("FNOMIN", "NOMPRES", "LONGVL", "UNLOADED_RADIUS")
@@ -108,7 +109,7 @@ KEYS = ("FNOMIN", "NOMPRES", "LONGVL", "UNLOADED_RADIUS")
 
 
 UNITS = ((1.0, "N"), (1e-3, "kPa"), (1.0, "m/s"), (1.0, "m radius"))
-"""How sentences give them: factor and unit."""
+"""Factor and unit of each nominal condition in sentences."""
 
 
 class Nominal(NamedTuple):
@@ -124,7 +125,7 @@ class Nominal(NamedTuple):
         return cls(*(float(values[name]) for name in KEYS))
 
     def beside(self, other: Nominal) -> tuple[str, str]:
-        """What differs between the two, in words for each; empty if nothing does."""
+        """The conditions in which two records differ, in words for each of the two; empty if they agree."""
         rows = [
             (f"{scale * a:.5g} {unit}", f"{scale * b:.5g} {unit}")
             for a, b, (scale, unit) in zip(self, other, UNITS, strict=True)
@@ -136,8 +137,8 @@ class Nominal(NamedTuple):
 def at_nominal(values: Mapping[str, Any], wanted: Nominal) -> dict[str, Any]:
     """The values with other nominal conditions, and coefficients that give the same forces in N and moments in Nm.
 
-    The deflection of the wheel under a load stays too; its free radius is the wanted one. A block of turn slip that holds the
-    common defaults stays as it is: a guess is recognised by them.
+    The deflection of the wheel under a load also stays; its free radius becomes the wanted one. Turn-slip coefficients at the
+    common defaults are not converted, because these values mark them as a guess.
     """
     before = Nominal.of(values)
     v = dict(values)
@@ -153,7 +154,7 @@ def at_nominal(values: Mapping[str, Any], wanted: Nominal) -> dict[str, Any]:
     for names, multiplied in FACTOR_OVER_PRESSURE.items():
         _factor(v, names, multiplied, pressure)
     if not asks_for_turn_slip(values):
-        _factor(v, ("PPZ2",), ("QDZ8", "QDZ9"), pressure)  # turn slip has these two without the factor
+        _factor(v, ("PPZ2",), ("QDZ8", "QDZ9"), pressure)  # with turn slip, PPZ2 does not act on these two
     v["PPZ1"] *= -1.0  # the one factor with a minus sign, 1 - PPZ1 dpi
     _factor(v, ("PPZ1",), ("QDZ1", "QDZ2"), pressure)
     v["PPZ1"] *= -1.0
@@ -169,12 +170,12 @@ def at_nominal(values: Mapping[str, Any], wanted: Nominal) -> dict[str, Any]:
 
 
 def _guessed(values: Mapping[str, Any]) -> bool:
-    """Whether the coefficients of turn slip are the common defaults, which nobody measured."""
+    """Whether the turn-slip coefficients are the common defaults, which are not measured."""
     return all(values[row.name] == row.default for row in BLOCK)
 
 
 def _polynomial(v: dict[str, Any], names: tuple[str, ...], scale: float) -> None:
-    """a + b x + c x^2 in the new x', where x = scale x' + scale - 1."""
+    """Rewrite a + b x + c x^2 in the new x', where x = scale x' + scale - 1."""
     shift = scale - 1.0
     a, b, c = (*(float(v[name]) for name in names), 0.0, 0.0)[:3]
     new = (a + b * shift + c * shift**2, (b + 2.0 * c * shift) * scale, c * scale**2)
@@ -182,7 +183,7 @@ def _polynomial(v: dict[str, Any], names: tuple[str, ...], scale: float) -> None
 
 
 def _factor(v: dict[str, Any], names: tuple[str, ...], multiplied: tuple[str, ...], scale: float) -> None:
-    """1 + a x + b x^2 in the new x', relative to its value at x' = 0, which the multiplied coefficients take over."""
+    """Rewrite the factor 1 + a x + b x^2 in the new x'; its value at x' = 0 goes into the multiplied coefficients."""
     v["1"] = 1.0
     _polynomial(v, ("1", *names), scale)
     here = v.pop("1")
@@ -191,9 +192,9 @@ def _factor(v: dict[str, Any], names: tuple[str, ...], multiplied: tuple[str, ..
 
 
 def _vertical(v: dict[str, Any], load: float, pressure: float, radius: float) -> None:
-    """The same load over deflection, fall of the rolling radius with load, and contact patch.
+    """Convert load over deflection, rolling radius over load, and contact patch.
 
-    VERTICAL_STIFFNESS is the slope at the nominal load; the others are relative to it.
+    VERTICAL_STIFFNESS is the slope at the nominal load; the other coefficients are relative to it.
     """
     here = 1.0 + float(v["PFZ1"]) * (pressure - 1.0)
     if not here > 0.0:
@@ -216,7 +217,7 @@ def _vertical(v: dict[str, Any], load: float, pressure: float, radius: float) ->
 
 
 def _camber_reduction(v: dict[str, Any], radius: float) -> None:
-    """The same force of path curvature, which is in proportion to radius over 1 - eps_gamma."""
+    """Convert the force of path curvature, which is proportional to radius / (1 - eps_gamma)."""
     first = 1.0 - radius * (1.0 - v["PECP1"])
     if radius != 1.0:
         slope = radius * v["PECP1"] * v["PECP2"]
@@ -224,7 +225,7 @@ def _camber_reduction(v: dict[str, Any], radius: float) -> None:
 
 
 class ForceMisfit(NamedTuple):
-    """The largest difference of a channel's forces, over its largest force."""
+    """Largest difference between the forces of two tyres in a channel, over the largest force."""
 
     channel: str
     turn_slip: bool
@@ -232,7 +233,7 @@ class ForceMisfit(NamedTuple):
 
 
 def misfit(before: Tyre, after: Tyre) -> ForceMisfit:
-    """Where two tyres differ most, over the ranges of the first; draws of conditions, straight and on curves."""
+    """The channel in which two tyres differ most, at random conditions in the ranges of ``before``, straight and on curves."""
     p, random = before.p, np.random.default_rng(0)
     ends = (
         (p.FZMIN, p.FZMAX), (p.ALPMIN, p.ALPMAX), (p.CAMMIN, p.CAMMAX), (p.KPUMIN, p.KPUMAX),
@@ -255,12 +256,12 @@ CONDITIONS = "nominal conditions"
 
 
 def tyre_at_nominal(tyre: Tyre, wanted: Nominal) -> Tyre:
-    """The tyre with other nominal conditions and, as far as the equations allow, the same forces; its provenance says so.
+    """The tyre with other nominal conditions and, as far as the equations allow, the same forces; its provenance records this.
 
     Raises
     ------
     ArithmeticError
-        The tyre has no finite coefficients there, because a factor of load or pressure is 0; the message names them.
+        Coefficients would be infinite, because a factor of load or pressure is 0; the message names the coefficients.
     """
     old, new = Nominal.of(tyre.values).beside(wanted)
     rest = {key: text for key, text in tyre.provenance.items() if key != CONDITIONS}

@@ -1,4 +1,4 @@
-"""Longitudinal and combined slip of a tyre measured only sideways: those of a sister tyre, scaled by the measured side force.
+"""Longitudinal and combined slip of a tyre measured only sideways, scaled from a sister tyre by the measured side force.
 
 With the ratios of friction and of cornering stiffness of the two tyres, r_mu and r_K at the measured loads::
 
@@ -37,14 +37,14 @@ NEEDED = ("PCX1", "PDX1", "PKX1", "PDY1", "PKY1")
 BY_FRICTION = (("PDX1", "PDX2"), ("PVX1", "PVX2"))
 """Coefficients of a + b dfz that friction scales."""
 BY_STIFFNESS = (("PKX1", "PKX2"),)
-"""The same that slip stiffness scales."""
+"""Coefficients of a + b dfz that slip stiffness scales."""
 OVER_SLIP = {
     **dict.fromkeys(("RBX1", "RBX3", "RBY2", "RVY4"), (1, False)),
     **dict.fromkeys(("RHX1", "RBY3"), (-1, False)),
     **dict.fromkeys(("RBX2", "RBY1", "RBY4", "RVY6"), (1, True)),
     **dict.fromkeys(("PHX1", "PHX2", "RHY1", "RHY2"), (-1, True)),
 }
-"""Factors (1) and shifts (-1) of a slip, and whether it is the longitudinal one."""
+"""By coefficient, whether it multiplies (1) or shifts (-1) a slip, and whether this is the longitudinal slip."""
 LENT = tuple(
     row.name
     for row in TABLE
@@ -56,26 +56,26 @@ LENT = tuple(
 
 
 class Sister(NamedTuple):
-    """The sister tyre, and how alike the two tyres are expected to be."""
+    """The sister tyre, and the expected similarity of the two tyres."""
 
     file: str  #: as tyre.toml names it
     tyre: Tyre  #: at the nominal conditions of the fitted one
-    u_friction: float  #: of mu_x over mu_y, relative, between the two tyres
-    u_stiffness: float  #: of K_xk over K_ya
+    u_friction: float  #: relative standard uncertainty of the assumption that mu_x / mu_y is equal
+    u_stiffness: float  #: relative standard uncertainty of the assumption that K_xk / K_ya is equal
     loads: np.ndarray  #: (n,) at which the two tyres are compared [N]
-    pressure: float  #: [Pa]
-    envelope: Envelope  #: over which a drawn tyre keeps the physical limits
+    pressure: float  #: at which the two tyres are compared [Pa]
+    envelope: Envelope  #: ranges over which a drawn tyre keeps the physical limits
 
 
 @dataclass(frozen=True, slots=True)
 class Lent:
-    """What a sister tyre gives to a fitted one."""
+    """Coefficients that a fitted tyre takes from a sister tyre."""
 
     sister: Sister
     friction: Quantity  #: longitudinal friction over the sister's, at nominal load
     stiffness: Quantity  #: slip stiffness over the sister's, at nominal load
-    beside: BesideNumbers  #: the borrowed coefficients, which follow the measured side force
-    found: Mapping[str, Quantity]  #: each of them with its standard uncertainty
+    beside: BesideNumbers  #: the borrowed coefficients, with derivatives by the fitted ones
+    found: Mapping[str, Quantity]  #: the borrowed coefficients with their standard uncertainties
 
 
 def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | None:
@@ -84,7 +84,7 @@ def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | Non
     Raises
     ------
     InputError
-        The base file states no longitudinal force that somebody measured, or longitudinal force was measured on this tyre too.
+        The base file has no measured longitudinal force, or longitudinal force was measured on this tyre too.
     """
     if config.sister is None or base is None or config.tyre.base is None:
         return None
@@ -125,7 +125,7 @@ def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | Non
 
 
 def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
-    """The borrowed coefficients of a fitted tyre; those that the points or the engineer decided keep their values."""
+    """The borrowed coefficients of a fitted tyre; those determined by points or set by hand keep their values."""
     theirs = {name: float(sister.tyre[name]) for name in LENT}
     kept = {*known.hand.names, *(name for name in LENT if known.origin[name] in DETERMINED)}
     wanted = [name for name in LENT if name in sister.tyre.present and name not in kept]
@@ -182,7 +182,7 @@ def _scaled(
     here = sideways({**values, **free}, sister.loads, sister.pressure)
     there = sideways(sister.tyre.values, sister.loads, sister.pressure)
     mu, K = here[0] / there[0], here[1] / there[1]
-    # sideslip over that of sliding follows from the measured side force alone, without the two errors
+    # The scale of sideslip follows from the measured side force alone, so the two similarity errors do not enter it.
     growth = {False: K / mu, True: K / mu * (of_stiffness / of_friction)}
     dfz = sister.loads / (float(values["FNOMIN"]) * float(values["LFZO"])) - 1.0
     lines = np.stack([np.ones_like(dfz), dfz], axis=1)
@@ -191,7 +191,7 @@ def _scaled(
     found, slopes = dict(theirs), {name: np.zeros(len(by) + 2) for name in theirs}
 
     def take(names: Sequence[str], weights: np.ndarray, over_load: Any) -> None:
-        """Coefficients that are these sums over the loads."""
+        """Set the coefficients to weighted sums over the loads."""
         by_free = weights @ gradient(over_load, list(free.values()))
         for name, x, slope in zip(names, weights @ plain(over_load), by_free, strict=True):
             found[name], slopes[name][columns] = float(x), slope

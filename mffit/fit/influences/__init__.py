@@ -1,1 +1,1 @@
-"""What a fit may model beside tyre and rig, chosen by prediction: temperature, hysteresis, lag, wear, scatter from run to run."""
+"""Influences that a fit may model in addition to tyre and rig: temperature, hysteresis, lag, wear, scatter between runs."""

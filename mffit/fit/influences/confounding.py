@@ -1,4 +1,4 @@
-"""Correlation of the tyre's temperature with settings of the test plan, and how much it widens the uncertainties."""
+"""Correlation of the tyre's temperature with settings of the test plan, and the uncertainty that it causes."""
 
 from __future__ import annotations
 
@@ -22,30 +22,29 @@ NEEDS: Mapping[str, frozenset[str]] = {
     "longitudinal slip": frozenset({"kappa", "combined", "side_force"}),
     "sideslip": frozenset(),
 }
-"""By setting, the needs of coefficients that it determines; sideslip alone determines those that need nothing else."""
+"""By setting, the needs of the coefficients that it determines; sideslip determines the coefficients without needs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Confounding:
-    """Temperature and a setting that run along with each other."""
+    """A setting that is correlated with the tyre's temperature."""
 
     setting: str  #: in words, as in :data:`mffit.points.levels.KINDS`
     correlation: float  #: correlation ratio of temperature and setting, 0 to 1
     coefficient: str
-    """Of those that the setting determines, the one that suffers most; empty if none is fitted."""
-    growth: float  #: its standard uncertainty over that if the temperature terms were known
+    """The most affected coefficient among those that the setting determines; empty if none is fitted."""
+    growth: float  #: standard uncertainty of ``coefficient`` over that with known temperature terms
 
     @property
     def widens(self) -> bool:
-        """Whether a coefficient becomes uncertain by it."""
+        """Whether the correlation makes a coefficient clearly more uncertain."""
         return self.growth > constants.WIDER_BANDS
 
 
 def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
-    """Settings with which the temperature runs along so much that coefficients become uncertain, or that more than half of its
-    scatter is theirs.
+    """Settings correlated with the temperature that widen a coefficient or explain more than half of the temperature's variance.
 
-    ``fitted`` may model the temperature or not; both cases are computed with its terms free.
+    ``fitted`` may model the temperature or not; both cases are computed with the temperature terms free.
     """
     points = fitted.problem.points
     nuisance = next(n for n in NUISANCES if n.id == TEMPERATURE)
@@ -63,16 +62,16 @@ def confoundings(fitted: Fitted) -> tuple[Confounding, ...]:
 
 
 def _determined_by(setting: str, names: Sequence[str] | Mapping[str, float]) -> list[str]:
-    """Those of the coefficients that a setting determines."""
+    """The named coefficients that a setting determines."""
     words = {name: {need.word for need in BY_NAME[name].needs} for name in names}
     needs = NEEDS[setting]
     return [name for name, own in words.items() if (needs & own if needs else not own)]
 
 
 def correlation_ratio(points: Points, channel: str) -> float:
-    """Share of the scatter of the temperature that differences between the levels of a setting make, as a correlation.
+    """Correlation ratio of the temperature over the levels of a setting: square root of the explained share of variance.
 
-    It also shows a temperature that is highest at the middle one of three pressures.
+    Unlike a linear correlation it detects a temperature that is highest at the middle one of three pressures.
     """
     label = levels.nearest_labels(np.abs(getattr(points, channel)), LEVELS[channel])
     T = points.T
@@ -83,7 +82,7 @@ def correlation_ratio(points: Points, channel: str) -> float:
 
 
 def _growth(fitted: Fitted, temperature: Nuisance) -> dict[str, float]:
-    """By coefficient, its standard uncertainty with the temperature terms free over that with known ones."""
+    """By coefficient, its standard uncertainty with free temperature terms over that with known terms."""
     numbers = [number for number in fitted.numbers if number.name not in temperature.numbers]
     near = NearSolution(fitted.problem, numbers, ())
     joint = near.joint(fitted.problem.points.sweep, [temperature])
@@ -99,7 +98,7 @@ def _growth(fitted: Fitted, temperature: Nuisance) -> dict[str, float]:
 
 
 def confounding_sentence(found: Confounding, *, modelled: bool) -> str:
-    """What runs along, what it costs and what to do."""
+    """A sentence: the correlated setting, the effect on coefficients, and the remedy."""
     growth = f"{found.coefficient} {found.growth:.1f} times as uncertain as at one temperature"
     if not found.widens:
         effect = f"what the formula misses over the {found.setting} is taken for an effect of the temperature, and the reverse"

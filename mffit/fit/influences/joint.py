@@ -1,4 +1,4 @@
-"""A fit at its solution as one linear model of all its readings: what sweeps share, and what each has of its own."""
+"""A fit at its solution as one linear mixed model of all readings: numbers common to all sweeps, and random effects per sweep."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 
 NO_SCATTER = 0.005
-"""Scatter among the groups over the usual one that does not show."""
+"""Lower bound of the standard deviation among groups over the usual one: too small to show in the readings."""
 
 HELD = -60.0
-"""Logarithm of the variance of a number that is held."""
+"""Logarithm of the variance of a held number."""
 
 UNKNOWN = 1e3
-"""Standard deviation of the prior of a number that has none, over the standard error that the readings alone give it."""
+"""Standard deviation assumed for a number without prior, over its standard error from the readings alone."""
 
 
 class LeftOutGroups(NamedTuple):
-    """Left-out groups of points as all others predict them."""
+    """Errors of left-out groups of points as predicted from all other groups."""
 
-    density: np.ndarray  #: (g,) logarithm of the probability of the readings of every group
-    squares: np.ndarray  #: (g,) sum of squared errors in units of their weights
-    gaps: dict[str, float]  #: by channel, rms error [N] or [Nm]
+    density: np.ndarray  #: (g,) log predictive density of the readings of each group
+    squares: np.ndarray  #: (g,) sum of squared prediction errors in units of the readings' uncertainties
+    gaps: dict[str, float]  #: by channel, rms prediction error [N] or [Nm]
 
     @classmethod
     def of(
         cls, found: Sequence[LeftOutReadings], sigma: np.ndarray, channels: Sequence[str]
     ) -> LeftOutGroups:
-        """From the readings of all groups, whose channels have uncertainties (c, n) as weights."""
+        """The record from the predictions of all groups; ``sigma`` (c, n) are the readings' uncertainties."""
         error = np.zeros(sigma.size)
         for one in found:
             error[one.rows] = one.error
@@ -58,27 +58,27 @@ class LeftOutGroups(NamedTuple):
 
 
 class Explained(NamedTuple):
-    """Evidence of a model at the most probable scatter of its groups."""
+    """Log marginal likelihood of a model, and the variances at which it was evaluated."""
 
     value: float
     given: Variances
 
     @property
     def scatter(self) -> np.ndarray:
-        """Standard deviation (q,) of every own number among the groups."""
+        """Standard deviation (q,) of each random effect among the groups."""
         return np.exp(0.5 * self.given.own)
 
 
 @dataclass(frozen=True, eq=False)
 class JointFit:
-    """The readings as numbers that all groups share with their priors, numbers that each group has of its own, and noise."""
+    """Linear mixed model of the readings: shared numbers with priors, random effects of each group, and noise."""
 
-    names: tuple[str, ...]  #: (k,) of the shared numbers
-    model: Mixed  #: whose shared numbers have unit variance
-    sigma: np.ndarray  #: (c, n) uncertainties of the readings as weights
+    names: tuple[str, ...]  #: (k,) names of the shared numbers
+    model: Mixed  #: scaled so that the shared numbers have unit prior variance
+    sigma: np.ndarray  #: (c, n) uncertainties of the readings
     channels: tuple[str, ...]  #: (c,)
-    looked_at: np.ndarray  #: (n,) rows of the points: of very many, some
-    usual: np.ndarray  #: (q,) scatter of the own numbers from which the search for it starts
+    looked_at: np.ndarray  #: (n,) indices of the points in the model, thinned if there are very many
+    usual: np.ndarray  #: (q,) starting values of the random effects' standard deviations
 
     @classmethod
     def of(
@@ -88,16 +88,16 @@ class JointFit:
         own: Sequence[str],
         group: np.ndarray,
     ) -> JointFit:
-        """The model at the values of ``problem``; groups of its points differ in their ``own`` numbers."""
+        """The model linearised at the values of ``problem``; ``own`` names the numbers with a random effect per group."""
         looked_at = np.arange(0, len(group), -(-len(group) // int(POINTS_EXAMINED)))
         problem, group = problem.select(looked_at), group[looked_at]
         shared = [uncertain(number) for number in problem.starting_here(numbers)]
         residual, slope = problem.rows([*(number.name for number in shared), *own])
         k, c = len(shared), len(problem.channels)
         size = np.array([number.spread for number in shared])
-        unknown = ~np.isfinite(size)  # no limits and no prior: the readings alone know it
+        unknown = ~np.isfinite(size)  # no bounds and no prior: only the readings determine it
         size[unknown] = UNKNOWN / np.maximum(np.linalg.norm(slope[:, :k][:, unknown], axis=0), 1e-12)
-        radii = np.full(len(residual) - c * len(group), -1)  # measured ones belong to no group of points
+        radii = np.full(len(residual) - c * len(group), -1)  # measured radii form a group of their own
         of_row = np.append(np.tile(group, c), radii)
         return cls(
             names=tuple(number.name for number in shared),
@@ -114,7 +114,7 @@ class JointFit:
         )
 
     def explained(self, held: Collection[str] = ()) -> Explained:
-        """The evidence if some numbers are held at their expected values, by the scatter that makes it largest."""
+        """The log marginal likelihood, maximal over the random effects' variances; ``held`` numbers are at their prior means."""
         common = self._held(held)
 
         def loss(x: np.ndarray) -> tuple[float, np.ndarray]:
@@ -127,7 +127,7 @@ class JointFit:
         return Explained(-float(found.fun), Variances(common, 2.0 * found.x, 0.0))
 
     def alike(self, held: Collection[str] = ()) -> Explained:
-        """The same if the groups do not differ."""
+        """The log marginal likelihood without random effects."""
         given = self._alike(held)
         return Explained(self.model.evidence(given).value, given)
 
@@ -135,23 +135,23 @@ class JointFit:
         return Variances(self._held(held), np.full(self.model.own.shape[1], HELD), 0.0)
 
     def further(self, columns: np.ndarray) -> FurtherColumns:
-        """What the readings say of further changes (m, j) of them, if the groups do not differ."""
+        """The information of the readings about further columns (m, j), without random effects."""
         return self.model.further(self._alike(), columns)
 
     @property
     def misfit(self) -> float:
-        """Sum of squares of what all numbers leave, in units of the readings' weights, if the groups do not differ."""
+        """Sum of squared residuals at the posterior mean, in units of the readings' uncertainties, without random effects."""
         left = self.model.residual - self.model.common @ self.model.posterior(self._alike()).mean
         return float(left @ left)
 
     def _held(self, names: Collection[str]) -> np.ndarray:
-        """Logarithm (k,) of the variances of the shared numbers."""
+        """Logarithm (k,) of the shared numbers' variances, with the named ones held."""
         return np.where(np.isin(self.names, [*names]), HELD, 0.0)
 
     def gain(self, more: Collection[str], held: Collection[str] = ()) -> float:
-        """By how much some numbers raise the logarithm of the largest likelihood, beside all others but those that are held.
+        """Increase of the log likelihood if the numbers ``more`` are freed as well; those ``held`` otherwise stay held.
 
-        The evidence without the price of their priors.
+        It is the difference of the log marginal likelihoods without the penalty for the priors of ``more``.
         """
         beside = self.explained([name for name in held if name not in more])
         without = self.explained([*held, *more])
@@ -159,17 +159,17 @@ class JointFit:
         return beside.value - without.value - 0.5 * float(np.linalg.slogdet(root @ root.T)[1])
 
     def left_out(self, given: Variances, group: np.ndarray) -> LeftOutGroups:
-        """Each group of the points as all other readings predict it; what is left of a run shows its own numbers."""
+        """Each group of points predicted from all other readings; the remaining readings of a run show its random effects."""
         of_row = np.tile(group[self.looked_at], len(self.channels))
         found = self.model.left_out(given, [np.flatnonzero(of_row == g) for g in np.unique(of_row)])
         return LeftOutGroups.of(found, self.sigma, self.channels)
 
 
 def clearly_above_zero(change: np.ndarray) -> bool:
-    """Whether changes (g,) of groups are above zero on average by more than their scatter makes them by chance."""
+    """Whether the mean of changes (g,) exceeds zero by more than their scatter explains."""
     return over_scatter(change) > needed_fall(1)
 
 
 def beyond_chance(gain: float, numbers: int, candidates: int = 1) -> bool:
-    """Whether numbers raise the log likelihood by more than the best of several candidates does by chance."""
+    """Whether a gain in log likelihood from some ``numbers`` exceeds what the best of several useless candidates reaches."""
     return bool(gammaincc(0.5 * numbers, max(gain, 0.0)) < PREDICTION_FALSE_ALARM / max(candidates, 1))

@@ -1,4 +1,4 @@
-"""What a fit modelled besides coefficients, as report and result.json state it: runs that differ, the file at one temperature."""
+"""Records of modelled influences for report and result.json: differences between runs, and the file at one temperature."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tir.temperature import SCALED_BY
 
 @dataclass(frozen=True, slots=True)
 class BetweenRuns:
-    """The numbers that every run has, and their scatter."""
+    """Random effects of the runs, and their standard deviations."""
 
     runs: tuple[str, ...]  #: names of the sweeps
     scatter: Mapping[
@@ -33,11 +33,11 @@ class BetweenRuns:
     values: Mapping[
         str, tuple[tuple[float, float], ...]
     ]  #: number -> (value, standard error) of every run [-]
-    alone: Mapping[str, Agreement]  #: by channel, agreement of the model without the numbers of the runs
+    alone: Mapping[str, Agreement]  #: by channel, agreement of the model without the random effects
 
 
 def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
-    """The record of a fit that models them; None for others."""
+    """The record of the runs' random effects; None if the fit has none."""
     full = found.full
     own = {name: value for name, value in full.rig.items() if of_run(name)}
     if not own:
@@ -55,7 +55,7 @@ def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
 
 
 def without_runs(simulation: Simulation) -> Simulation:
-    """The simulation at the mean of the runs."""
+    """The simulation with the random effects of all runs set to zero."""
     return simulation.with_numbers(dict.fromkeys(filter(of_run, simulation.of_parts), 0.0))
 
 
@@ -64,17 +64,17 @@ class AtTemperature:
     """The model with temperature terms, and its file."""
 
     file: FileFigures
-    T_ref: float  #: at which the file holds [degC]
-    T_range: tuple[float, float]  #: of the points [degC]
+    T_ref: float  #: temperature at which the file holds [degC]
+    T_range: tuple[float, float]  #: temperatures of the points [degC]
     terms: Mapping[str, tuple[float, float]]  #: temperature term -> (value, standard error) [1/K]
-    rig: Mapping[str, tuple[float, float]]  #: rig number -> (value, standard error), these included
+    rig: Mapping[str, tuple[float, float]]  #: rig number -> (value, standard error), with these terms
     coefficients: Mapping[str, Coefficient]
-    channels: Mapping[str, Agreement]  #: with its terms
-    alone: Mapping[str, Agreement]  #: the same without its terms
+    channels: Mapping[str, Agreement]  #: agreement with the temperature terms
+    alone: Mapping[str, Agreement]  #: agreement without the temperature terms
     left_out: Gaps  #: by channel, rms error of left-out sweeps with the terms
-    left_out_plain: Gaps  #: the same of the plain file
+    left_out_plain: Gaps  #: by channel, rms error of left-out sweeps of the plain file
     moved: Mapping[str, tuple[float, float, float]]
-    """Coefficient -> (in the plain file, here, standard error here), most moved first; only those that moved beyond noise."""
+    """Coefficient -> (value in the plain file, value here, standard error here) if they clearly differ, largest change first."""
 
 
 def at_temperature(
@@ -102,7 +102,7 @@ def at_temperature(
 
 
 def _moved(found: NuisanceFit) -> dict[str, tuple[float, float, float]]:
-    """Coefficients that the temperature terms moved beyond their standard errors."""
+    """Coefficients that the temperature terms changed by clearly more than their standard errors."""
     plain, full = found.plain, found.full
     errors = full.posterior.stderr
     moved = {

@@ -1,4 +1,4 @@
-"""The influences of :mod:`mffit.fit.influences.nuisances` that a fit models: those that the sweeps show beyond chance."""
+"""Choice of the influences of :mod:`mffit.fit.influences.nuisances` that a fit models: the significant ones."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ class Verdict:
     modelled: bool
     reason: str  #: in words
     without: Gaps = field(default_factory=dict)
-    """Errors of left-out sweeps without it, where they were computed."""
+    """Errors of left-out sweeps without the influence, if computed."""
     beside: Gaps = field(default_factory=dict)
-    """The same with it."""
+    """Errors of left-out sweeps with the influence, if computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class NuisanceChoice:
-    """What a fit models beside coefficients and declared rig errors."""
+    """The influences that a fit models in addition to coefficients and declared rig errors."""
 
     verdicts: tuple[Verdict, ...]
-    near: NearSolution  #: with what is modelled, but for the numbers of every run; coefficients at a bound are held there
+    near: NearSolution  #: fit with the modelled influences but without random effects; coefficients at a bound are held
     scatter: Mapping[str, float] = field(default_factory=dict)
-    """Standard deviation among the runs of every number that each of them has."""
+    """Standard deviation among the runs of each random effect."""
 
     @property
     def modelled(self) -> tuple[Nuisance, ...]:
@@ -60,28 +60,28 @@ _TOO_FEW = f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it
 class NearSolution(NamedTuple):
     """A fit with some influences, near its solution."""
 
-    problem: FitProblem  #: with the weights of the first fit
+    problem: FitProblem  #: weighted as in the first fit
     numbers: Sequence[FreeNumber]
     chosen: tuple[Nuisance, ...]
 
     def joint(self, group: np.ndarray, more: Iterable[Nuisance] = ()) -> JointFit:
-        """Its linear model with further influences; groups (n,) may differ in grip and stiffness."""
+        """The linear mixed model with further influences ``more``; groups (n,) may differ in grip and stiffness."""
         of_runs = next(nuisance for nuisance in NUISANCES if nuisance.per_run)
         added = [number for nuisance in more for number in nuisance.free(self.problem.points, {})]
         problem = self.problem.with_values({number.name: number.start for number in added})
         return JointFit.of(problem, [*self.numbers, *added], of_runs.numbers, group)
 
     def left_out(self, group: np.ndarray) -> LeftOutGroups:
-        """Each group (n,) as all others predict it."""
+        """Each group (n,) of points predicted from all others, without random effects."""
         joint = self.joint(group)
         return joint.left_out(joint.alike().given, group)
 
 
 def choose(config: Config, first: Fitted) -> NuisanceChoice:
-    """The influences that [fit] demands, and those that explain more than chance does.
+    """The influences that [fit] demands, and the significant ones.
 
-    ``first`` is the fit without any. Forward steps: the influence that explains most is added. Grip and stiffness may differ from
-    sweep to sweep meanwhile, so that no influence is taken for it.
+    ``first`` is the fit without influences. Forward selection: each step adds the influence with the largest gain. Meanwhile grip
+    and stiffness have a random effect per sweep, so that scatter between sweeps is not mistaken for an influence.
     """
     points = first.problem.points
     verdicts: dict[str, Verdict] = {}
@@ -118,13 +118,13 @@ def choose(config: Config, first: Fitted) -> NuisanceChoice:
 
 
 def reference_temperature(config: Config, points: Points) -> float:
-    """Temperature at which the file holds [degC]: given, else the mean of the data to 0.1 K."""
+    """Temperature at which the file holds [degC]: as given in [fit], else the mean of the data to 0.1 K."""
     given = config.fit.T_ref_degC
     return round(float(np.nanmean(points.T)), 1) if given is None else given
 
 
 def at_reference(config: Config, problem: FitProblem) -> FitProblem:
-    """The problem at the mean pressure of its points, and at their reference temperature where they have temperatures."""
+    """The problem with the points' mean pressure and, if measured, their reference temperature as reference conditions."""
     points = problem.points
     reference = {"p_ref_kPa": round(float(np.mean(points.p)) / 1e3, 1)}
     if np.any(np.isfinite(points.T)):
@@ -135,7 +135,7 @@ def at_reference(config: Config, problem: FitProblem) -> FitProblem:
 def _judged(
     config: Config, model: NearSolution, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
 ) -> tuple[dict[str, Verdict], NearSolution]:
-    """The verdicts on demanded influences and candidates, and the fit with what is modelled; ``model`` is the one without any."""
+    """The verdicts on demanded influences and candidates, and the fit with the modelled ones; ``model`` has no influences yet."""
     group = parts_of_sweeps(model.problem.points)
     base = model.left_out(group).gaps
     if demanded:
@@ -153,7 +153,8 @@ def _judged(
         gains, steps = dict[tuple[Nuisance, ...], float](), list(_steps(left, model.chosen))
         for step in steps:
             numbers, last = _numbers(step), step[-1]
-            # What needs another influence is no rival of that one; two together are one more chance beside each alone.
+            # Candidates that the best one is chosen from: a pair competes with all steps, a single influence only with those
+            # that need the same other influence.
             rivals = len(steps) if step[1:] else sum(other.after == last.after for other in left)
             gain = joint.gain(numbers, new)
             seen = beyond_chance(gain, len(numbers), rivals)
@@ -165,7 +166,7 @@ def _judged(
                 gains[step] = gain
         if not gains:
             break
-        # two together only if neither does alone
+        # A pair is added only if no single influence is significant.
         best = min(gains, key=lambda step: (len(step), -gains[step]))
         refitted = _refitted(model, best)
         if any(nuisance.of_no_rig(refitted.problem) for nuisance in best):
@@ -189,10 +190,10 @@ def _judged(
 def _of_runs(
     config: Config, model: NearSolution, nuisance: Nuisance, *, demanded: bool
 ) -> tuple[Verdict, dict[str, float]]:
-    """The verdict on numbers of every run, and their scatter if they are modelled.
+    """The verdict on random effects of the runs, and their standard deviations if they are modelled.
 
-    What a run that is left out shows of its own numbers is unknown, so halves of runs are left out: the other half shows them.
-    Whole runs must not be predicted worse: they are where a mistake of the formula is taken for a difference of runs.
+    The random effects of a wholly left-out run are unknown, so halves of runs are left out and the other half determines them.
+    In addition whole runs must not be predicted worse, which would show that model error was mistaken for differences of runs.
     """
     points = model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
@@ -208,7 +209,7 @@ def _of_runs(
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
     if not beyond_chance(differ.value - alike.value, len(scatter)):
         return Verdict(nuisance, False, _WITHIN_CHANCE, *gaps), {}
-    # A gain that few runs hold is theirs; a scatter shows in most of them.
+    # The gain must be significant over the runs: scatter shows in most runs, not in a few.
     of_run = np.unique(halves[joint.looked_at]) // 2
     if not clearly_above_zero(np.bincount(of_run, without.squares - beside.squares)):
         reason = "left-out halves of sweeps are not predicted clearly better with it"
@@ -225,9 +226,9 @@ def _numbers(some: Iterable[Nuisance]) -> set[str]:
 
 
 def halves_of_runs(points: Points) -> np.ndarray:
-    """Number (n,) of the half of its run that each point is in, from 0: either side of the middle of sideslip, or of camber.
+    """Index (n,) of the half of its run in which each point lies: below or above the middle of the sideslip or camber range.
 
-    The two sides share the tyre's state but not their angles, so that what one of them shows is no detail of its own curve.
+    The two halves share the tyre's state but not their angles, so an improvement cannot come from details of one half's curve.
     """
     out = np.empty(len(points), dtype=int)
     for k, run in enumerate(np.unique(points.sweep)):
@@ -238,7 +239,7 @@ def halves_of_runs(points: Points) -> np.ndarray:
 
 
 def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tuple[Nuisance, ...]]:
-    """What may be added next: an influence, together with the one that it needs if that is not modelled yet."""
+    """Candidates for the next step: each influence, paired with the one that it needs if that is not modelled yet."""
     there = {nuisance.id for nuisance in chosen}
     by_id = {nuisance.id: nuisance for nuisance in left}
     for nuisance in left:
@@ -253,7 +254,7 @@ def _named(key: str) -> str:
 
 
 def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
-    """The model with more influences, fitted again from where it is."""
+    """The model with further influences, refitted from its current values."""
     problem = model.problem
     more = (number for nuisance in added for number in nuisance.free(problem.points, {}))
     numbers = problem.starting_here([*model.numbers, *more])
@@ -262,6 +263,6 @@ def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
 
 
 def _said(config: Config, nuisance: Nuisance) -> str:
-    """The setting of [fit] as it is in the file."""
+    """The setting of [fit] as written in the file."""
     given = getattr(config.fit, nuisance.key)
     return f"[fit] {nuisance.key} = {str(given).lower() if isinstance(given, bool) else repr(given)}"

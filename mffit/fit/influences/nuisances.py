@@ -1,4 +1,4 @@
-"""Numbers of the tyre's state and of the rig that a fit may free beside the coefficients, in one list."""
+"""Nuisance parameters of the tyre's state and of the rig that a fit may free in addition to the coefficients, in one list."""
 
 from __future__ import annotations
 
@@ -19,41 +19,43 @@ from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
-"""Key of [fit] with the influences of the tyre's temperature, which a second file states."""
+"""Key of [fit] for the influences of the tyre's temperature, whose fit is written to a second file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Nuisance:
-    """One such influence: the numbers of :mod:`mffit.rig_errors` that it frees, and the data that show it."""
+    """One influence: the numbers of :mod:`mffit.rig_errors` that it frees, and the data that it needs."""
 
     id: str
     name: str  #: in words
-    key: str  #: of [fit]: "auto", true, false, or the id
+    key: str  #: key of [fit]: "auto", true, false, or the id
     numbers: tuple[str, ...]
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
     per_run: bool = (
-        False  #: whether every run (sweep) has numbers of its own, which scatter about those of a perfect rig
+        False  #: whether each run (sweep) has its own numbers, random effects around their undisturbed values
     )
 
     def free(self, points: Points, scatter: Mapping[str, float]) -> tuple[FreeNumber, ...]:
-        """The numbers with their limits; the prior of a number of every run is its ``scatter`` among the runs, by name."""
+        """The free numbers with their bounds; ``scatter`` gives, by name, the prior standard deviation of random effects."""
         if not self.per_run:
             return tuple(_number(name) for name in self.numbers)
         runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
         return tuple(_number(name, run, scatter[name]) for name in self.numbers for run in runs)
 
     def of_no_rig(self, problem: FitProblem) -> bool:
-        """Whether a number has the sign that none has, or ended at zero on the way there. A temperature of that sign is modelled,
-        and in doubt."""
+        """Whether a number is zero or has a sign that is physically impossible.
+
+        Never for temperature terms: those of the wrong sign are modelled, and a doubt is reported.
+        """
         signs = {name: BY_NAME[name].known_sign for name in self.numbers}
         return self.key != TEMPERATURE and any(
             sign and sign * problem.value(name) <= 0.0 for name, sign in signs.items()
         )
 
     def setting(self, config: Config) -> bool | None:
-        """What [fit] demands: True or False; None: whatever predicts better."""
+        """The demand of [fit]: True or False, or None if the data decide."""
         given = getattr(config.fit, self.key)
         if given is False:
             return False
@@ -68,7 +70,7 @@ def _number(name: str, run: str = "", spread: float = math.inf) -> FreeNumber:
 
 
 MIDDLE = (25.0, 75.0)
-"""Percentiles of the angles that a sense covers, without its ends."""
+"""Percentiles between which the angles of one sense of sweeping must overlap those of the other."""
 
 
 def _temperatures(points: Points) -> str:
@@ -103,7 +105,7 @@ def _senses(points: Points) -> str:
     for k in np.unique(part):
         rows = part == k
         ways = [points.alpha[rows & (moving == way)] for way in (1.0, -1.0)]
-        # A sweep that is repeated at another load or camber jumps back once: that is no sweep down.
+        # A single jump back to repeat a sweep at another load or camber is not a sweep down.
         if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * np.sum(rows):
             low, high = np.percentile(ways[0], MIDDLE), np.percentile(ways[1], MIDDLE)
             if low[0] < high[1] and high[0] < low[1]:
@@ -205,10 +207,10 @@ NUISANCES = (
         per_run=True,
     ),
 )
-"""In the order in which a sentence names them; those of every run come last."""
+"""In the order in which sentences name them; random effects of the runs come last."""
 
 
 def of_run(name: str) -> bool:
-    """Whether a number of the rig is the friction or the stiffness of one run."""
+    """Whether a rig number is a random effect of one run."""
     whole, _, run = name.partition(OF_RUN)
     return bool(run) and any(nuisance.per_run and whole in nuisance.numbers for nuisance in NUISANCES)

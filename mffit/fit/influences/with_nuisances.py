@@ -1,4 +1,4 @@
-"""The fit of the plain file, and the fit with the influences of :mod:`mffit.fit.influences.nuisances` that are modelled."""
+"""The fit of the plain file, and the fit with all chosen influences of :mod:`mffit.fit.influences.nuisances`."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from mffit.rig import Simulation
 
 @dataclass(frozen=True, slots=True)
 class NuisanceFit:
-    """Two fits of the same points; they are one if no temperature is modelled."""
+    """Two fits to the same points; they are the same object if temperature is not modelled."""
 
-    plain: Fitted  #: without temperature as an input: its coefficients take up the warming
-    full: Fitted  #: with every influence that is modelled
+    plain: Fitted  #: fit without temperature as an input: its coefficients absorb the warming
+    full: Fitted  #: fit with every modelled influence
     choice: NuisanceChoice
-    left: LinearisedFit | None = None  #: by the first fit, where that was looked at
+    left: LinearisedFit | None = None  #: linear model of the first fit's residuals, if computed
 
     @property
     def at_temperature(self) -> bool:
-        """Whether the full fit knows the temperature."""
+        """Whether the full fit models the temperature."""
         return self.full is not self.plain
 
 
 def fit_with_nuisances(
     config: Config, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
 ) -> NuisanceFit:
-    """The staged fit, then the influences that it should model, then the joint polish with these."""
+    """The first fit, then the choice of influences, then the joint fit with the chosen ones."""
     progress(FITTING)
     fitted, left = first_fit(problem, start, plan), None
     one_mount = len(np.unique(problem.points.mount)) < 2
@@ -50,7 +50,7 @@ def fit_with_nuisances(
     full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near.problem.simulation)
     if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
         return NuisanceFit(full, full, choice, left)
-    # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
+    # Random effects of the runs would absorb the usual warming, which the plain file's coefficients are to contain.
     others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
     plain = _polished(config, problem, plan, choice, others, fitted)
     return NuisanceFit(plain, full, choice, left)
@@ -65,9 +65,9 @@ def _polished(
     fitted: Fitted,
     near: Simulation | None = None,
 ) -> Fitted:
-    """The polish with further numbers, from the end of a fit; that fit itself if there are none.
+    """The joint fit with the influences ``added``, started from ``fitted``; ``fitted`` itself if none is added.
 
-    ``near`` is a better place to start from, with these numbers.
+    ``near`` is a better starting point that already has these influences.
     """
     if not added:
         return fitted

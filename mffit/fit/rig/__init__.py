@@ -1,1 +1,1 @@
-"""The errors of the rig that a fit frees, and their priors."""
+"""Rig errors that a fit frees, and their priors."""

@@ -1,4 +1,4 @@
-"""The declared rig errors as numbers of the fit, each with its prior."""
+"""The declared rig errors as free or held numbers of the fit, each with its prior."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ COMPLIANCE = "compliance_deg_per_Nm"
 
 
 def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ()) -> Faults:
-    """The rig before the fit: declared play, and a misalignment that exceeds what the rig's alignment leaves.
+    """The rig before the fit: declared play, and the measured misalignment if it exceeds the rig's alignment uncertainty.
 
-    With several set-ups the misalignment is that of a set-up; see :func:`known_zeros`.
+    With several set-ups each has its own misalignment; see :func:`known_zeros`.
     """
     faults = declared_faults(config.rig)
     if not measured.misaligned or measured.alpha_M is None or len(setups) > 1:
@@ -30,7 +30,7 @@ def known_faults(config: Config, measured: Measured, setups: Sequence[str] = ())
 
 
 def known_zeros(measured: Measured, setups: Sequence[str]) -> dict[str, float]:
-    """Misalignments of single set-ups that exceed what the rig's alignment leaves, by number; empty for one set-up."""
+    """By rig number, misalignments [deg] of set-ups that exceed the rig's alignment uncertainty; empty for one set-up."""
     if len(setups) < 2:
         return {}
     found = {name: _misaligned(measured, name) for name in setups}
@@ -38,7 +38,7 @@ def known_zeros(measured: Measured, setups: Sequence[str]) -> dict[str, float]:
 
 
 def _misaligned(measured: Measured, setup: str) -> float:
-    """Sideslip misalignment of a set-up [deg]; 0 if it is within what the alignment leaves."""
+    """Sideslip misalignment of a set-up [deg]; 0 within the alignment uncertainty."""
     return math.degrees(measured.misaligned_setups.get(setup, 0.0))
 
 
@@ -50,13 +50,13 @@ def rig_numbers(
     *,
     turned: bool = False,
 ) -> tuple[FreeNumber, ...]:
-    """The declared rig errors with their priors, as far as they show in the ``channels`` of the fit.
+    """The declared rig errors that the fit frees, with their priors, if they act on the ``channels`` of the fit.
 
-    Calibrations are held, see :func:`held_rig`. On a disc without zeros, those of Fy and Mz and of the angles are left out, but
-    not the compliance of the steering. On a flat track their priors divide what they have in common with ply-steer, conicity and
-    residual torque; the camber zero is held (see :func:`held_rig`) unless the tyre was also run ``turned`` on its rim. With
-    several ``setups``, every one has zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the
-    prior.
+    Calibrations are held, see :func:`held_rig`. On a disc without turn-slip zeros, errors of Fy, Mz and the angles are left out,
+    except the compliance of the steering. On a flat track the priors apportion an asymmetry between zeros on the one hand and
+    ply-steer, conicity and residual torque on the other; the camber zero is held unless the tyre was also run ``turned`` on its
+    rim. With several ``setups`` each has its own zeros; if repeated set-ups scatter more than declared, the scatter widens the
+    prior of F0_N.
     """
     others = [
         _number(name, prior, setup)
@@ -70,13 +70,13 @@ def rig_numbers(
 def held_rig(
     config: Config, setups: Sequence[str] = (), channels: Collection[str] = SIDEWAYS, *, turned: bool = False
 ) -> dict[str, float]:
-    """Standard uncertainty of declared errors that no reading of the ``channels`` separates from coefficients.
+    """Standard uncertainty of declared errors that the ``channels`` cannot separate from coefficients.
 
-    The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: the calibration of Fy
-    is grip and stiffness of any tyre. On a flat track a skew of the camber axis is camber stiffness. So is most of a camber zero;
-    only the square of camber tells them apart, of which the formula of a real tyre is not sure enough, so that misfit would look
-    like a zero of degrees. Several ``setups`` or a tyre ``turned`` on its rim separate it, and on a disc turn slip does for both;
-    then they are numbers of the fit.
+    The fit takes these errors as absent and propagates their uncertainty to the coefficients. Examples: a calibration error of Fy
+    looks like grip and stiffness. On a flat track a skew of the camber axis looks like camber stiffness. So does most of a
+    camber zero: only terms quadratic in camber distinguish it, which the formula does not model well enough, so that misfit
+    would appear as a zero of degrees. Several ``setups`` or a tyre ``turned`` on its rim separate the camber zero, and on a disc
+    turn slip separates both; then the fit frees them.
     """
     one_zero = len(setups) < 2 and not turned
 
@@ -99,7 +99,7 @@ def _of_other_channels(name: str) -> bool:
 def _sideways(
     config: Config, measured: Measured, setups: Sequence[str], turned: bool
 ) -> tuple[FreeNumber, ...]:
-    """The numbers of the errors that show in Fy and Mz."""
+    """The free numbers of the rig errors that act on Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
     usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
@@ -121,7 +121,7 @@ def _sideways(
     if several:
         return _of_setups(declared, measured, setups)
     if measured.misaligned and measured.alpha_M is not None:
-        # A zero beyond the declared uncertainty shows that the declaration was too tight.
+        # A misalignment beyond the declared uncertainty shows that the declaration was too narrow.
         value, u = declared.get("alpha_0_deg", Declaration(0.0, 0.0))
         found = math.degrees(abs(measured.alpha_M.value))
         declared["alpha_0_deg"] = Declaration(value, max(u, found))
@@ -134,9 +134,9 @@ def _sideways(
 def _of_setups(
     declared: Mapping[str, Declaration], measured: Measured, setups: Sequence[str]
 ) -> tuple[FreeNumber, ...]:
-    """The numbers of a rig that was set up several times, or once with the name ""."""
+    """The free numbers of a rig with named set-ups, or with one set-up named ""."""
     zeros = {error.name for error in ZEROS}
-    # No key of [rig] declares the zero of Mz. On a disc with one set-up it goes into the residual torque.
+    # No key of [rig] declares these zeros, such as that of Mz; on a disc with one set-up the residual torque absorbs it.
     undeclared = {
         error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared
     }
@@ -157,7 +157,7 @@ def _of_setups(
 def _number(
     name: str, prior: Declaration, setup: str = "", most: float = constants.RIG_ERROR_REACH
 ) -> FreeNumber:
-    """The number of an error, which may move ``most`` standard uncertainties."""
+    """The free number of a rig error, bounded ``most`` standard uncertainties either side of its declared value."""
     reach = most * prior.u
     error = BY_NAME[name]
     return FreeNumber(

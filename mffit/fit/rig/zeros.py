@@ -1,7 +1,7 @@
-"""Zeros of a disc: what the model has there, and PECP1 from them alone, where eps_gamma could not be measured.
+"""Readings at zero sideslip and camber on a disc: the model's values there, and PECP1 from them if eps_gamma was not measured.
 
-The turn-slip force fixes the ratio of camber stiffness to 1 - PECP1. Without camber sweeps the camber stiffness is the base
-file's, and its uncertainty is a part of that of PECP1.
+The turn-slip force determines the ratio of camber stiffness to 1 - PECP1. Without camber sweeps the camber stiffness is the base
+file's, and its uncertainty contributes to that of PECP1.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from tir.parameters import BY_NAME
 
 CAMBER_REDUCTION = "PECP1"
 BESIDE_ZERO = (-1e-9, 1e-9)
-"""Camber angles [rad] on either side of zero, where PKY3 |camber| gives the side force a kink: a slope is the mean of both."""
+"""Camber angles [rad] just below and above zero: PKY3 |camber| makes a kink at zero, so the slope is the mean of both sides."""
 
 
 @dataclass(frozen=True, slots=True)
 class TurningZeros:
-    """Zeros with a turn-slip force, and that of the values before the fit."""
+    """The measured turn-slip force at zero sideslip and camber, and the force expected before the fit."""
 
     load: float  #: [N]
-    force: Quantity  #: measured, corrected for the rig's errors [N]
-    expected: float  #: by the values before the fit [N]
+    force: Quantity  #: measured force, corrected for rig errors [N]
+    expected: float  #: force of the values before the fit [N]
     before: Mapping[str, float]  #: coefficients that the zeros determine, with their values before the fit
-    start: Mapping[str, float]  #: the same with those from which the search starts
+    start: Mapping[str, float]  #: the same coefficients with their starting values
 
     camber: bool  #: whether camber sweeps determine the camber stiffness
 
     @property
     def contradicted(self) -> bool:
-        """Whether measured and expected force differ by more than noise and similar tyres do."""
+        """Whether measured and expected force differ by more than noise and the scatter of similar tyres explain."""
         share = constants.SIMILAR_TYRES_SPREAD * abs(self.expected)
         return abs(self.force.value - self.expected) > max(COVERAGE_FACTOR_95 * self.force.u, share)
 
@@ -58,7 +58,7 @@ def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured)
     expected = float(Simulation(values).readings(zero).Fy.mean())
     start = _start(values, force.value / expected if expected else 0.0)
     if not start:
-        # The camber stiffness that gives the measured C_phit = R0 |K_yg0| / (1 - PECP1) with the PECP1 of before.
+        # The camber stiffness that gives the measured C_phit = R0 |K_yg0| / (1 - PECP1) with PECP1 unchanged.
         PECP1 = min(float(values[CAMBER_REDUCTION]), float(LARGEST_CAMBER_REDUCTION))
         C_phit = force.value / float(zero.phi_t[0])
         C_gamma = -(1.0 - PECP1) * C_phit / float(values["UNLOADED_RADIUS"])
@@ -77,7 +77,7 @@ def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured)
 
 
 def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
-    """PECP1 that multiplies the turn-slip force by ``ratio``, to first order; empty if no plausible one does.
+    """PECP1 that multiplies the turn-slip force by ``ratio``, to first order; empty if that is not plausible.
 
     The force is proportional to the camber stiffness over 1 - PECP1.
     """
@@ -87,9 +87,9 @@ def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
 
 
 def zero_points(points: Points, load: float) -> Points:
-    """The condition (0, 0) at the load [N], as it was run: forwards, and backwards too where the data have backward runs."""
+    """Points at zero sideslip and camber at the load [N]: forwards, and also backwards if the data have backward runs."""
     usual = np.flatnonzero(points.phi_t == main_path(points))
-    # The nearest load; of equal ones the usual pressure, 1 kPa counting as 1 N.
+    # The nearest load; among equal loads the pressure nearest the median, with 1 kPa counting as 1 N.
     apart = np.abs(points.Fz - load) + 1e-3 * np.abs(points.p - np.median(points.p))
     nearest = int(usual[np.argmin(apart[usual])])
     directions = np.array([1, -1] if np.any(points.direction < 0) else [1])
@@ -103,7 +103,7 @@ def zero_points(points: Points, load: float) -> Points:
 def epsilon_gamma_of_model(values: Mapping[str, Any], points: Points, load: float, r_e: float) -> float:
     """eps_gamma by (17), as the direct method would find it for the model on a rig without faults and noise.
 
-    ``load`` [N] is that at which the turn-slip force was measured, ``r_e`` [m] the measured effective radius.
+    ``load`` [N] is the load of the measured turn-slip force, ``r_e`` [m] the measured effective radius.
     """
     tyre, zero = Simulation(values), zero_points(points, load)
     C_phit = float(tyre.readings(zero).Fy.mean()) / float(zero.phi_t[0])

@@ -1,1 +1,1 @@
-"""What is fitted for itself: radii and rolling resistance of the freely rolling wheel."""
+"""Separate fits: radii and rolling resistance of the freely rolling wheel."""

@@ -1,4 +1,4 @@
-"""Coefficients of rolling: the effective radius as measured, and the resistance from the measured moment My."""
+"""The effective rolling radius, and the coefficients of rolling resistance from the measured moment My."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float)
 ROLLING = tuple(row.name for row in TABLE if row.channel == "My")
 """Coefficients of rolling resistance."""
 SPREADS = dict(zip(ROLLING, constants.ROLLING_SPREADS, strict=True))
-"""Standard deviation of each among tyres."""
+"""Standard deviation among tyres of each coefficient of rolling resistance."""
 BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
 MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
 RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
@@ -42,12 +42,12 @@ RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
 
 @dataclass(frozen=True, slots=True)
 class Resistance:
-    """What the measured moment My of the freely rolling wheel determines."""
+    """Coefficients and zeros from the moment My of the freely rolling wheel."""
 
     beside: BesideNumbers = field(default_factory=BesideNumbers)  #: coefficients
-    regularised: frozenset[str] = frozenset()  #: those that their priors decide as much as the points
+    regularised: frozenset[str] = frozenset()  #: coefficients with much weight of the prior
     zeros: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Zeros of My [Nm] by number of the rig, with standard errors, as far as loads separate them from the tyre."""
+    """Zeros of My [Nm] by rig number, with standard errors; only those that the loads separate from the tyre."""
 
     @property
     def found(self) -> dict[str, Quantity]:
@@ -56,9 +56,9 @@ class Resistance:
 
 
 def coasting(points: Points, values: Mapping[str, Any]) -> Points:
-    """The points (m,) of sweeps in which the wheel rolls freely straight on, with the My that their Fx shows.
+    """The points (m,) of sweeps with a freely rolling wheel on a straight path without sideslip, with My computed from Fx.
 
-    Nothing drives such a wheel, so that the moments about its axis balance: My = Fx times the loaded radius.
+    No torque drives such a wheel, so the moments about its axis balance: My = Fx times the loaded radius.
     """
     straight = points.free_rolling & (np.abs(points.alpha) < STRAIGHT.rad) & (points.phi_t == 0.0)
     driven = np.unique(points.sweep[~straight])
@@ -79,9 +79,9 @@ def rolling_resistance(
 ) -> Resistance:
     """Coefficients of rolling resistance and the zeros of the rig, with standard uncertainties; empty if My was not measured.
 
-    ``zero`` is the prior of the zero, which every set-up has anew. Coefficients ``held`` stay, and so do those of which loads,
-    pressures, speeds and cambers show nothing. ``u_gain`` is the relative uncertainty of the calibration of My over load. Points
-    with longitudinal slip are not used: their My depends on the arm of Fx.
+    ``zero`` is the prior of the zero of My; each set-up has its own zero. Coefficients that are ``held`` or that the loads,
+    pressures, speeds and cambers do not determine keep their values. ``u_gain`` is the relative uncertainty of the calibration
+    of My over load. Points with longitudinal slip are not used: their My depends on the arm of Fx.
     """
     rolling = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
     if not np.any(rolling):
@@ -125,7 +125,7 @@ def rolling_resistance(
 
 
 def _with_prior(name: str, known: float) -> FreeNumber:
-    """A coefficient from what is known of it, spread as among similar tyres."""
+    """A coefficient with a prior around its known value, as wide as the scatter of similar tyres."""
     lower, upper = BOUNDS.get(name, (-math.inf, math.inf))
     spread = max(float(SPREADS[name]), constants.SIMILAR_TYRES_SPREAD * abs(known))
     return FreeNumber(name, known, lower, upper, expected=known, spread=spread)

@@ -28,8 +28,8 @@ from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
 GROWTH = "growth"
-"""Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up. Q_RE0 holds at the
-mean pressure of the readings."""
+"""Growth of the free radius with pressure, relative to dpi. MF has no term for it, and without it PFZ1 would absorb it. Q_RE0
+holds at the mean pressure of the readings."""
 BOUNDS = {
     "Q_RE0": (0.9, 1.1),
     "PFZ1": (-0.5, 2.0),
@@ -44,45 +44,45 @@ BOUNDS = {
     "Q_CAM3": (-8.0, 8.0),
 }
 SPREADS = dict(zip(("Q_V1", "Q_V2", "Q_FCX", "Q_FCY", "Q_CAM3"), constants.SPREADS_OF_RADII, strict=True))
-"""Standard deviation among tyres of coefficients that few runs show."""
+"""Standard deviation among tyres of coefficients that few test plans determine."""
 OVER_SPEED = ("Q_V1", "Q_V2")
-"""Those that several speeds show; one of a single speed is part of the uncertainties."""
+"""Coefficients that several speeds determine; with a single speed they are held and add to the uncertainties."""
 EVEN = ("Q_FCX", "Q_FCY")
-"""Those of which only the square acts: the search starts at a usual size, because nothing pulls at zero."""
+"""Coefficients that act only through their squares: the search starts at a usual size, because the gradient vanishes at 0."""
 USUAL = 0.1
 
 CONTOUR = {"Q_CAM1": 1.0}
-"""Turns on the deflection that a flat tread gets by camber: only the ratio of Q_CAM1 to Q_CAM2 acts, so that any size does."""
+"""Switches on the deflection of a flat tread by camber: only the ratio of Q_CAM1 to Q_CAM2 acts, so its size is arbitrary."""
 ROUNDING = 1e-9
-"""Smallest misfit of a radius that counts as one, over the usual one."""
+"""Lower bound of the misfit of a radius, over the usual misfit."""
 OF_WHEEL_SPEED = ("DREFF", "FREFF", "BREFF")
 """Coefficients of the rolling radius."""
 SHOWN = {
     "RL": ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", *SPREADS, GROWTH),
     "omega": ("Q_RE0", "Q_V1", *OF_WHEEL_SPEED, GROWTH),
 }
-"""By channel, the numbers that it shows; what the first one has shown stays."""
+"""By channel, the numbers that it determines; numbers found from RL are kept for omega."""
 NEEDED = {
     **{"Q_FZ2": ("loads", 3), "FREFF": ("loads", 3), "BREFF": ("loads", 4)},
     **dict.fromkeys(("PFZ1", GROWTH), ("pressures", 2)),
     **dict.fromkeys(OVER_SPEED, ("speeds", 2)),
     **{"Q_FCX": ("kappa", 1), "Q_FCY": ("sideslips", 3), "Q_CAM3": ("camber", 1)},
 }
-"""What must be varied for some of them, and how many levels of it; all need two loads."""
+"""By coefficient, the setting that must vary, and its number of levels; all coefficients need two loads."""
 
 
 @dataclass(frozen=True, slots=True)
 class Vertical:
-    """What loaded radius and wheel speed determine."""
+    """Coefficients from loaded radius and wheel speed."""
 
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """Coefficients (k,) with the growth of the free radius, in the order of the covariance."""
+    """Coefficients and the growth of the free radius (k,), in the order of the covariance."""
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  #: (k, k)
     rms: Mapping[str, float] = field(default_factory=dict)
     """By channel, RL and omega, rms misfit of the radius [m]."""
-    regularised: frozenset[str] = frozenset()  #: numbers that their priors decide as much as the readings
+    regularised: frozenset[str] = frozenset()  #: numbers with much weight of the prior
     switched: Mapping[str, float] = field(default_factory=dict)
-    """Coefficients of which only that they are not all zero acts, and that the readings ask for."""
+    """Coefficients set to ``CONTOUR``, if that fits the readings better."""
     rolling: RadiusReadings | None = None  #: means of the upright wheel that rolls freely; None without any
     loaded: RadiusReadings | None = None  #: all readings of the loaded radius; None without any
 
@@ -93,7 +93,7 @@ class Vertical:
 
     @property
     def beside(self) -> BesideNumbers:
-        """The coefficients with their covariance; no force of the points depends on them."""
+        """The coefficients with their covariance; it is independent of the main fit."""
         rows = [i for i, name in enumerate(self.numbers) if name in BY_NAME]
         names = [name for name in self.numbers if name in BY_NAME]
         return BesideNumbers({n: self.numbers[n] for n in names}, self.covariance[np.ix_(rows, rows)])
@@ -104,9 +104,9 @@ class Vertical:
         return self.numbers.get(GROWTH, 0.0)
 
     def agreement(self, values: Mapping[str, Any]) -> dict[str, Agreement]:
-        """By channel, as far as it was fitted, agreement of the radii [m] of these values with the readings.
+        """By fitted channel, agreement of the radii [m] from these values with the readings.
 
-        RL with all of them, omega with the means of the upright wheel that rolls freely.
+        RL is compared with all readings, omega with the means of the freely rolling upright wheel.
         """
         read = {"RL": self.loaded, "omega": self.rolling}
         return {
@@ -118,7 +118,7 @@ class Vertical:
 
 @dataclass(frozen=True, slots=True)
 class RadiusReadings:
-    """Radii of a wheel (n,) and the conditions on which they depend, in ISO-W."""
+    """Radii of a wheel (n,) and the conditions on which they depend, in ISO-W axes."""
 
     Fz: np.ndarray  #: [N]
     p: np.ndarray  #: [Pa]
@@ -127,52 +127,52 @@ class RadiusReadings:
     Fx: np.ndarray  #: [N]
     Fy: np.ndarray  #: [N]
     omega: np.ndarray  #: speed of rotation [rad/s]; NaN where it was not measured
-    loaded: np.ndarray  #: [m]; the same
-    effective: np.ndarray  #: [m]; the same
-    part: np.ndarray  #: number of the part of a sweep to which a reading belongs
+    loaded: np.ndarray  #: loaded radius [m]; NaN where it was not measured
+    effective: np.ndarray  #: effective rolling radius [m]; NaN where it was not measured
+    part: np.ndarray  #: index of the part of a sweep to which a reading belongs
 
     def radius(self, channel: str) -> np.ndarray:
         """The measured radius (n,) [m] of RL, or of omega."""
         return self.loaded if channel == "RL" else self.effective
 
     def select(self, which: np.ndarray) -> RadiusReadings:
-        """Those of a boolean mask (n,)."""
+        """The readings selected by a boolean mask (n,)."""
         return RadiusReadings(*(getattr(self, part.name)[which] for part in fields(self)))
 
     @property
     def means(self) -> RadiusReadings:
-        """The means of every part (m,)."""
+        """The means (m,) over each part."""
         groups = [self.part == k for k in np.unique(self.part)]
         every = (getattr(self, part.name) for part in fields(self))
         return RadiusReadings(*(np.array([float(np.mean(x[rows])) for rows in groups]) for x in every))
 
     def rim_speed(self, free_radius: float) -> np.ndarray:
-        """Speed of rotation times a radius (n,) [m/s]; that of travel where the wheel speed was not measured."""
+        """Speed of rotation times ``free_radius`` (n,) [m/s]; the speed of travel where the wheel speed was not measured."""
         return np.where(np.isfinite(self.omega), np.abs(self.omega) * free_radius, self.V)
 
 
 def radius(values: Mapping[str, Any], at: RadiusReadings, channel: str) -> Any:
-    """Loaded radius, or for omega the rolling radius of the upright wheel [m]; plain or traced as the values are."""
+    """Loaded radius for "RL", effective rolling radius of the upright wheel for "omega" [m]; plain or traced as the values."""
     p = SimpleNamespace(**values)
     if channel == "RL":
         rim_speed = at.rim_speed(float(values["UNLOADED_RADIUS"])) / float(values["LONGVL"])
         conditions = at.Fx, at.Fy, at.gamma, rim_speed, at.p / float(values["NOMPRES"]) - 1.0
         known = SimpleNamespace(**{name: plain(value) for name, value in values.items()})
         found = vertical.loaded_radius(known, at.Fz, *conditions)
-        # The load is given, so that the radius follows the numbers.
+        # One Newton step at the given load gives the radius its derivatives by the traced values.
         load, slope = vertical.load(p, found, *conditions)
         return found - (load - at.Fz) / plain(slope)
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
 
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
-    """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
+    """Coefficients of vertical stiffness, free radius and rolling radius, fitted to the readings, with their covariance.
 
-    The loaded radius comes first, from every reading under Fx, Fy and camber: DREFF, BREFF and FREFF appear only over the
-    stiffness, and a zero of one reading does not distort what the other shows. Coefficients ``held``, by hand or because they
-    were measured, stay, and so does what too few settings show. What speed does and a single speed does not show is part of the
-    uncertainties, and so are the errors of what was found before. Parts of sweeps count as units: the radius has an offset in
-    each, and its errors along a sweep are alike.
+    The loaded radius is fitted first, to every reading under Fx, Fy and camber, because DREFF, BREFF and FREFF act only relative
+    to the stiffness. Then the rolling radius follows, so that an offset of one channel does not distort the other. Coefficients
+    that are ``held`` or that need more levels of a setting keep their values. The uncertainties include unknown effects of speed
+    (if a single speed was run) and the errors of the first fit. Errors within a part of a sweep are correlated, so parts rather
+    than readings count as independent.
     """
     loaded, rolling = _loaded(points), _rolling(points)
     turning = None if rolling is None else rolling.select(np.isfinite(rolling.effective))
@@ -228,7 +228,7 @@ def _is_shown(name: str, run: Mapping[str, int]) -> bool:
 
 
 def _run(points: Points, at: RadiusReadings) -> dict[str, int]:
-    """How many settings the readings have of what the coefficients need."""
+    """By need of the coefficients, the number of levels that the readings have."""
     return {
         **design(points, "").run,
         "loads": levels.count(at.Fz, levels.LOAD),
@@ -258,7 +258,7 @@ def _readings(points: Points, used: np.ndarray) -> RadiusReadings | None:
     if not np.any(used):
         return None
     part = points.select(used)
-    # Radii grow with the square of speed, so that a mean over speeds belongs to none of them.
+    # Radii grow with the square of speed, so means are taken at each speed separately.
     speed = levels.nearest_labels(part.V, levels.SPEED)
     return RadiusReadings(
         Fz=part.Fz, p=part.p, V=part.V, gamma=part.gamma, Fx=np.nan_to_num(part.Fx), Fy=np.nan_to_num(part.Fy),
@@ -268,7 +268,7 @@ def _readings(points: Points, used: np.ndarray) -> RadiusReadings | None:
 
 
 def _stiffness(at: RadiusReadings) -> float:
-    """Load over loaded radius [N/m], the slope of a line."""
+    """Vertical stiffness [N/m] from the slope of the loaded radius over load."""
     slope = float(np.polyfit(at.Fz, at.loaded, 1)[0])
     return 1.0 / max(-slope, 1e-7)
 
@@ -277,10 +277,10 @@ class _OfRadius(NamedTuple):
     """The fit of one radius."""
 
     values: dict[str, float]  #: (k,)
-    covariance: np.ndarray  #: (k, k) from the misfit; what was fitted before counts as exact
-    moved: np.ndarray  #: (k, b) derivatives of the numbers by those that were fitted before
+    covariance: np.ndarray  #: (k, k) from the misfit, with the previously found numbers exact
+    moved: np.ndarray  #: (k, b) derivatives of the numbers by the previously found ones
     rms: float  #: [m]
-    regularised: frozenset[str]  #: numbers that their priors decide
+    regularised: frozenset[str]  #: numbers that depend on their priors as much as on the readings
 
 
 def _fitted(
@@ -290,7 +290,7 @@ def _fitted(
     at: RadiusReadings,
     channel: str,
 ) -> _OfRadius:
-    """The best values of the named numbers, beside those that were fitted ``before``."""
+    """The fit of the named numbers to one radius; numbers ``before`` have been found already."""
     dpi = at.p / float(values["NOMPRES"]) - 1.0
     measured = at.radius(channel)
     free_radius = float(values["UNLOADED_RADIUS"])
@@ -315,7 +315,7 @@ def _fitted(
     parts = [np.flatnonzero(at.part == k) for k in np.unique(at.part)]
     end = fitted(u := float(constants.USUAL_MISFIT_OF_RADIUS), values)
     covariance = end.covariance
-    if len(parts) > len(names):  # priors count beside the misfit that the first fit shows
+    if len(parts) > len(names):  # refit with the misfit as uncertainty, which sets the weight of the priors
         end = fitted(u := u * _alike(end, parts), {**values, **end.values})
         covariance = _of_units(end, parts)
     values = {**values, **end.values}
@@ -342,9 +342,10 @@ def _number(name: str, known: float, start: float, bounds: tuple[float, float]) 
 
 
 def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Covariance (k, k): how the numbers scatter as parts of sweeps are left out, and that of the priors.
+    """Covariance (k, k) from the jackknife over parts of sweeps, plus that from the priors.
 
-    Whatever makes the errors of a part alike counts. 1.96 standard errors hold 95 % although few parts may show the scatter.
+    The jackknife includes any correlation of errors within a part. A factor from Student's t makes 1.96 standard errors hold 95 %
+    even with few parts.
     """
     free = np.array([name not in end.at_bound for name in end.names])
     n, freedom = len(parts), len(parts) - int(np.sum(free))
@@ -362,9 +363,9 @@ def _of_units(end: Solution, parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _alike(end: Solution, parts: Sequence[np.ndarray]) -> float:
-    """Factor of the uncertainty of every reading by which errors that are alike in a part count as the few that they are.
+    """Factor on the uncertainty of every reading that accounts for misfit and for correlated errors within a part.
 
-    The variance of a sum over a part, over that of as many independent errors: 1 without an offset of the parts.
+    The effective number of readings is their number over the variance inflation of the parts' sums, at least 1.
     """
     squares = float(end.data @ end.data)
     sums = sum(float(np.sum(end.data[rows])) ** 2 for rows in parts)
@@ -374,7 +375,7 @@ def _alike(end: Solution, parts: Sequence[np.ndarray]) -> float:
 
 
 def vertical_sentence(found: Vertical) -> str:
-    """What pressure does to the free radius, which no coefficient says; empty if that is not known."""
+    """A sentence on the growth of the free radius with pressure, for which MF has no coefficient; empty if unknown."""
     if not found.growth:
         return ""
     return f"The free radius changes by {1e2 * found.growth:+.2f} % per nominal pressure, for which MF has no coefficient."

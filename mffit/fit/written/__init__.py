@@ -1,1 +1,1 @@
-"""The files that leave: with turn slip, without it, their ranges and what the one misses of the other."""
+"""The written files: for turn slip on, off or both, their ranges, and their misfit to the fitted model."""

@@ -20,7 +20,7 @@ from tir import Tyre
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """The files of a build and what they were made from."""
+    """The files of a build with their ranges."""
 
     by_use: Mapping[str, FileFigures]
     """On a disc "turn-slip" and "normal", and "both" if asked for; on a flat track "normal"."""
@@ -30,21 +30,21 @@ class Files:
     lacking: Mapping[float, float]
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
     weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.written.road.weights`
-    camber_limit: float | None = None  #: to which the file for turn slip off is held [rad]
+    camber_limit: float | None = None  #: largest camber of the file for turn slip off [rad]
     wide_limit: float | None = (
-        None  #: asked for, but beyond the range of camber in the files, so without effect [rad]
+        None  #: requested camber limit beyond the files' camber range, hence without effect [rad]
     )
     sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
     untested: Mapping[str, str] = field(default_factory=dict)
-    """Where the written range of a quantity comes from that the sweeps do not vary, in words."""
+    """By quantity that the sweeps do not vary, the origin of its written range, in words."""
 
     @property
     def stiffness_loss(self) -> float:
-        """Share of the camber stiffness at zero that the file for turn slip off lacks."""
+        """Relative shortfall of the camber stiffness at zero in the file for turn slip off."""
         return 1.0 - self.by_use["normal"].camber_stiffness / self.by_use["turn-slip"].camber_stiffness
 
     def annotated(self, comments: Mapping[str, Mapping[str, str]]) -> Files:
-        """The same with comments on the values, by use and name."""
+        """The files with comments on their values, by use and name."""
         by_use = {
             use: replace(file, tyre=file.tyre.annotate(status=comments[use]))
             for use, file in self.by_use.items()
@@ -60,10 +60,7 @@ def make_files(
     *,
     only: str | None = None,
 ) -> Files:
-    """The files of a build: on a disc one for each use, on a flat track one.
-
-    ``only``: the file for one use.
-    """
+    """The files of a build: on a disc one for each use, on a flat track one; ``only`` limits them to one use."""
     disc = config.rig.on_disc
     tested = tested_ranges(points)
     stated = {} if base is None else {name: float(base[name]) for name in RANGES if name in base.present}

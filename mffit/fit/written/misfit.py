@@ -18,19 +18,19 @@ from tir.outputs import outputs_of
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """Difference of one channel from the fitted model [N] or [Nm]; over the tested ranges where not stated otherwise."""
+    """Difference of one channel from the fitted model [N] or [Nm], over the tested ranges unless stated otherwise."""
 
-    rms: float  #: all conditions with equal weight
+    rms: float  #: with equal weight of all conditions
     weighted: float  #: rms with the weights of :func:`mffit.fit.written.road.weights`
     largest: float
-    beyond: float  #: rms of the conditions outside the tested but inside the written ranges
+    beyond: float  #: rms outside the tested but inside the written ranges
     ridden: float = 0.0
-    """Rms with the weights of the road, where much lean and much sideslip together hardly count."""
+    """Rms with the "road" weights, by which large camber together with large sideslip hardly counts."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileFigures:
-    """A written file and how far it is from the fitted model."""
+    """A written file and its misfit to the fitted model."""
 
     tyre: Tyre
     misfit: Mapping[str, Mapping[str, Misfit]]  #: by place and channel; every file has the place "straight"
@@ -38,17 +38,17 @@ class FileFigures:
 
     @property
     def straight(self) -> Mapping[str, Misfit]:
-        """By channel on a straight path, in the file's own use; turn slip off for a file that serves both uses."""
+        """By channel, misfit on a straight path in the file's use; for a file of both uses, with turn slip off."""
         return self.misfit["straight"]
 
 
 def figures(
     tyre: Tyre, use: str, model: Mapping[str, Any], road: Road, tested: Mapping[str, float], phi_t: float
 ) -> FileFigures:
-    """The figures of a file for "turn-slip", "normal" or "both".
+    """The misfit and camber stiffness of a file for the use "turn-slip", "normal" or "both".
 
-    ``model`` are the values of the fitted model, ``tested`` its ranges; ``phi_t`` is the curvature of the disc's path [1/m], 0 on
-    a flat track.
+    ``model`` has the values of the fitted model, ``tested`` the tested ranges; ``phi_t`` is the curvature of the disc's path
+    [1/m], 0 on a flat track.
     """
     turn_slip = use == "turn-slip"
     places = {"straight": (turn_slip, 0.0)}

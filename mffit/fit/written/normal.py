@@ -1,4 +1,4 @@
-"""The derived files: one for simulations without turn slip, and one that serves both uses at a common misfit."""
+"""The derived files: one for simulations without turn slip, and one compromise for simulations with and without it."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def derive(
     hand: Hand = NO_HAND,
     weight: str = "everything",
 ) -> dict[str, float]:
-    """Coefficients of a derived file, where they differ from the fitted model.
+    """The coefficients of a derived file that differ from the fitted model.
 
-    The goal of the file for turn slip off is the fitted model on a straight path over the written ranges. The file for both
-    uses has three goals of equal weight: the same, the model on a straight path reproduced with turn slip, and the model
-    on the disc. Only coefficients that act through camber or spin are free, so that the upright wheel on a straight path stays
-    exact. Fy comes first, because its shifts enter Mz.
+    The file for turn slip off is fitted to the forces of the fitted model on a straight path over the written ranges. The file
+    for both uses is fitted with equal weight to three sets of forces: those, the same forces computed with turn slip, and the
+    forces on the disc. Only coefficients that act through camber or spin are free, so the upright wheel on a straight path stays
+    exact. Fy is fitted first, because its shifts enter Mz.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def derive(
     tested, written : ranges of the data and of the file, by name of the file's limits
     both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
-    hand : coefficients that are held in every file, and bounds that every file keeps
+    hand : held values and bounds set by hand, which apply to every file
     weight : "everything" or "road", see :func:`mffit.fit.written.road.weights`
     """
     road = road_grid(tested, written, float(values["FNOMIN"]))
@@ -72,26 +72,26 @@ def derive(
 
 
 class ForcesToReproduce(NamedTuple):
-    """Forces of the fitted model, which is meant for turn slip on, that the file is to reproduce in one use."""
+    """Forces of the fitted model that a file should reproduce in one use."""
 
-    turn_slip: bool  #: whether the simulation computes turn slip
-    phi_t: float  #: path curvature, ISO, of every condition [1/m]
+    turn_slip: bool  #: whether the file is evaluated with turn slip
+    phi_t: float  #: turn slip of every condition, ISO sign [1/m]
     forces: Readings
 
 
 class _Imitation(NamedTuple):
-    """One channel of a file, least squares over the file's ranges."""
+    """Least-squares problem for one channel of a file over its ranges."""
 
     channel: str  #: "Fy" or "Mz"
     fixed: Mapping[str, Any]  #: every value of the file
-    model: Mapping[str, Any]  #: the same of the fitted model
+    model: Mapping[str, Any]  #: every value of the fitted model
     goals: Sequence[ForcesToReproduce]
     road: Road
     weight: np.ndarray  #: (n,) of the conditions
     written: Mapping[str, float]  #: ranges over which the physical limits hold
 
     def of(self, names: Sequence[str]) -> LeastSquaresProblem:
-        """Weighted misfits and limits with some values free."""
+        """The least-squares problem with the named values free."""
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             here = self._at(dict(zip(names, x.tolist(), strict=True)))
@@ -103,7 +103,7 @@ class _Imitation(NamedTuple):
         return LeastSquaresProblem(residual, linear)
 
     def _at(self, free: Mapping[str, Any]) -> Linear:
-        """With derivatives by the free values if they are traced."""
+        """Residuals and limits, with derivatives by the free values if they are traced."""
         values, by = {**self.fixed, **free}, [x for x in free.values() if not isinstance(x, float)]
         unit = MISFIT_UNIT[self.channel] * float(self.fixed["FNOMIN"])
         factor = np.sqrt(self.weight / self.weight.sum()) / unit
@@ -125,7 +125,10 @@ class _Imitation(NamedTuple):
         )
 
     def _reversal(self, values: Mapping[str, Any], by: list[Any]) -> tuple[np.ndarray, np.ndarray]:
-        """Steps of the side force along lines of camber, above 0 where it rises and the model's falls, with derivatives."""
+        """Steps of Fy along lines of camber with their derivatives: a step counts where the model's Fy falls, else it is 0.
+
+        Positive where Fy of the file rises although Fy of the model falls.
+        """
         if self.channel != "Fy":
             return np.zeros(0), np.zeros((0, len(by)))
         road, n = camber_lines(self.written)
@@ -147,7 +150,7 @@ def _free(*, both: bool, symmetric: bool) -> dict[str, list[str]]:
 
 
 def _numbers(start: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
-    """The numbers within their usual ranges, or as far as they start."""
+    """The free numbers, bounded by their usual ranges, which are widened to the starting values."""
     out = []
     for name, value in start.items():
         lower, upper = hand.bounded.get(name, BY_NAME[name].usual)

@@ -1,4 +1,4 @@
-"""Conditions on a straight path over the ranges of a file, their weights, and the forces of files there."""
+"""Conditions on a straight path over the ranges of a file, their weights, and the forces of a file at them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Road(NamedTuple):
 
 
 def road_grid(tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float) -> Road:
-    """Conditions over the written ranges: denser inside the tested ones, pressures off the middle at one load only."""
+    """Conditions over the written ranges, denser inside the tested ranges; the end pressures appear at one load only."""
     gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], 11)
     inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], 13)
     beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], 4)[1:]
@@ -40,7 +40,7 @@ def road_grid(tested: Mapping[str, float], written: Mapping[str, float], nominal
 
 
 def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
-    """Lines of camber without sideslip over the written range, one per load; and the number of conditions of each."""
+    """Lines of camber without sideslip over the written range, one per load, and the number of conditions per line."""
     loads, n = int(constants.LOADS_OF_A_GRID), 2 * int(constants.STEPS_OF_A_GRID) - 1
     Fz, gamma = np.meshgrid(
         np.linspace(written["FZMIN"], written["FZMAX"], loads),
@@ -55,16 +55,16 @@ CORNER = {
     "everything": float(constants.WEIGHT_IN_CORNER),
     "road": float(constants.LITTLE_WEIGHT),
 }
-"""By ``[normal] weight``, the weight of conditions with much lean and much sideslip."""
+"""By ``[normal] weight``, the weight of conditions with large camber and large sideslip."""
 
 
 def weights(road: Road, tested: Mapping[str, float], weight: str = "everything") -> np.ndarray:
-    """Weight (n,) of each condition: the corners of the ranges count less than the rest.
+    """Weight (n,) of each condition, smaller for large camber together with large sideslip.
 
-    A wheel with much camber has little sideslip and a wheel with much sideslip has little camber; both at once is a fall. Inside
-    the tested ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in
-    the corner of 8 deg of sideslip and 50 deg of camber. With ``weight = "road"`` a fiftieth remains in the corner instead of
-    1/2. Conditions outside the tested ranges have a fiftieth of it.
+    On the road, large camber goes with small sideslip and vice versa; both at once is a fall. Inside the tested ranges the weight
+    is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 at 8 deg of sideslip and 50 deg of
+    camber. With ``weight = "road"`` the limit in this corner is a fiftieth instead of 1/2. Outside the tested ranges the weight
+    is a fiftieth of this.
     """
     both = (road.alpha / constants.LARGE_SIDESLIP.rad * road.gamma / constants.LARGE_CAMBER.rad) ** 2
     corner = CORNER[weight]
@@ -73,13 +73,13 @@ def weights(road: Road, tested: Mapping[str, float], weight: str = "everything")
 
 
 def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[str, float]:
-    """The ranges with camber up to an angle [rad] only; None for no limit."""
+    """The ranges with camber limited to an angle [rad]; None for no limit."""
     end = ranges["CAMMAX"] if camber is None else min(camber, ranges["CAMMAX"])
     return {**ranges, "CAMMIN": -end, "CAMMAX": end}
 
 
 def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
-    """Mask (n,) of the conditions inside the tested ranges; rounding of their ends does not count."""
+    """Mask (n,) of the conditions inside the tested ranges, with a tolerance for rounding."""
     within: np.ndarray = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
     within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
@@ -88,13 +88,13 @@ def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
 
 
 def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Readings:
-    """Fy [N] and Mz [Nm] of a file on the road."""
+    """Fy [N] and Mz [Nm] of a file at the conditions."""
     found = _outputs(tuple(SIDEWAYS), values, road, turn_slip, phi_t)
     return Readings(**dict(zip(SIDEWAYS, found, strict=True)))
 
 
 def force(channel: str, values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:
-    """One channel of a file on the road, plain or traced."""
+    """One channel of a file at the conditions, plain or traced."""
     return _outputs((channel,), values, road, turn_slip, phi_t)[0]
 
 
