@@ -97,6 +97,10 @@ KEYS_OF_52 = (
     "PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QTZ1", "MBELT", "LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG",
 )  # fmt: skip
 """Coefficients that only the 5.2 generation has."""
+LICENCE = (
+    "turn slip in Siemens' solver needs the MF-Swift licence (Ansys' manual says so): with MF-Tyre alone take the file for turn "
+    "slip off, NAME-normal.tir"
+)
 SIDES = ("LEFT", "RIGHT", "SYMMETRIC")
 
 
@@ -115,6 +119,8 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
     """
     programs = [known_target(name) for name in ([targets] if isinstance(targets, str) else targets)]
     found = [*_dimensions(tyre), *broken(tyre, SINGLE), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
+    if "USE_MODE" in tyre.present and tyre.turn_slip and (not programs or any(p.siemens for p in programs)):
+        found.append(_warning("USE_MODE", LICENCE))
     if not any(problem.level == "error" for problem in found):
         with np.errstate(all="ignore"):
             ranged = (_with_origin(problem, tyre) for problem in over_the_range(tyre))
@@ -268,11 +274,6 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
         yield _warning(
             "USE_MODE",
             f"USE_MODE {mode} asks for turn slip, but the file has no [{TURN_SLIP}]: a simulation estimates it",
-        )
-    if given and turn_slip:
-        yield _warning(
-            "USE_MODE",
-            f"USE_MODE {mode} asks for turn slip, which needs the Swift licence in MF-Tyre/MF-Swift",
         )
     round_section = tyre["MC_CONTOUR_A"] > 0
     if given and round_section != (road == 2) and road in (1, 2):

@@ -42,20 +42,12 @@ class Target:
     dollar_only: bool = False  #: whether only a dollar sign starts a comment
     refusal: str = ""  #: reason if no file can be written for it
     rules: tuple[TargetRule, ...] = ()
+    siemens: bool = False  #: whether it runs Siemens' solver, MF-Tyre/MF-Swift
     known: str = "documentation"  #: how the profile is known: one of :data:`KNOWN`
     verified: str = ""  #: what that rests on, if it is not the program's source
 
 
 KNOWN = ("source read", "documentation", "assumed")
-OF_SWIFT = (
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE {value:g} asks for turn slip, which needs the licence of MF-Swift (Ansys' manual says so): with MF-Tyre alone "
-        "take the file for turn slip off, NAME-normal.tir",
-        "note",
-    ),
-)
 OF_SIMSCAPE = (
     TargetRule(
         "USE_MODE",
@@ -138,19 +130,19 @@ OF_ANSYS = (
     TargetRule(
         "USE_MODE",
         lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, for which PROPERTY_FILE_FORMAT has to be 'SWIFT' and the Swift licence be there",
+        "USE_MODE asks for turn slip, for which PROPERTY_FILE_FORMAT has to be 'SWIFT'",
     ),
 )
 ASSUMED = "no public manual was found that names its keys, so this is the file for MF-Tyre/MF-Swift itself"
 HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ...] = (
-    ("carsim", "CarSim and BikeSim", {}, OF_SWIFT, ASSUMED),
-    ("simpack", "Simpack", {}, OF_SWIFT, ASSUMED),
-    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, OF_SWIFT, ASSUMED),
+    ("carsim", "CarSim and BikeSim", {}, (), ASSUMED),
+    ("simpack", "Simpack", {}, (), ASSUMED),
+    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, (), ASSUMED),
     (
         "motionview",
         "MotionView and MotionSolve",
         {},
-        OF_SWIFT,
+        (),
         "its public manual names MF-Tyre/MF-Swift and lets [MODEL] select it; take PROPERTY_FILE_FORMAT and FUNCTION_NAME from "
         "the sample file of the installation",
     ),
@@ -161,12 +153,12 @@ HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ..
         OF_ANSYS,
         "its public manual lists MF-Tyre and MF-Swift and their PROPERTY_FILE_FORMAT",
     ),
-    ("asm", "dSPACE ASM", {}, OF_SWIFT, ASSUMED),
+    ("asm", "dSPACE ASM", {}, (), ASSUMED),
     (
         "carmaker-mftyre",
         "CarMaker",
         {},
-        OF_SWIFT,
+        (),
         "its public forum says that an info file names the model and the property file; that this file is the one for "
         "MF-Tyre/MF-Swift itself is assumed",
     ),
@@ -175,9 +167,7 @@ HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ..
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
-        Target(
-            "mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS, rules=OF_SWIFT
-        ),
+        Target("mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS, siemens=True),
         Target("mf61", "programs that read MF 6.1 but not 6.2", (61, 60), (*ADAMS, *ONLY_62)),
         Target(
             "adams",
@@ -186,7 +176,7 @@ TARGETS: dict[str, Target] = {
             ("USER_SUB_ID",),
             {"PROPERTY_FILE_FORMAT": "USER", "N_TIRE_STATES": 5.0},
             {"FUNCTION_NAME": "'TNO_DelftTyre_Adams_interface::TYR815'"},
-            rules=OF_SWIFT,
+            siemens=True,
             verified="public copies of the manual of MF-Tyre/MF-Swift; nothing was run",
         ),
         Target(
@@ -215,7 +205,7 @@ TARGETS: dict[str, Target] = {
             (62, 61, 60),
             ADAMS,
             more={"VENDER_TIRE_TYPE": ""},
-            rules=OF_SWIFT,
+            siemens=True,
             verified="its public manual; nothing was run",
         ),
         Target(
@@ -237,6 +227,7 @@ TARGETS: dict[str, Target] = {
                 tuple(key for key in ADAMS if key not in values),
                 values=values,
                 rules=rules,
+                siemens=True,
                 known="assumed" if "assumed" in verified or verified == ASSUMED else "documentation",
                 verified=f"{verified}; nothing was run",
             )

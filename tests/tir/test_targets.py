@@ -179,14 +179,21 @@ def test_what_chrono_does_with_the_file_itself_is_told(tyre, form, mode, said):
     assert all(words in sentence for words, sentence in zip(said, found, strict=True))
 
 
-@pytest.mark.parametrize("name", ["mftyre", "adams", "recurdyn", "carsim", "carmaker-mftyre"])
-def test_turn_slip_in_mftyre_needs_the_licence_of_swift(tyre, name):
-    def noted(mode: float) -> list[str]:
-        problems = check(tyre.replace(USE_MODE=mode), [name])
-        return [p.sentence for p in problems if p.level == "note" and "MF-Swift (Ansys" in p.sentence]
-
-    assert len(noted(225.0)) == 1
-    assert not noted(124.0)
+@pytest.mark.parametrize(
+    ("programs", "said"),
+    [
+        ([], 1),
+        (["mftyre", "carsim"], 1),
+        (["carmaker-mftyre"], 1),
+        (["recurdyn", "mfeval"], 1),
+        (["mfeval"], 0),
+    ],
+)
+def test_turn_slip_needs_the_licence_of_swift_where_siemens_solver_runs(tyre, programs, said):
+    """Once, and only if the file asks for turn slip and a program may compute it so."""
+    for mode, times in ((225.0, said), (124.0, 0)):
+        found = [p for p in check(tyre.replace(USE_MODE=mode), programs) if "MF-Swift licence" in p.sentence]
+        assert len(found) == times
 
 
 def test_an_unknown_program_is_refused_with_the_known_ones(tyre):
