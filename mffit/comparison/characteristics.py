@@ -1,4 +1,4 @@
-"""The numbers by which engineers compare two tyres first: stiffnesses, peaks, trail, radius."""
+"""Characteristic numbers for the comparison of tyres: stiffnesses, peaks, trail, radius."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tir.outputs import outputs_of
 
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
 STEP = 1e-3
-"""To either side of zero, for slopes [rad, -, 1/m]."""
+"""Step of central differences for slopes at zero [rad, -, 1/m]."""
 DECIDED_BY = {
     "C_alpha_N_per_rad": "Fy",
     "mu_y": "Fy",
@@ -32,7 +32,7 @@ DECIDED_BY = {
     "C_Mz_alpha_Nm_per_rad": "Mz",
     "trail_m": "Mz",
 }
-"""The channel whose readings decide a number, the numbers that engineers ask for first being first."""
+"""By number, the channel whose readings determine it; the numbers that engineers ask for first come first."""
 
 
 def characteristics(
@@ -51,14 +51,14 @@ def characteristics(
     Parameters
     ----------
     tyre : the file
-    load : [N]
+    load : load [N]
     turn_slip : whether the simulation computes spin; without it there is no turn-slip stiffness
-    pressure : [Pa]; default the file's
-    reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
-    slip_reach : longitudinal slip up to which the peak of Fx is sought; default the file's KPUMAX, at most 0.3
+    pressure : pressure [Pa]; default the file's
+    reach : largest sideslip of the search for peaks [rad]; default the file's ALPMAX
+    slip_reach : largest longitudinal slip of the search for the peak of Fx; default the file's KPUMAX, at most 0.3
     known : covariance of coefficients; without it, or if a number depends on none of them, its uncertainty is 0
-    predictor : whose covariance counts for the numbers of its channels, see :data:`DECIDED_BY`: where a coefficient takes over
-        what the formula misses, the force stays as it is
+    predictor : its covariance is used for the numbers of its channels, see :data:`DECIDED_BY`; it includes the exchange between
+        coefficients and model error, which leaves the force unchanged
     """
     every = {}
     if predictor is not None:
@@ -89,7 +89,7 @@ def with_slopes(
     reach: float | None,
     slip_reach: float | None,
 ) -> tuple[dict[str, float], np.ndarray]:
-    """The same numbers (m,) and their derivatives (m, k) by some coefficients."""
+    """The numbers of :func:`characteristics` (m,) without uncertainty, and their derivatives (m, k) by some coefficients."""
     uncertain = traced({name: float(tyre[name]) for name in names})
     values: dict[str, Any] = {**vars(tyre.p), **uncertain}
     p = SimpleNamespace(**values)

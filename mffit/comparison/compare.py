@@ -1,4 +1,4 @@
-"""Two files, or a file and the points of a rig: numbers, curves and coefficients compared."""
+"""Comparison of two files, or of a file with measured points: numbers, curves and coefficients."""
 
 from __future__ import annotations
 
@@ -31,17 +31,16 @@ from mffit.scatter import rms
 from tir.parameters import TABLE
 
 CURVES = (("alpha", "ALPMAX", (*SIDEWAYS,)), ("gamma", "CAMMAX", (*SIDEWAYS,)), ("kappa", "KPUMAX", ("Fx",)))
-"""What is varied, the file's key of its end, and the channels whose curves are compared."""
+"""The varied quantity, the file's key of its range, and the channels whose curves are compared."""
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
 def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
-    """Compare two files.
+    """The comparison of two files.
 
     Parameters
     ----------
-    first, second : with the covariance of their numbers if a build states it, and that build: what errors of one rig do to both
-        sides cancels in the differences
+    first, second : the two files, with covariance and build if known; effects of errors of a common rig cancel in the differences
 
     Returns
     -------
@@ -71,7 +70,7 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
 
 
 def _shared(first: ComparedSubject, second: ComparedSubject) -> Shared:
-    """The errors of the one rig that measured both sides; none for different rigs."""
+    """The effects of rig errors on both sides, if one rig measured both; empty for different rigs."""
     if first.build is None or second.build is None or first.build.rig != second.build.rig:
         return {}
     a, b = first.build.moved_by, second.build.moved_by
@@ -86,7 +85,7 @@ def _numbers(
     reach: Mapping[str, float],
     shared: Shared,
 ) -> Iterator[Difference]:
-    """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to the ends ``reach``."""
+    """Differences of the numbers of both files at a load [N] and a pressure [Pa]; ``reach`` limits the search for peaks."""
     found, moved = [], []
     for k, side in enumerate((first, second)):
         at: Any = {"pressure": pressure, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
@@ -100,7 +99,7 @@ def _numbers(
     a, b = found
     for key in a:
         if key in b:
-            # To first order: what errors of the rig do to a number may come out above its uncertainty.
+            # To first order, the effect of rig errors may exceed the stated uncertainty; then it replaces it.
             u = [
                 max(x.u, float(np.hypot.reduce(by, initial=0.0)))
                 for x, by in ((a[key], moved[0][key]), (b[key], moved[1][key]))
@@ -119,7 +118,7 @@ def _numbers(
 def _moved(
     side: ComparedSubject, load: float, at: Mapping[str, float], moves: Sequence[Mapping[str, float]]
 ) -> dict[str, np.ndarray]:
-    """How each of some moves (e,) of the coefficients moves the numbers."""
+    """By number, its changes (e,) by given changes of the coefficients."""
     names = [name for name in dict.fromkeys(chain(*moves)) if name in side.tyre.values]
     found, slopes = with_slopes(side.tyre, load, names, turn_slip=side.turn_slip, **at)
     sizes = [[move.get(name, 0.0) for move in moves] for name in names]
@@ -129,7 +128,7 @@ def _moved(
 def _curves(
     first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
 ) -> Iterator[CurveGap]:
-    """The curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
+    """The differences of the curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
     for over, end, channels in CURVES:
         x = np.linspace(-reach[end], reach[end], STEPS_OF_LINE)
         alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
@@ -151,7 +150,7 @@ def _curves(
 
 
 def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tuple[Readings, Readings | None]:
-    """Readings of a file on a perfect rig, and the half widths of their bands."""
+    """Forces of a file, and the half widths of their bands; None without a predictor."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
     if side.foretold is not None:
@@ -161,7 +160,7 @@ def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tup
 
 
 def _coefficients(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[Difference, ...]:
-    """Coefficients that differ."""
+    """Differences of the coefficients that are not equal."""
     u_first, u_second = ({} if side.known is None else side.known.stderr for side in (first, second))
     rows = []
     for row in TABLE:
@@ -191,16 +190,16 @@ def against_points(
     simulated: Sequence[LoadResult],
     name: str,
 ) -> Comparison:
-    """Compare a file with measured points.
+    """The comparison of a file with measured points.
 
     Parameters
     ----------
     subject : the file, the first side
-    simulation : the file on the rig as it is declared
+    simulation : the file on the declared rig
     points : the data, the second side
     measured : results of the direct method for the points
-    simulated : the same for the readings that the rig would give of the file
-    name : of the data
+    simulated : results of the direct method for simulated readings of the file
+    name : name of the data
     """
     return Comparison(
         first=subject.name,
@@ -216,7 +215,7 @@ def against_points(
 
 
 def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> list[Difference]:
-    """Results of the direct method for the file and for the data, at the loads that both have."""
+    """Differences between the direct method's results for the file and for the data, at common loads."""
     return [
         Difference(key=KEYS[key], load=data.load, first=a.value, second=b.value, u_second=b.u)
         for data in measured
@@ -228,7 +227,7 @@ def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> 
 
 
 def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
-    """The gap of every sweep and channel; the largest first, in units of the noise or else of the channel's size."""
+    """The gap of every sweep and channel, the largest first, relative to the noise or else to the channel's rms."""
     readings = simulation.readings(points, channels_of(points))
     found: list[tuple[float, SweepGap]] = []
     for channel, read in readings.items():

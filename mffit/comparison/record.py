@@ -18,10 +18,10 @@ from tir import Tyre
 from tir.parameters import BY_NAME
 
 OF_ORDER_ONE = frozenset({"epsilon_gamma"})
-"""Numbers whose differences count in absolute terms: they may be near zero."""
+"""Numbers that are ranked by absolute difference, because they may be near zero."""
 
 Shared = Mapping[tuple[str, str], tuple[Mapping[str, float], Mapping[str, float]]]
-"""How errors of one rig move the numbers of two sides by name, see ``Specimen.moved_by``."""
+"""By rig error, the changes of the numbers of both sides, see ``Specimen.moved_by``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +32,8 @@ class ComparedSubject:
     tyre: Tyre
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
     known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
-    build: Specimen | None = None  #: that wrote the file with this covariance
-    #: What its build knows, and the fitted model of that; None if unknown.
+    build: Specimen | None = None  #: the build that wrote the file with this covariance
+    #: Predictor of its build, and the fitted model of the build; None if unknown.
     foretold: tuple[Predictor, Tyre] | None = None
 
 
@@ -41,13 +41,13 @@ class ComparedSubject:
 class Difference:
     """A number of both sides; the difference is ``second`` minus ``first``."""
 
-    key: str  #: of CHARACTERISTICS or DIRECT, or the name of a coefficient
+    key: str  #: key of CHARACTERISTICS or DIRECT, or name of a coefficient
     load: float | None  #: [N]; None for a coefficient
     first: float
     second: float
     u_first: float | None = None  #: k = 1; None if unknown
     u_second: float | None = None
-    covariance: float = 0.0  #: of both sides, by errors of the one rig that measured them
+    covariance: float = 0.0  #: covariance of both sides from errors of a common rig
 
     @property
     def change(self) -> float:
@@ -66,7 +66,7 @@ class Difference:
 
     @property
     def relative(self) -> float:
-        """The change over the usual range of a coefficient, over 1 for eps_gamma, else over the larger side."""
+        """The absolute change over the usual range for a coefficient, over 1 for eps_gamma, else over the larger side."""
         size = max(abs(self.first), abs(self.second))
         if self.key in OF_ORDER_ONE:
             size = 1.0
@@ -76,7 +76,7 @@ class Difference:
 
 
 def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
-    """Differences with a known uncertainty first, by their ratio to it; then the others, by relative size."""
+    """The differences, sorted: first those with known uncertainty, by their ratio to it; then the others, by relative size."""
     return tuple(sorted(rows, key=lambda row: (row.z is None, -abs(row.z or 0.0), -row.relative)))
 
 
@@ -85,7 +85,7 @@ class CurveGap:
     """Two files' curves over an angle or over slip at a load, on their common range."""
 
     channel: str
-    over: str  #: "alpha", "gamma" or "kappa"; the others are 0
+    over: str  #: the varied quantity: "alpha", "gamma" or "kappa"; the others are 0
     load: float  #: [N]
     x: np.ndarray  #: (m,) [rad], over slip [-]
     first: np.ndarray  #: (m,) [N] or [Nm]
@@ -113,7 +113,7 @@ class SweepGap:
     rms: float
     bias: float  #: mean
     noise: float | None  #: typical stated uncertainty of a reading
-    over_noise: float | None  #: the gap over the stated uncertainty of the readings
+    over_noise: float | None  #: rms gap over the stated uncertainty of the readings
     n: int
 
 
@@ -128,6 +128,6 @@ class Comparison(Brief):
     curves: tuple[CurveGap, ...]
     sweeps: tuple[SweepGap, ...]  #: against data, worst first
     notes: tuple[str, ...]
-    apart: str = ""  #: how the use of two files and their nominal conditions differ; empty if they do not
+    apart: str = ""  #: words on different uses or nominal conditions of the files; empty if they agree
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data

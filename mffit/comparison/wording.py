@@ -25,7 +25,7 @@ def quantity(row: Difference) -> QuantityName:
 
 
 def headline(found: Comparison) -> str:
-    """What the files are evaluated or relative to, if that differs, and the largest differences in a sentence."""
+    """A sentence on the largest differences, preceded by one on different uses or nominal conditions, if any."""
     return " ".join(filter(None, (found.apart, differences(found))))
 
 
@@ -49,7 +49,7 @@ def differences(found: Comparison) -> str:
 
 
 def _significant(found: Comparison) -> str:
-    """The numbers that differ beyond their uncertainty, or else the largest relative difference."""
+    """A clause on the numbers that differ significantly, or else on the largest relative difference."""
     limit = COVERAGE_FACTOR_95
     rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
@@ -69,7 +69,7 @@ def place(row: Difference) -> str:
 
 
 def apart(first: ComparedSubject, second: ComparedSubject) -> str:
-    """How the use of two files and their nominal conditions differ; empty if they do not."""
+    """Sentences on different uses or nominal conditions of two files; empty if they agree."""
     said = []
     if first.turn_slip != second.turn_slip:
         on, off = (first, second) if first.turn_slip else (second, first)
@@ -86,7 +86,7 @@ def apart(first: ComparedSubject, second: ComparedSubject) -> str:
 
 
 def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[str, ...]:
-    """Remarks on a comparison of two files: what is known of their uncertainty, and what they have in common."""
+    """Remarks on a comparison of two files: whether their uncertainties are known, and whether they share rig errors."""
     notes = []
     bare = [side.name for side in (first, second) if side.known is None]
     if bare:
@@ -108,7 +108,7 @@ def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Share
 
 
 def note_on_temperature(name: str, T_ref: float) -> str:
-    """That the readings of a file were simulated at the temperatures of the points."""
+    """The remark that the readings of a file were simulated at the temperatures of the points."""
     return (
         f"{name} holds at {T_ref:g} degC; its temperature terms take it to the temperature of every point (T_degC), where that "
         "is known."

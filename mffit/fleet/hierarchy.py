@@ -1,9 +1,8 @@
-"""Joint estimate of all tyres of a rig: common rig errors, and tyres that scatter around a population estimated with them.
+"""Joint estimate of all tyres of a rig: common rig errors, and tyres that scatter around an estimated population.
 
 Tyre i has numbers x_i, the rig has errors theta. The likelihood of its points is ``exp(-z L_i z / 2 + h_i z)`` with
-``z = (x_i, theta)``. The priors are ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)`` and theta as the rig declares,
-once for all tyres. Everything but tau is one linear Gaussian model, whose groups are the tyres; tau^2 is found by expectation
-maximisation.
+``z = (x_i, theta)``. The priors are ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)``, and the declared prior of theta
+once for all tyres. Given tau this is a linear mixed model with the tyres as groups; expectation maximisation estimates tau^2.
 """
 
 from __future__ import annotations
@@ -26,12 +25,12 @@ class Population:
 
     mean: float
     u_mean: float
-    scatter: float  #: from tyre to tyre, 1 sigma
-    tyres: int  #: whose points inform it
+    scatter: float  #: standard deviation between tyres
+    tyres: int  #: number of tyres whose points inform it
 
     @property
     def assumed(self) -> bool:
-        """Whether the scatter is that of tyres in general, because these tyres are too few."""
+        """Whether the scatter is that of tyres in general, because there are too few tyres."""
         return self.tyres < constants.FEWEST_TYRES_FOR_SCATTER
 
 
@@ -43,7 +42,7 @@ class TyreEstimate:
     values: np.ndarray  #: (k,)
     covariance: np.ndarray  #: (k, k)
     strain: Mapping[str, float]
-    """By rig error: how far this tyre moves it from where the others put it, over the expected standard deviation."""
+    """By rig error, its shift by this tyre from the estimate of all others, over the expected standard deviation."""
 
     def number(self, name: str) -> tuple[float, float] | None:
         """Value and standard uncertainty; None if the number was not free in the tyre's build."""
@@ -58,13 +57,13 @@ class Hierarchy:
     """The estimate of one rig and its tyres."""
 
     tyres: tuple[TyreEstimate, ...]  #: in the order given
-    rig: Mapping[str, tuple[float, float]]  #: rig error that tyres share -> (value, standard uncertainty)
-    declared: Mapping[str, tuple[float, float]]  #: the same as declared
-    population: Mapping[str, Population]  #: of coefficients that at least two tyres inform
+    rig: Mapping[str, tuple[float, float]]  #: common rig error -> (value, standard uncertainty)
+    declared: Mapping[str, tuple[float, float]]  #: common rig error -> declared (value, standard uncertainty)
+    population: Mapping[str, Population]  #: by coefficient that at least two tyres inform
 
 
 def estimate(found: Sequence[Information]) -> Hierarchy:
-    """Estimate all tyres of one rig together; for one tyre, its own build's estimate with PECP1 and PECP2 free.
+    """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free.
 
     Parameters
     ----------
@@ -74,7 +73,7 @@ def estimate(found: Sequence[Information]) -> Hierarchy:
     tau = tyres.general.copy()
     learnt = tyres.count >= constants.FEWEST_TYRES_FOR_SCATTER
     for _ in range(200 if learnt.any() else 0):
-        # Division by one tyre less keeps the scatter off zero, where it would be overconfident.
+        # Dividing by the number of tyres less one avoids underestimating the scatter.
         mean_square = tyres.squares(tau) / np.maximum(tyres.count - 1, 1)
         new = np.clip(np.sqrt(mean_square), 1e-3 * tyres.general, tyres.general)
         new = np.where(learnt, new, tyres.general)
@@ -86,8 +85,10 @@ def estimate(found: Sequence[Information]) -> Hierarchy:
 
 
 class _Tyres:
-    """The points of all tyres as one linear model: common numbers are rig errors and means of the population, own ones the
-    differences of a tyre from these."""
+    """The points of all tyres as one linear mixed model.
+
+    Common numbers are rig errors and population means; the random effects of a tyre are its differences from these means.
+    """
 
     def __init__(self, found: Sequence[Information]) -> None:
         self.found = found
@@ -103,20 +104,20 @@ class _Tyres:
         size = np.maximum(np.abs(self.centre), 1.0)  # of coefficients without bounds
         width, scattered = (np.where(np.isfinite(x), x, size) for x in (width, general))
         self.general = np.where(np.isfinite(spread), spread, scattered)
-        self.known = np.where(np.isfinite(spread), spread, width)  # of the population's mean
+        self.known = np.where(np.isfinite(spread), spread, width)  # prior spread of the population mean
         self.informing = np.array(
             [
                 sum(_informs(i, name, u) for i in found)
                 for name, u in zip(self.own, self.known.tolist(), strict=True)
             ]
         )
-        if len(found) == 1:  # the prior of its build, which had no population
+        if len(found) == 1:  # one tyre keeps the prior of its build
             self.general, self.known = self.known, 1e-6 * self.known
         self.mine = [[self.own.index(i.names[k]) for k in i.rows(rig=False)] for i in found]
         self.model = self._model()
 
     def _model(self) -> Mixed:
-        """Rows whose likelihood is that of the tyres' points, as differences from the centres of the priors."""
+        """Pseudo-readings with the likelihood of the tyres' points, relative to the prior means."""
         names = (*self.shared, *self.own)
         sizes = np.concatenate([self.rig_spread, np.maximum(self.known, self.general)])
         centres = np.concatenate([self.rig_centre, self.centre])
@@ -137,11 +138,11 @@ class _Tyres:
         return Mixed(np.concatenate(residual), columns, columns[:, len(self.shared) :], groups)
 
     def given(self, tau: np.ndarray) -> Variances:
-        """The priors for a scatter (K,) of the population."""
+        """The prior variances for a scatter (K,) of the population."""
         return Variances(2.0 * np.log(np.concatenate([self.rig_spread, self.known])), 2.0 * np.log(tau), 0.0)
 
     def squares(self, tau: np.ndarray) -> np.ndarray:
-        """Expected sum (K,) over the tyres of the squared differences from the population's mean."""
+        """Expected sum (K,) over the tyres of the squared differences from the population mean."""
         found, out = self.model.posterior(self.given(tau)), np.zeros(len(self.own))
         for k, mine in enumerate(self.mine):
             difference, covariance = self._own(found, k, with_mean=False)
@@ -149,7 +150,10 @@ class _Tyres:
         return out
 
     def _own(self, found: MixedPosterior, k: int, *, with_mean: bool) -> tuple[np.ndarray, np.ndarray]:
-        """The numbers of tyre ``k`` beyond their centres and their covariance, ``with_mean`` of the population in them or not."""
+        """The numbers of tyre ``k`` relative to their prior means, and their covariance.
+
+        ``with_mean``: including the difference of the population mean from its prior mean.
+        """
         rows, mine = self.model.groups[k], self.mine[k]
         by_common = -found.through[k][mine]
         alone = found.own[k][mine] @ (self.model.own[rows].T @ self.model.residual[rows])
@@ -191,13 +195,16 @@ class _Tyres:
         return len(self.found) == 1 or sum(name in one.names for one in self.found) > 1
 
     def _strain(self, k: int, found: MixedPosterior, common: Sequence[int]) -> dict[str, float]:
-        """How tyre ``k`` moves the errors of the rig. The covariances without and with it differ by that of the move."""
+        """By rig error, its shift by tyre ``k`` in standard deviations.
+
+        The covariance of the shift is the covariance without the tyre less that with it.
+        """
         if len(self.found) < 2:
             return {}
         rows = self.model.groups[k]
         x, own, error = self.model.common[rows], self.model.own[rows], self.model.residual[rows]
-        told = x - own @ (found.own[k] @ (own.T @ x))  # what its readings tell of the common numbers
-        share = found.root.T @ (x.T @ told) @ found.root  # of what is known of them
+        told = x - own @ (found.own[k] @ (own.T @ x))  # columns with the tyre's random effects marginalised
+        share = found.root.T @ (x.T @ told) @ found.root  # the tyre's share of the posterior information
         without = np.linalg.inv(np.eye(len(share)) - share)
         moved = found.root @ without @ (found.root.T @ (told.T @ (error - x @ found.mean)))
         variance = np.sum((found.root @ (without @ share)) * found.root, axis=1)
@@ -209,7 +216,7 @@ class _Tyres:
 
 
 def _informs(one: Information, name: str, known: float) -> bool:
-    """Whether a tyre's points narrow the prior of a number, everything else given."""
+    """Whether a tyre's points narrow the prior of a number, with all other numbers known."""
     if name not in one.names:
         return False
     k = one.names.index(name)
@@ -217,7 +224,7 @@ def _informs(one: Information, name: str, known: float) -> bool:
 
 
 def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Centre and spread of the builds' priors: mean of the centres, widest spread."""
+    """Mean and standard deviation of the builds' priors: the mean of the means, and the largest standard deviation."""
     centre, spread = np.zeros(len(names)), np.full(len(names), np.inf)
     for k, name in enumerate(names):
         rows = [(i.expected[j], i.spread[j]) for i in found for j, n in enumerate(i.names) if n == name]

@@ -1,4 +1,4 @@
-"""Information of one build's points about tyre and rig, without its priors."""
+"""Information of one build's points about tyre and rig, without the priors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mffit.rig_errors import BESIDE, error_of
 SPIN = ("PECP1", "PECP2")
 """Coefficients that the points inform even if the build holds them at the result of the direct method."""
 MEASURED = ("PECP1",)
-"""Coefficients without a prior: a spread at which the fit holds them comes from the same points."""
+"""Coefficients without a prior, because the uncertainty with which the fit holds them comes from the same points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,19 +28,19 @@ class Information:
 
     names: tuple[str, ...]  #: free coefficients and rig errors
     values: np.ndarray  #: (k,) solution of the build
-    matrix: np.ndarray  #: (k, k) of the points alone
+    matrix: np.ndarray  #: (k, k) information matrix of the points alone
     vector: np.ndarray  #: (k,)
-    expected: np.ndarray  #: (k,) centre of the prior
-    spread: np.ndarray  #: (k,) its standard deviation, inf without a prior
+    expected: np.ndarray  #: (k,) prior means
+    spread: np.ndarray  #: (k,) prior standard deviations, inf without a prior
     moved_by: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """How one standard uncertainty of a declared rig error, or of a measured coefficient that was held, moves ``values``."""
+    """By declared rig error or held measured coefficient, the change of ``values`` by one standard uncertainty of it."""
 
     def rows(self, *, rig: bool) -> list[int]:
-        """Positions of the rig errors, or of the tyre's own numbers."""
+        """Indices of the rig errors, or of the tyre's own numbers."""
         return [i for i, name in enumerate(self.names) if (error_of(name) is not None) == rig]
 
     def without(self, names: Collection[str]) -> Information:
-        """What the points tell of the other numbers, these being unknown but for their priors."""
+        """The information about the other numbers, with the named ones marginalised over their priors."""
         out = [i for i, name in enumerate(self.names) if name in names]
         kept = [i for i, name in enumerate(self.names) if name not in names]
         prior = self.spread[out] ** -2.0
@@ -61,8 +61,8 @@ class Information:
 def information(fitted: Fitted) -> Information | None:
     """The information of a fit; None if nothing was free.
 
-    Numbers at a bound or a physical limit are left out: the likelihood is not quadratic there. Those of the tyre that are no
-    coefficients are unknown anew in every build.
+    Numbers at a bound or a physical limit are left out, because the likelihood is not quadratic there. Effects of the tyre that
+    are not coefficients are marginalised, as they are estimated anew in every build.
     """
     prior = {n.name: (n.expected, n.spread) for n in fitted.numbers}
     values = fitted.simulation.values
@@ -96,7 +96,10 @@ def information(fitted: Fitted) -> Information | None:
 
 
 def _moved_by(fitted: Fitted, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """A fit yields to a prior as far as its points do not speak against it, and to a held number wholly."""
+    """By rig error or held measured coefficient, the changes of the named numbers by one standard uncertainty of it.
+
+    A fitted number changes with its prior as far as the points leave it free; a held number changes fully.
+    """
     prior, held = {n.name: n.spread for n in fitted.inner}, fitted.taken_as_exact
     every, k, problem = (*prior, *held), len(prior), fitted.problem
     u = np.array([*prior.values(), *held.values()])
@@ -131,12 +134,12 @@ def to_json(found: Information | None) -> dict[str, Any]:
 
 
 def from_json(content: Mapping[str, Any]) -> Information:
-    """The record of the content of ``information.json``.
+    """The record from the content of ``information.json``.
 
     Raises
     ------
     ValueError, KeyError, TypeError
-        The content is something else.
+        The content has another form.
     """
     names = tuple(str(name) for name in content["names"])
     k = len(names)

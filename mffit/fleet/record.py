@@ -16,10 +16,10 @@ from tir import Quantity
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One specimen with three estimates of eps_gamma, None if not measured."""
+    """One specimen with three estimates of eps_gamma, each None if not measured."""
 
     specimen: Specimen
-    rig: int  #: number of its rig in the fleet
+    rig: int  #: index of its rig in the fleet
     numbers: Mapping[str, Quantity]  #: stiffnesses and peaks of the fitted model
     alone: Quantity | None = None  #: eps_gamma, joint estimate of its own build
     together: Quantity | None = None  #: eps_gamma, joint estimate of all tyres of its rig
@@ -33,7 +33,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class FleetScatter:
-    """Scatter of one number from tyre to tyre, and its uncertainty."""
+    """Scatter of one number between tyres, and the typical uncertainty."""
 
     mean: float
     sd: float  #: between the tyres
@@ -42,7 +42,7 @@ class FleetScatter:
 
     @property
     def beyond(self) -> float:
-        """Scatter beyond the uncertainties."""
+        """Scatter in excess of the uncertainties."""
         return math.sqrt(max(self.sd**2 - self.u**2, 0.0))
 
 

@@ -33,17 +33,17 @@ class Specimen:
     epsilon_gamma: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
-    reasons: tuple[str, ...] = ()  #: why the build is not to be trusted; empty for a sound one
-    in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
+    reasons: tuple[str, ...] = ()  #: reasons against trusting the build; empty for a sound one
+    in_doubt: tuple[str, ...] = ()  #: points that the engineer should check
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
     budget: Mapping[str, float] = field(default_factory=dict)
     """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
 
     @property
     def information_of_setups(self) -> Information | None:
-        """The information with every zero called by its set-up, as far as other builds may share it.
+        """The information with every zero named after its set-up, so that builds can share it.
 
-        A set-up is shared by the builds that name it, on a rig that they name alike; every other one is of this build alone.
+        Builds share a set-up if they give it the same name, on a rig of the same name. Other set-ups belong to this build only.
         """
         known = self.information
         if known is None:
@@ -52,8 +52,11 @@ class Specimen:
 
     @property
     def moved_by(self) -> dict[tuple[str, str], dict[str, float]]:
-        """How one standard uncertainty of an error of the rig moves the build's numbers through the readings, or through a
-        measured coefficient, by the budget of that: by the error as builds of this rig share it, and the coefficient or ""."""
+        """Changes of the build's numbers by one standard uncertainty of each rig error.
+
+        Keys are the shared name of the error, and the measured coefficient through which it acts (by the coefficient's budget) or
+        "" if it acts through the readings.
+        """
         known = self.information
         if known is None:
             return {}
@@ -74,7 +77,7 @@ class Specimen:
         error = error_of(number)
         if error is None:
             return number
-        if not error.of_setup:  # numbers of runs are of this build alone
+        if not error.of_setup:  # numbers of runs belong to this build only
             return number_of(name, " of ".join((setup, str(self.folder)))) if setup else number
         if not setup and len(self.setups) == 1:
             setup = self.setups[0]
@@ -83,12 +86,12 @@ class Specimen:
 
 
 def read(folder: str | Path) -> Specimen:
-    """Read a folder that ``mffit build`` wrote.
+    """The specimen of a folder that ``mffit build`` wrote.
 
     Raises
     ------
     InputError
-        The folder is something else, or incomplete.
+        ``mffit build`` did not write the folder, or it is incomplete.
     """
     folder = Path(folder)
     if not (folder / RESULT).is_file():
@@ -133,12 +136,12 @@ def read(folder: str | Path) -> Specimen:
 
 
 def read_information(path: Path) -> Information | None:
-    """Read an ``information.json``; None if nothing was free in its build.
+    """The content of an ``information.json``; None if nothing was free in its build.
 
     Raises
     ------
     InputError
-        It is missing, or was not written by ``mffit build``.
+        The file is missing, or was not written by ``mffit build``.
     """
     if not path.is_file():
         raise InputError(

@@ -1,4 +1,4 @@
-"""From rig sweeps to finished points: steady states with standard errors."""
+"""Finished points from rig sweeps: steady states with standard errors."""
 
 from mffit.points import levels
 from mffit.points.levels import main_path, main_pressure

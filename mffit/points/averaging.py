@@ -27,7 +27,7 @@ AVERAGED_RANGE = {
     "gamma": STRAIGHT.rad,
     "kappa": float(constants.SLIP),
 }
-"""Largest change of each swept setting over which a sweep is averaged."""
+"""Largest change of each swept setting within one average along a sweep."""
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
@@ -45,22 +45,22 @@ class Means(NamedTuple):
     """Points from the stretches of a recording."""
 
     points: Points
-    counts: tuple[int, ...]  #: of each stretch
-    used: np.ndarray  #: mask (n,) of the samples that are averaged
+    counts: tuple[int, ...]  #: number of points of each stretch
+    used: np.ndarray  #: mask (n,) of the averaged samples
 
 
 def means(
     sweep: Sweep, phi_t: float, stretches: Sequence[Stretch], labels: Sequence[str], faulty: np.ndarray
 ) -> Means:
-    """Means over plateaus, with their standard errors if the file states none, and over short blocks of sweeps.
+    """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
     Parameters
     ----------
     sweep : samples (n,) of a recording
     phi_t : turn slip of the path [1/m]
-    stretches : plateaus and sweeps that give points
+    stretches : plateaus and sweeps to average
     labels : name of the sweep of each stretch
-    faulty : mask (n,) of samples that are left out
+    faulty : mask (n,) of samples to leave out
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:
@@ -70,7 +70,7 @@ def means(
         rows = sound_rows(stretch, faulty)
         first, usual = (np.zeros(1, dtype=int), 0) if stretch.kind == PLATEAU else _blocks(sweep, rows)
         counts = np.diff(np.r_[first, len(rows)])
-        enough = 2 * counts >= usual  # most of its samples
+        enough = 2 * counts >= usual  # at least half of a block's samples are sound
         kept.append(rows[np.repeat(enough, counts)])
         sizes.append(counts[enough])
     counts = [len(one) for one in sizes]
@@ -86,7 +86,7 @@ def means(
             records = [values[part] for part, s in zip(kept, stretches, strict=True) if s.kind == PLATEAU]
             errors = np.full(len(found), np.nan)
             errors[~moving] = errors_of_means(records)
-            # A record without scatter does not show how exact it is.
+            # Without scatter no standard error can be estimated.
             stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
         u[channel] = stated
     points = found.replace(
@@ -103,11 +103,11 @@ def means(
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
-    """First row of every block that is averaged, and the usual number of samples in a block."""
+    """First row of every block to average, and the usual number of samples in a block."""
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
-    apart = max(1, round(step / interval))  # samples; slip is noisy from one to the next
+    apart = max(1, round(step / interval))  # samples; slip is too noisy for differences of neighbours
     for name, most in AVERAGED_RANGE.items():
         values, samples = getattr(sweep, name)[rows], apart if name == "kappa" else 1
         change = np.abs(values[samples:] - values[:-samples]) / samples
@@ -120,19 +120,19 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _begins(sizes: Sequence[int] | np.ndarray) -> np.ndarray:
-    """Where each of successive blocks begins."""
+    """First index of each of successive blocks."""
     return np.cumsum(np.r_[0, sizes])[:-1].astype(int)
 
 
 def _mean(values: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
     """Means (k,) over blocks of rows (m,), which begin at ``first`` (k,)."""
-    if values.strides == (0,) or not len(first):  # not measured, or one value for all samples
+    if values.strides == (0,) or not len(first):  # a broadcast value: not measured, or constant
         return np.broadcast_to(values[:1], first.shape)
     return np.asarray(np.add.reduceat(values[rows], first) / np.diff(np.r_[first, len(rows)]))
 
 
 def _means(sweep: Sweep, phi_t: float, rows: np.ndarray, first: np.ndarray) -> Points:
-    """Points from the means over blocks; of every text the first, and no time, so that they are read as finished points."""
+    """Points from means over blocks; the table has the first text of each block and no time, as that of finished points."""
     means = {name: _mean(getattr(sweep, name), rows, first) for name in AVERAGED_CHANNELS}
     table = {
         name: _mean(column.to_numpy(dtype=float), rows, first)
@@ -147,7 +147,7 @@ def _means(sweep: Sweep, phi_t: float, rows: np.ndarray, first: np.ndarray) -> P
 def _points(
     sweep: Sweep, phi_t: float, first: np.ndarray, means: dict[str, np.ndarray], table: pd.DataFrame
 ) -> Points:
-    """Points from means by channel, and from the first samples for every other channel."""
+    """Points from means by channel; all other fields are those of the first samples."""
     values: dict[str, Any] = means
     return make_points(
         **values,

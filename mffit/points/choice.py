@@ -1,4 +1,4 @@
-"""Which stretches of a recording give points: without their transients, at rest, under a held load; why others do not."""
+"""Choice of the stretches of a recording that become points, without their transients; reasons for dropping the others."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ def settings_of(sweep: Sweep) -> SteadySettings:
 
 
 def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
-    """All stretches of a recording in time order: without their transients, or with the reason why they are dropped.
+    """All stretches of a recording in time order, without their transients, or with the reason for dropping them.
 
-    ``scale`` is the usual size of the settings in the whole campaign; of this series if None.
+    ``scale`` is the usual size of the settings in the whole campaign; if None, that of this series.
     """
     return _judged(sweep, _stretches(sweep, wrong, scale))
 
 
 def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
-    """The stretches between the faults that end one, and the faulty stretches themselves."""
+    """The stretches between faults that end a stretch, and the faulty stretches themselves."""
     n = len(sweep)
     if n < 2:
         return [Stretch(0, n, "only one sample", MOVE)]
@@ -54,7 +54,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
 
 
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
-    """The stretches without their transients, or with the reason why they are dropped."""
+    """The stretches without their transients, or with the reason for dropping them."""
     settings = settings_of(sweep)
     harmless = constants.HARMLESS_DRIFT * float(np.nanmedian(sweep.Fz))
     responses = [(sweep.Fy, harmless, "N")]
@@ -75,7 +75,7 @@ def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
 
 
 def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
-    """First sample of a stretch after the first metres behind a gap or a change; a recording begins settled."""
+    """First sample of a stretch after the first metres of rolling; 0 at the start of a recording, which counts as settled."""
     if begin == 0:
         return 0
     speed = float(np.median(settings.V[begin:end]))
@@ -84,7 +84,7 @@ def _rolled_from(begin: int, settings: SteadySettings, end: int) -> int:
 
 
 def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
-    """A sweep without the first metres behind a gap or a change; dropped if its load is not held."""
+    """A sweep without its first metres of rolling; dropped if its load is not held."""
     begin, end = stretch.begin, stretch.end
     low, middle, high = np.nanpercentile(sweep.Fz[begin:end], [constants.CORE[0], 50.0, constants.CORE[1]])
     if high - low > constants.HELD_LOAD * middle:
@@ -95,9 +95,9 @@ def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
 def settled(
     stretch: Stretch, settings: SteadySettings, responses: Sequence[tuple[np.ndarray, float, str]]
 ) -> Stretch:
-    """The stretch without its transient, or with the reason why it gives no point.
+    """The stretch without its transient, or with the reason for dropping it.
 
-    ``responses`` has, for each measured force or moment, the samples (n,), the harmless drift over a stretch, and its unit.
+    ``responses`` has, for each measured force or moment, the samples (n,), the acceptable drift over a stretch, and the unit.
     """
     time, begin = settings.time, _rolled_from(stretch.begin, settings, stretch.end)
     short = _too_short(time, begin, stretch.end)
@@ -138,10 +138,9 @@ def _transient(x: np.ndarray) -> int:
 
 
 def _drift(x: np.ndarray) -> tuple[float, float]:
-    """Change over the record along a straight line, and its standard error.
+    """Change over the record along a fitted straight line, and its standard error.
 
-    The residuals of the line have the noise of a steady record. The standard error of the change over equidistant
-    samples is sqrt(12) times that of their mean.
+    For equidistant samples the standard error of the change is sqrt(12) times that of the mean of the residuals.
     """
     time = np.linspace(-0.5, 0.5, len(x))
     change = float(np.dot(time, x) / np.dot(time, time))

@@ -1,4 +1,4 @@
-"""Times of samples: rounded ones, the clock that several recordings share, and the distance rolled."""
+"""Times of samples: correction of rounded times, the common clock of several recordings, and the distance rolled."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mffit.sweeps import Sweep
 
 
 def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
-    """The series with the samples of equal time spread over the time to the next, and a sentence about it."""
+    """The series with samples of equal time spread over the interval to the next time, and a sentence about it."""
     time = spread(sweep.time) if sweep.is_series and len(sweep) > 1 else sweep.time
     if time is sweep.time:
         return sweep, ()
@@ -23,7 +23,7 @@ def evenly_timed(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
 
 
 def spread(time: np.ndarray) -> np.ndarray:
-    """Times (n,) with those that are equal spread up to the next; the same array if none is, or if time falls."""
+    """Times (n,) with equal ones spread evenly up to the next time; the same array if none are equal, or if time falls."""
     steps = np.diff(time)
     if not np.any(steps == 0.0) or np.any(steps < 0.0) or not np.any(steps > 0.0):
         return time
@@ -36,7 +36,7 @@ def spread(time: np.ndarray) -> np.ndarray:
 
 
 def with_common_clock(sweeps: Sequence[Sweep]) -> list[Sweep]:
-    """The series with the time since the first sample as ``t``, if all share a clock: none begins before another ends."""
+    """The series with the time since the first sample of all as ``t``, if they share a clock, that is if none overlap."""
     begins = sorted((sweep.time[0], sweep.time[-1]) for sweep in sweeps if sweep.is_series and len(sweep))
     if len(begins) < len(sweeps) or any(one[1] > next_[0] for one, next_ in itertools.pairwise(begins)):
         return list(sweeps)

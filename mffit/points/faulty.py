@@ -1,4 +1,4 @@
-"""Samples that are no measurement: gaps, no load, stuck and clipped channels, spikes."""
+"""Detection of faulty samples: missing readings, no load, stuck and clipped channels, spikes."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ SENSORS = ("Fy", "Mz", "Fz")
 
 
 class Fault(NamedTuple):
-    """Samples that are no measurement, and why."""
+    """Faulty samples of one kind, and the reason."""
 
     which: np.ndarray  #: mask (n,)
     reason: str
-    ends_stretch: bool  #: it ends the stretch around it; otherwise only the samples are left out
+    ends_stretch: bool  #: whether it ends the stretch around it; otherwise only the samples are left out
     rule: str = ""  #: name of the rule
 
 
@@ -48,9 +48,9 @@ def driven(sweep: Sweep) -> np.ndarray:
 
 
 def faults(sweep: Sweep) -> list[Fault]:
-    """All faults of the samples of a series, in the order of the rules.
+    """All faults in the samples of a series, in the order of the rules.
 
-    A sensor that was not measured, or has one value for all samples, is not looked at.
+    Sensors that were not measured, or have one broadcast value, are not checked.
     """
     found = [
         Fault(rule.find(sweep, channel), rule.reason.format(channel=channel), rule.ends_stretch, rule.id)
@@ -62,7 +62,7 @@ def faults(sweep: Sweep) -> list[Fault]:
 
 
 def _slip_missing(sweep: Sweep) -> np.ndarray:
-    """Samples (n,) without slip; none if it was not measured at all."""
+    """Mask (n,) of the samples without slip; all False if slip was not measured at all."""
     if "kappa" not in sweep.table:
         return np.zeros(len(sweep), dtype=bool)
     missing = ~np.isfinite(sweep.table["kappa"].to_numpy(dtype=float))
@@ -82,26 +82,26 @@ def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
 
 
 def _span_of_noise(n: int) -> float:
-    """Distance between two of n samples that no noise reaches, in its standard deviations."""
+    """Difference between two of n samples that noise does not reach, in its standard deviations."""
     return 2.0 * beyond(FALSE_ALARM / n)
 
 
 def _clipped(sweep: Sweep, channel: str) -> np.ndarray:
-    """Runs of samples at the end of the channel's range."""
+    """Mask (n,) of runs of samples at an end of the channel's range."""
     values = getattr(sweep, channel)
     return _long_runs(_at_end(values), _longest_by_chance(values, ~_at_end(values)) + 1)
 
 
 def _stuck(sweep: Sweep, channel: str) -> np.ndarray:
-    """Runs of one value within the channel's range."""
+    """Mask (n,) of runs of one value inside the channel's range."""
     values = getattr(sweep, channel)
     return np.asarray(_still(sweep, values, ~_at_end(values)) & ~_clipped(sweep, channel))
 
 
 def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
-    """Runs of one value in which the side force moves by more than its noise.
+    """Mask (n,) of runs of one value in which the side force changes by more than its noise.
 
-    An axis that holds a set-point may rest to the last digit; the side force does not move then.
+    A held set-point may be constant to the last digit, but then the side force does not change.
     """
     out = np.zeros(len(sweep), dtype=bool)
     noise = robust(np.diff(sweep.Fy)) / np.sqrt(2.0)
@@ -111,7 +111,7 @@ def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
 
 
 def _measured(values: np.ndarray) -> bool:
-    """Whether a channel has readings of its own; one value for all samples is broadcast."""
+    """Whether a channel has readings, and not one broadcast value for all samples."""
     return values.strides != (0,) and not np.all(np.isnan(values))
 
 
@@ -120,10 +120,10 @@ def _at_end(values: np.ndarray) -> np.ndarray:
 
 
 def _longest_by_chance(values: np.ndarray, some: np.ndarray) -> int:
-    """Samples that repeat the one before, in a row, as chance may let them.
+    """Longest run of samples equal to the one before that chance allows.
 
-    Of a resolution so coarse that a share p of the samples among ``some`` (n,) repeats, a run of k begins anywhere with the
-    chance n p^k. A channel that repeats more often than not holds set-points; any run may be one.
+    If a share p of the samples among ``some`` (n,) repeats because of coarse resolution, a run of k occurs with probability
+    n p^k. A channel that repeats more often than not holds set-points, so any run is allowed.
     """
     steps = np.diff(values)[some[1:] & some[:-1]]
     repeats = (np.sum(steps == 0.0) + 1.0) / (len(steps) + 2.0)
@@ -133,14 +133,14 @@ def _longest_by_chance(values: np.ndarray, some: np.ndarray) -> int:
 
 
 def _still(sweep: Sweep, values: np.ndarray, some: np.ndarray) -> np.ndarray:
-    """Samples (n,) in runs of one value to the last digit that are longer than chance and a moment."""
+    """Mask (n,) of the samples in runs of exactly one value that are longer than chance and a minimum time allow."""
     rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
     shortest = max(_longest_by_chance(values, some), round(constants.COMPARED_APART * rate) - 1)
     return _long_runs(np.r_[False, np.diff(values) == 0.0], shortest)
 
 
 def _long_runs(mask: np.ndarray, shortest: int) -> np.ndarray:
-    """The samples (n,) of a mask in runs of at least ``shortest``."""
+    """The mask (n,) restricted to runs of at least ``shortest`` samples."""
     edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8))).reshape(-1, 2)
     changes = np.zeros(len(mask) + 1, dtype=np.int32)
     changes[edges[edges[:, 1] - edges[:, 0] >= shortest]] = 1, -1

@@ -1,4 +1,4 @@
-"""The record of readings that were left out or have less weight, and those found while files become points."""
+"""The record of readings that were left out or have reduced weight, and the entries found when files become points."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from mffit.sweeps import Sweep
 from mffit.sweeps.sweep import ExcludedRows
 
 UNUSED = "not steady: transients and incomplete means between the points"
-"""Reason for samples that nothing is wrong with, but that no point averages."""
+"""Reason for sound samples that are part of no average."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeftOut:
-    """Readings of one file that are left out, have less weight or are doubted, for one reason."""
+    """Readings of one file that are left out, have reduced weight or are doubted, for one reason."""
 
     file: str  #: name as in ``tyre.toml``
     lines: str  #: such as "39-44, 60", counted from 1; "" if unknown
-    count: int  #: readings, or samples of a recording
+    count: int  #: number of readings, or of samples of a recording
     by: Literal["hand", "rule"]
     rule: str = ""  #: name of the rule; "" by hand
     channel: str = ""  #: "" if the whole reading is meant
@@ -33,7 +33,7 @@ class LeftOut:
 
 
 def together(entries: Sequence[LeftOut], most: int) -> list[LeftOut]:
-    """The entries for a page: more than ``most`` of one rule, file, channel and weight as one, with the first reason."""
+    """The entries for a page: more than ``most`` of one rule, file, channel and weight are merged, with the first reason."""
     alike: dict[tuple[object, ...], list[LeftOut]] = {}
     for one in entries:
         alike.setdefault((one.file, one.by, one.rule, one.channel, one.weight), []).append(one)
@@ -58,7 +58,7 @@ def by_hand(excluded: Sequence[ExcludedRows]) -> tuple[LeftOut, ...]:
 
 
 def by_rule(sweep: Sweep, which: np.ndarray, rule: str, why: str) -> tuple[LeftOut, ...]:
-    """The readings of a mask (n,) as one entry; none if it is empty."""
+    """The readings of a mask (n,) as one entry; no entry if the mask is empty."""
     if not np.any(which):
         return ()
     return (
@@ -76,14 +76,14 @@ def by_rule(sweep: Sweep, which: np.ndarray, rule: str, why: str) -> tuple[LeftO
 def of_recording(
     sweep: Sweep, wrong: Sequence[Fault], tried: Sequence[Stretch], used: np.ndarray
 ) -> tuple[LeftOut, ...]:
-    """Samples of a recording that no point averages, each under its first reason.
+    """Entries for the samples of a recording that are part of no average, each sample under its first reason.
 
     Parameters
     ----------
     sweep : the samples (n,)
     wrong : faults, in the order of their rules
     tried : all stretches
-    used : mask (n,) of the samples that points average
+    used : mask (n,) of the averaged samples
     """
     rest = ~used
     out: list[LeftOut] = []
@@ -95,7 +95,7 @@ def of_recording(
 
 
 def _dropped(n: int, tried: Sequence[Stretch]) -> Iterator[tuple[np.ndarray, str, str]]:
-    """Samples (n,) of dropped stretches by reason."""
+    """By reason, mask (n,) of the samples of dropped stretches."""
     for reason in dict.fromkeys(stretch.dropped for stretch in tried if stretch.dropped):
         which = np.zeros(n, dtype=bool)
         for stretch in tried:

@@ -1,8 +1,8 @@
 """Levels of the set-points: the conditions that a test plan repeats.
 
-A level is a place where values are dense; the densest is found first. So a few values on the way from one level to the
-next neither join two levels nor form one themselves. Evenly spread values, without a dense place, are cut into levels
-between one and two tolerances apart, so that they count as varied.
+A level is a cluster of values; the densest is found first. So a few values between two levels neither join these nor form a
+level themselves. Evenly spread values, without clusters, are cut into levels between one and two tolerances apart, so that they
+count as varied.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from mffit.points.points import Points
 
 @dataclass(frozen=True, slots=True)
 class LevelKind:
-    """A setting of a test plan, and how near two values of it are the same level."""
+    """A setting of a test plan, and the tolerance of its levels."""
 
     name: str
     tolerance: float  #: three standard deviations of a rig; values further apart may be two levels
-    relative: bool = False  #: the tolerance is a share of the value, which is positive
+    relative: bool = False  #: whether the tolerance is relative to the value, which must be positive
 
 
 LOAD = LevelKind("load", constants.CONDITION, relative=True)  # [N]
@@ -34,19 +34,16 @@ SPEED = LevelKind("speed", constants.CONDITION, relative=True)  # [m/s]
 SIDESLIP = LevelKind("sideslip", STRAIGHT.rad)  # [rad]
 SLIP = LevelKind("longitudinal slip", constants.SLIP)  # [-]
 KINDS = {kind.name: kind for kind in (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP, SLIP)}
-"""By the word of the quantity in :mod:`mffit.quantities`."""
+"""Kinds of levels by the word of the quantity in :mod:`mffit.quantities`."""
 
 NO_LEVEL = -1
-"""Label of a value that belongs to no level."""
+"""Label of a value outside all levels."""
 SCATTER = 1.0 / 3.0
 """Standard deviation of a held setting, in tolerances."""
 
 
 def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """Number (n,) of the level of each value, rising with the value from 0; ``NO_LEVEL`` for values between levels.
-
-    NaN belongs to no level.
-    """
+    """Index (n,) of the level of each value, rising with the value from 0; ``NO_LEVEL`` for values between levels and NaN."""
     return _labels(values, kind)[0]
 
 
@@ -65,16 +62,16 @@ def _labels(values: np.ndarray, kind: LevelKind) -> tuple[np.ndarray, np.ndarray
 
 
 def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """As :func:`nearest_labels`, with one label for each sweep that holds the setting: that of its median.
+    """As :func:`nearest_labels`, but a sweep that holds the setting has one label, that of its median.
 
-    A load wanders with the forces of a sweep, by more than a tolerance at small loads. Levels are therefore those of the medians
-    of such sweeps.
+    The load varies with the forces of a sweep, at small loads by more than the tolerance. Levels are therefore those of the
+    medians of such sweeps.
 
     Parameters
     ----------
     values : (n,)
-    sweep : (n,) number of each value's sweep
-    kind : of the setting
+    sweep : (n,) index of each value's sweep
+    kind : kind of the setting
     """
     held = np.array(values, dtype=float)
     scaled = in_tolerances(values, kind)
@@ -87,12 +84,12 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
 
 
 def labels_of_setting(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """The level (n,) that each value of a setting was meant to have: :func:`labels_of_sweeps` of a load, which wanders."""
+    """Index (n,) of the intended level of each value: by :func:`labels_of_sweeps` for a load, else :func:`nearest_labels`."""
     return labels_of_sweeps(values, sweep, kind) if kind is LOAD else nearest_labels(values, kind)
 
 
 def _is_held(scaled: np.ndarray) -> bool:
-    """Whether rising values (n,) in tolerances wander about one value: no two levels are in them, and none is far off."""
+    """Whether sorted values (n,) in tolerances vary around one value: without a gap between levels and over a limited range."""
     low, high = np.percentile(scaled, constants.CORE)
     inside = scaled[(scaled >= low) & (scaled <= high)]
     wanders = bool(np.diff(inside).max(initial=0.0) < 1.0)
@@ -100,7 +97,7 @@ def _is_held(scaled: np.ndarray) -> bool:
 
 
 def median_of_labels(values: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """Median (n,) of the values with the same label as each; NaN where there is none."""
+    """Median (n,) of the values with the same label as each value; NaN without a label."""
     out = np.full(len(values), np.nan)
     for k in np.unique(found[found != NO_LEVEL]):
         out[found == k] = np.median(values[found == k])
@@ -116,12 +113,12 @@ def level_values(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 
 def count(values: np.ndarray, kind: LevelKind) -> int:
-    """Number of levels among the values; evenly spread values are three or more from four tolerances on."""
+    """Number of levels among the values; values spread evenly over four tolerances or more count as three or more levels."""
     return len(_centres(in_tolerances(values, kind)))
 
 
 def spread(values: np.ndarray, kind: LevelKind) -> bool:
-    """Whether the values wander through their range instead of keeping to two or more levels."""
+    """Whether the values are spread over their range instead of keeping to two or more levels."""
     scaled = in_tolerances(values, kind)
     centres = _centres(scaled)
     if len(centres) < 2:
@@ -131,9 +128,9 @@ def spread(values: np.ndarray, kind: LevelKind) -> bool:
 
 
 def rows_of_equal(keys: np.ndarray) -> list[np.ndarray]:
-    """Rows (m,) with equal keys (n, k), in the order of the keys.
+    """Groups of row indices (m,) with equal keys (n, k), in the order of the keys.
 
-    The columns are compared one after the other, which for few levels is many times faster than comparing whole rows.
+    Columns are compared one by one, which for few levels is many times faster than comparing whole rows.
     """
     label = np.zeros(len(keys), dtype=int)
     for column in keys.T:
@@ -146,10 +143,7 @@ def rows_of_equal(keys: np.ndarray) -> list[np.ndarray]:
 
 
 def main_pressure(points: Points) -> np.ndarray:
-    """Mask (n,) of the points at the pressure at which most of the programme was run.
-
-    Of pressures with equally many points it is the one nearest to the middle of the programme.
-    """
+    """Mask (n,) of the points at the pressure with most points; among equals, the pressure nearest the median of all points."""
     level = labels(points.p, PRESSURE)
     sizes = np.bincount(level[level >= 0])
     if not len(sizes):
@@ -167,7 +161,7 @@ def main_path(points: Points) -> float:
 
 
 def in_tolerances(values: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """The values (n,) in tolerances; NaN where they are not finite."""
+    """The values (n,) in units of the tolerance, logarithmic if it is relative; NaN where they are not finite."""
     values = np.asarray(values, dtype=float)
     if kind.relative:
         values = np.log(np.where(values > 0.0, values, np.nan))
@@ -175,7 +169,7 @@ def in_tolerances(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 
 def _centres(scaled: np.ndarray) -> np.ndarray:
-    """Middles (k,) of the levels, rising, more than one tolerance apart."""
+    """Centres (k,) of the levels, rising, more than one tolerance apart."""
     known = _Counted(*np.unique(scaled[np.isfinite(scaled)], return_counts=True))
     if not len(known.values):
         return known.values
@@ -189,13 +183,13 @@ def _centres(scaled: np.ndarray) -> np.ndarray:
             places.append(place)
             sizes.append(int(about.counts.sum()))
         left = left.part(np.abs(left.values - place) >= 1.0)
-    # Below the scatter of a count: among few values a single one may be a level.
+    # Drop levels with very few values compared with the largest; among few values a single one may be a level.
     fewest = np.sqrt(max(sizes)) * SCATTER
     return np.sort([place for place, size in zip(places, sizes, strict=True) if size >= fewest])
 
 
 class _Counted(NamedTuple):
-    """Distinct values (k,), rising, and how often each occurs; set-points repeat a few values many times."""
+    """Distinct values (k,), rising, and their frequencies."""
 
     values: np.ndarray
     counts: np.ndarray
@@ -205,20 +199,20 @@ class _Counted(NamedTuple):
 
 
 def _is_flank(place: float, known: _Counted, density: np.ndarray) -> bool:
-    """Whether a place belongs to the slope of a denser one."""
+    """Whether a value lies on the flank of a denser cluster."""
     about = density[np.abs(known.values - place) <= 0.5]
     return bool(_within(np.array([place]), known, 0.5)[0] < constants.LEVEL_FLANK * about.max())
 
 
 def _within(places: np.ndarray, among: _Counted, distance: float) -> np.ndarray:
-    """How many values lie within a distance of each place."""
+    """Number of values within a distance of each place."""
     below = np.concatenate([[0], np.cumsum(among.counts)])
     upper = below[np.searchsorted(among.values, places + distance, side="right")]
     return np.asarray(upper - below[np.searchsorted(among.values, places - distance, side="left")])
 
 
 def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Number (n,) of the nearest centre; ``NO_LEVEL`` for NaN."""
+    """Index (n,) of the nearest centre; ``NO_LEVEL`` for NaN."""
     if not len(centres):
         return np.full(len(scaled), NO_LEVEL)
     near = np.searchsorted((centres[1:] + centres[:-1]) / 2.0, scaled)
@@ -226,5 +220,5 @@ def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:
 
 
 def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """``values`` at the numbers (n,), NaN at ``NO_LEVEL``."""
+    """``values`` at the indices (n,); NaN at ``NO_LEVEL``."""
     return np.asarray(np.append(values, np.nan)[index])

@@ -38,15 +38,13 @@ class Reading(NamedTuple):
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...]  #: of all recordings
-    left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules
+    left_out: tuple[LeftOut, ...] = ()  #: readings left out by hand and by rules
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
     steps: Mapping[str, Points] = MappingProxyType({})
-    """Samples of steps of the sideslip angle or of slip, each run a sweep, by the setting that steps."""
-    notes: tuple[str, ...] = ()  #: what was taken as found; nothing to mend
-    taken_off: tuple[
-        str, ...
-    ] = ()  #: sentences about errors of the rig that nobody declared and that were taken off
-    as_read: Points | None = None  #: the points with these errors; None without any
+    """By stepped setting (sideslip angle or slip), samples of steps, with each run as a sweep."""
+    notes: tuple[str, ...] = ()  #: remarks that need no action
+    taken_off: tuple[str, ...] = ()  #: sentences about undeclared rig errors that were subtracted
+    as_read: Points | None = None  #: the points before this subtraction; None without any
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -56,20 +54,20 @@ def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str
 
 
 def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False) -> Reading:
-    """Read the sweeps of a configuration as points in ISO-W.
+    """The sweeps of a configuration as points in ISO-W axes.
 
     Parameters
     ----------
     config : the checked ``tyre.toml``
-    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read; and a zero of the
-        longitudinal slip that is an error of the rig
+    continuous : keep the means along sweeps that never rest, marked ``continuous``, with the angle as read; and keep an
+        undeclared zero of the longitudinal slip in the readings
     may_be_empty : return no points instead of raising an error if no recording gives one
 
     Returns
     -------
     Reading
-        On a straight path the means along continuous sweeps become points like any others, with the times within their
-        sweep; the fit has a number for the lag of the force. On a disc, which needs pairs of steady points, they are left out.
+        On a straight path the means along continuous sweeps are points like any others, with their times, because the fit models
+        the lag of the force. On a disc, which needs pairs of steady points, they are left out.
 
     Raises
     ------
@@ -78,7 +76,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
 
     Notes
     -----
-    Whether the points are plausible is judged by :func:`mffit.suspicion.before_the_fit`.
+    :func:`mffit.suspicion.before_the_fit` judges whether the points are plausible.
     """
     with as_declared(config):
         found = files.load(config)
@@ -131,7 +129,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
 
 
 def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points | None:
-    """The points with the slip as the rig read it; None if nothing was taken off."""
+    """The points with the slip as the rig read it; None if no zero was subtracted."""
     if not taken_off:
         return None
     kappa = points.kappa.copy()
@@ -154,7 +152,7 @@ def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> P
 
 
 def _nothing(reduced: Sequence[Reduced]) -> str:
-    """A sentence about recordings that give no point."""
+    """The error sentence if no recording gives a point."""
     reasons: dict[str, float] = {}
     for note in (note for part in reduced for note in part.stretches if note.dropped):
         reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
@@ -168,7 +166,7 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
 
 
 def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:
-    """Points of a bare table, for the alignment of the sideslip axis.
+    """Points of a table without ``tyre.toml``, for the alignment of the sideslip axis.
 
     Parameters
     ----------
@@ -195,7 +193,7 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
 
 
 def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Path) -> str:
-    """The value of a fact that a bare table cannot hold."""
+    """The value of an argument that a bare table cannot state; raises InputError if it is not one of ``choice``."""
     if value in choice:
         return value
     found = f"does not say the rig's {name}" if value is None else f'{name} = "{value}" is not known'
@@ -219,7 +217,7 @@ def _moving_left_out(points: Points) -> tuple[LeftOut, ...]:
 
 
 def _thin(points: Points, config: Config) -> list[str]:
-    """Sentences about what the data lack."""
+    """Warnings about missing channels, directions and loads."""
     out = []
     if not np.any(np.isfinite(points.Mz)):
         out.append("Mz_Nm was not measured: the coefficients of the self-aligning moment are held")

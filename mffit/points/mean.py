@@ -1,4 +1,4 @@
-"""The mean of a noisy record and its standard error if neighbouring samples are correlated."""
+"""The mean of a record with autocorrelated noise, and its standard error."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from mffit.points import constants
 def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
     """Standard error (k,) of the mean of each of k records of one channel, all of one recording.
 
-    A record that is only a few times as long as the memory of its noise hardly shows its own noise. The noise of each record is
-    therefore averaged with that of all records, weighed by degrees of freedom. How far the records differ beyond the chance of
-    their estimates gives the weight of what is common (Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004, article 3): all of it if
-    they differ by chance only.
+    A record only a few correlation times long hardly determines its own noise. The noise of each record is therefore averaged
+    with the common noise of all records, weighted by degrees of freedom. The weight of the common noise follows from the scatter
+    of the estimates beyond chance (Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004, article 3); without such scatter it is used
+    alone.
     """
     found = [_mean_of(x) for x in records]
     errors = np.array([one.error for one in found])
@@ -27,7 +27,7 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
         return errors
     n = np.array([len(x) for x in records])[known]
     freedom = n / (1.0 + 2.0 * np.array([one.inefficiency for one in found])[known])
-    noise = errors[known] ** 2 * n  # variance of the mean of one sample, if all were like that
+    noise = errors[known] ** 2 * n  # variance per sample, autocorrelation included
     logs = np.log(noise) - digamma(0.5 * freedom) + np.log(0.5 * freedom)
     beyond_chance = float(np.var(logs, ddof=1) - np.mean(polygamma(1, 0.5 * freedom)))
     if beyond_chance <= 0.0:
@@ -54,11 +54,11 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
 
     Notes
     -----
-    Var(mean) = g sigma^2 / n, where g, the statistical inefficiency, is the number of samples that count as
-    one. It is the spectral density at zero frequency of an autoregressive process, e / (1 - sum a_k)^2 over
-    sigma^2, whose coefficients come from Burg's recursion and whose order from the Bayesian information
-    criterion. A window over the autocorrelation function needs twice the record for the same certainty.
-    Estimating the mean from the same record costs ``g`` of its ``n`` samples, in the variance and in ``g`` itself.
+    Var(mean) = g sigma^2 / n, where g, the statistical inefficiency, is the number of samples that count as one. g is the
+    spectral density at zero frequency of an autoregressive process, e / (1 - sum a_k)^2 over sigma^2, with coefficients from
+    Burg's recursion and the order from the Bayesian information criterion. Windowing the autocorrelation function would need
+    twice the record for the same accuracy. Estimating the mean from the same record costs ``g`` of its ``n`` samples, in the
+    variance and in ``g`` itself.
     """
     found = _mean_of(x)
     return found.mean, found.error
@@ -87,7 +87,7 @@ def _mean_of(x: np.ndarray) -> _MeanOfRecord:
 
 
 def _inverse_trigamma(y: float) -> float:
-    """The x at which the derivative of the digamma function is ``y``, both positive; Newton's method on its reciprocal."""
+    """The x > 0 with trigamma(x) = ``y`` > 0, by Newton's method on the reciprocal."""
     x = 0.5 + 1.0 / y
     for _ in range(20):
         value = float(polygamma(1, x))

@@ -1,4 +1,4 @@
-"""Misfit over the stated noise, and the noise that neighbouring readings show where none is stated."""
+"""Misfit over the stated noise, and noise estimated from neighbouring readings."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from mffit.scatter import rms, robust
 class OverNoise(NamedTuple):
     """A misfit in units of the noise."""
 
-    ratio: float  #: root mean square of (model - reading) / u; NaN if no reading has a noise
-    n: int  #: number of readings that have one
-    of_noise: float = np.inf  #: readings that the noise itself is known from; infinite if it is stated
+    ratio: float  #: root mean square of (model - reading) / u; NaN if no reading states u
+    n: int  #: number of readings that state u
+    of_noise: float = np.inf  #: effective number of readings behind the noise; infinite if it is stated
 
 
 def over_noise(
     model: np.ndarray, measured: np.ndarray, u: np.ndarray, used: np.ndarray | None = None
 ) -> OverNoise:
-    """THE misfit over noise: of the readings that have an uncertainty (n,), of the ``used`` ones (mask (n,)) only."""
+    """The misfit over noise of the readings with an uncertainty (n,), restricted to the mask ``used`` (n,) if given."""
     known = stating(u) & np.isfinite(measured) & np.isfinite(model)
     known = known if used is None else known & used
     return OverNoise(rms((model - measured)[known] / u[known]), int(known.sum()))
@@ -35,7 +35,7 @@ def stating(u: np.ndarray) -> np.ndarray:
 
 
 def estimated_noise(points: Points, model: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """By channel, the noise of the readings that state none, from the misfit of neighbours; NaN where it cannot be seen."""
+    """By channel, the noise of the readings without a stated one, from residuals of neighbours; NaN if sweeps are too short."""
     found = {}
     for name, values in model.items():
         silent = ~stating(points.u(name))

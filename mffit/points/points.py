@@ -1,4 +1,4 @@
-"""The record of finished measuring points, from which every later step starts."""
+"""The record of finished measuring points, the input of every later step."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def of_si(column: str) -> float:
 
 """Factors from SI to units of conditions."""
 COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
-"""Fields of indices, and the field with the names that they count."""
+"""Index fields, and the field with the corresponding names."""
 OPTIONAL: Mapping[str, Any] = {
     **dict.fromkeys((*CHANNELS, *(f"u_{name}" for name in CHANNELS), "T", "t", "iteration", "time"), np.nan),
     "kappa": 0.0,
@@ -38,10 +38,10 @@ OPTIONAL: Mapping[str, Any] = {
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Points(MeasuredRows):
-    """Steady points; arrays are read-only. Angles are the rig's readings in ISO axes; nothing is corrected.
+    """Steady points; arrays are read-only. Angles are the rig's readings in ISO axes, uncorrected.
 
-    Built by :func:`make_points`. Code that works for any channel asks :attr:`measured`, :meth:`channel` and :meth:`u`; the
-    fields serve what is about one channel by nature.
+    Built by :func:`make_points`. Code for any channel should use :attr:`measured`, :meth:`channel` and :meth:`u`; the fields are
+    for code about one particular channel.
     """
 
     phi_t: np.ndarray  #: turn slip of the path, declared radius [1/m]
@@ -102,9 +102,9 @@ class Points(MeasuredRows):
         return np.asarray(self.direction * self.V)
 
     def select(self, which: np.ndarray | slice, *, with_table: bool = True) -> Points:
-        """The points of a boolean mask (n,), of an index array (m,), in that order, or of a slice; their table may be left empty.
+        """The points of a boolean mask (n,), of an index array (m,) in its order, or of a slice (views, not copies).
 
-        Those of a slice are not copied.
+        Without ``with_table`` the table is empty, which is faster.
         """
         if not isinstance(which, slice):
             which = np.asarray(which)
@@ -183,7 +183,7 @@ def make_points(
 
 
 def concatenate(parts: Sequence[Points]) -> Points:
-    """Join points one after the other; sweeps, files and set-ups are renumbered, tables joined by column name."""
+    """All points in one record; sweeps, files and set-ups are renumbered, tables joined by column name."""
     arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
     names: dict[str, tuple[str, ...]] = {}
     for field, of_field in COUNTED.items():
@@ -206,7 +206,7 @@ def _refuse_unknown(given: Mapping[str, Any]) -> None:
 
 
 def _renumbered(index: np.ndarray, old: Sequence[str], new: Sequence[str]) -> np.ndarray:
-    """An index array (n,) into ``old`` as one into ``new``."""
+    """An index array (n,) into ``old``, converted to one into ``new``."""
     return np.asarray(np.array([new.index(name) for name in old], dtype=int)[index])
 
 

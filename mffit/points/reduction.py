@@ -1,4 +1,4 @@
-"""One sweep to points: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
+"""Points from one sweep: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
 
 from __future__ import annotations
 
@@ -18,22 +18,24 @@ from mffit.sweeps import Sweep
 
 
 class Reduced(NamedTuple):
-    """Points of one sweep, and what was left out."""
+    """Points of one sweep, and the readings left out."""
 
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
-    left_out: tuple[LeftOut, ...] = ()  #: by rules
+    left_out: tuple[LeftOut, ...] = ()  #: readings left out by rules
 
 
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
-    """Points of one sweep.
+    """The points of one sweep: means over plateaus and, where an angle keeps moving, over short times, marked ``continuous``.
 
-    ``phi_t`` is the turn slip of the path [1/m]; ``scale`` the usual size of the settings in all series of the campaign, to
-    judge changes (None: of this series alone).
+    Every moving stretch is a sweep of its own. ``phi_t`` is the turn slip of the path [1/m]; ``scale`` is the usual size of the
+    settings in all series of the campaign, to judge changes (None: that of this series).
 
-    They are means over the plateaus; where an angle keeps moving, means over a tenth of a second, marked ``continuous``, with
-    every stretch as a sweep of its own. An InputError says that the time of a series does not rise.
+    Raises
+    ------
+    InputError
+        The time of a series does not rise.
     """
     if not sweep.is_series:
         lost = driven(sweep)
@@ -61,7 +63,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
 
 
 def _without_faulty_plateaus(tried: list[Stretch], wrong: list[Fault], faulty: np.ndarray) -> list[Stretch]:
-    """The stretches; a plateau that has only faulty samples (n,) is dropped for the reason of its first."""
+    """The stretches, with plateaus of only faulty samples (n,) dropped for the reason of their first sample."""
     return [
         stretch._replace(dropped=next(fault.reason for fault in wrong if fault.which[stretch.begin]))
         if stretch.kind == PLATEAU and not stretch.dropped and np.all(faulty[stretch.begin : stretch.end])

@@ -1,4 +1,4 @@
-"""Rows of a table about every stretch of a recording, and sentences about what was left out."""
+"""Table rows about every stretch of a recording, and sentences about left-out samples and stretches."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
 
 COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
-"""Column of a setting."""
+"""Column of each setting."""
 
 
 def faulty(sweep: Sweep, wrong: Sequence[Fault]) -> tuple[str, ...]:
-    """Sentences about faulty samples or finished points, with the first line."""
+    """Sentences about faulty samples or finished points, each with its first line."""
     out = []
     for fault in wrong:
         first, number = int(np.argmax(fault.which)), int(np.sum(fault.which))
@@ -70,7 +70,7 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int) -> StretchNote
 
 
 def swept(sweep: Sweep, stretch: Stretch) -> str:
-    """Column of the setting that moves most along a sweep, measured in smallest sweeps."""
+    """Column of the setting that moves most along a sweep, relative to the smallest range of a sweep."""
     part, settings = slice(stretch.begin, stretch.end), settings_of(sweep)
     ranges = {name: float(np.ptp(getattr(settings, name)[part])) / least for name, least in RANGE.items()}
     return COLUMN_OF[max(ranges, key=lambda name: ranges[name])]

@@ -1,4 +1,4 @@
-"""Where the longitudinal force is zero over load, and slip against free rolling from slip against another radius.
+"""Slip at zero longitudinal force over load, and conversion of slip against another radius to slip against free rolling.
 
 A wheel without longitudinal force rolls freely. Slip against the loaded radius ``l`` is ``omega l / V - 1``; slip of the
 Magic Formula is ``omega Re / V - 1`` with the radius ``Re`` of free rolling. With the slip ``s0 = l / Re - 1`` at which the
@@ -23,23 +23,23 @@ from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
 
 FREE, LOADED = "free-rolling", "loaded-radius"
-"""What the slip of a column may be against."""
+"""Possible references of a slip column."""
 WEAKEST = constants.SOFTEST_SLIP_STIFFNESS * constants.SMALLEST_SWEEP_OF_SLIP
 """|Fx| over load that every driven tyre exceeds."""
 FROM_SPEEDS = "slip from wheel and road speed"
-"""In place of a heading, where a rig records no slip."""
+"""Replaces the heading if a rig records no slip."""
 
 
 class SlipRemarks(NamedTuple):
-    """What is to be said of the definition of slip, and the shifts that nobody declared."""
+    """Remarks on the definition of slip, and undeclared shifts."""
 
-    notes: tuple[str, ...]  #: what was taken, where nothing contradicts it
-    warnings: tuple[str, ...]  #: a contradiction, or a shift that nobody declared
-    taken_off: Mapping[str, tuple[SlipZero, str]]  #: by file, such a shift, and the sentence about it
+    notes: tuple[str, ...]  #: the assumed definition, if nothing contradicts it
+    warnings: tuple[str, ...]  #: contradictions and undeclared shifts
+    taken_off: Mapping[str, tuple[SlipZero, str]]  #: by file, an undeclared shift, and the sentence about it
 
 
 class Driven(NamedTuple):
-    """Readings (n,) in any axes; only the magnitudes of load and angles count."""
+    """Readings (n,) in any axes; only the magnitudes of load and angles are used."""
 
     kappa: np.ndarray
     Fx: np.ndarray  #: [N]
@@ -52,7 +52,7 @@ class Driven(NamedTuple):
 
 
 class ZeroAtLoad(NamedTuple):
-    """Slip at which the longitudinal force is zero at one load, upright and without sideslip as nearly as was run."""
+    """Slip at which the longitudinal force is zero at one load, at the smallest camber and sideslip that were run."""
 
     load: float  #: [N]
     slip: float
@@ -62,43 +62,43 @@ class ZeroAtLoad(NamedTuple):
 class SlipZero:
     """The slip at which the longitudinal force is zero, over load, pressure, camber and sideslip."""
 
-    slope: float  #: of force per load over slip, at zero force
+    slope: float  #: slope of force per load over slip, at zero force
     levels: tuple[ZeroAtLoad, ...]
     middle: Driven  #: usual size of each reading, (1,)
-    coefficients: np.ndarray  #: of :func:`_conditions`, for the slip or for ``(1 + slip) / RL`` [1/m]
-    per_radius: bool = False  #: the loaded radius explains the slip better
+    coefficients: np.ndarray  #: factors of :func:`_conditions`, for the slip or for ``(1 + slip) / RL`` [1/m]
+    per_radius: bool = False  #: whether the measured loaded radius explains the slip better
 
     def at(self, of: Driven) -> np.ndarray:
-        """The slip (n,) of zero force under the conditions of some readings; at their loaded radius, if that counts."""
+        """The slip (n,) of zero force at the conditions of some readings, and at their loaded radius with ``per_radius``."""
         found = _conditions(of, self.middle) @ self.coefficients
         return np.asarray(of.RL * found - 1.0 if self.per_radius else found)
 
     @property
     def reversed(self) -> SlipZero:
-        """The same for slip of the other sign."""
+        """The record for slip with the opposite sign."""
         assert not self.per_radius
         turned = tuple(ZeroAtLoad(level.load, -level.slip) for level in self.levels)
         return replace(self, slope=-self.slope, levels=turned, coefficients=-self.coefficients)
 
     @property
     def largest(self) -> float:
-        """Largest magnitude over the loads."""
+        """Largest absolute slip of zero force over the loads."""
         return max(abs(level.slip) for level in self.levels)
 
     @property
     def is_free_rolling(self) -> bool:
-        """Whether the slip is against free rolling: the force is zero where the slip is."""
+        """Whether the slip is against free rolling, that is zero where the force is zero."""
         return self.largest <= constants.SLIP_OF_ZERO_FORCE
 
     @property
     def falls(self) -> bool:
-        """Whether the zero changes with load, as that of slip against the loaded radius does."""
+        """Whether the slip of zero force changes with load, as it does for slip against the loaded radius."""
         slips = [level.slip for level in self.levels]
         return max(slips) - min(slips) > constants.SLIP_OF_ZERO_FORCE
 
     @property
     def within(self) -> str:
-        """That the zeros are small, for a sentence."""
+        """A clause that the zeros are small."""
         return f"Fx = 0 lies at slip 0 within {max(self.largest, 1e-4):.4f} at {self._loads}"
 
     @property
@@ -107,21 +107,21 @@ class SlipZero:
 
     @property
     def said(self) -> str:
-        """The zeros with their loads, for a sentence."""
+        """The zeros with their loads, in words."""
         slips = listed([f"{level.slip:+.4f}" for level in self.levels])
         return f"{slips} at {self._loads}"
 
 
 def slip_zero(of: Driven) -> SlipZero | None:
-    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie near zero force.
+    """The slip of zero longitudinal force; None if slip hardly varies or too few readings lie near zero force.
 
-    Enough lie on either side of it, or at it: those of an undriven wheel, with slip that was run in steps.
+    Readings are needed on both sides of zero force or, if slip was run in steps, at it.
     """
     if (
         not np.nanmax(of.kappa, initial=-np.inf) - np.nanmin(of.kappa, initial=np.inf)
         >= constants.SMALLEST_SWEEP_OF_SLIP
     ):
-        return None  # a freely rolling wheel: Fx over slip is that of the noise
+        return None  # a freely rolling wheel: the slope of Fx over slip is only noise
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load
@@ -143,11 +143,11 @@ def slip_zero(of: Driven) -> SlipZero | None:
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     every = np.isfinite(of.kappa) & np.isfinite(force)
-    if in_steps:  # few readings show the slope at zero: the whole curve shows sign and unit
+    if in_steps:  # too few readings for the slope at zero: take sign and size from the whole curve
         driven = every & (np.abs(force) > some)
         inverse = float(np.median((of.kappa - _conditions(of, middle) @ found)[driven] / force[driven]))
     if inverse * float(np.mean(of.kappa[every] * force[every])) < 0.0:
-        return None  # few points near zero: their line contradicts the whole curve
+        return None  # the line through few points near zero contradicts the whole curve
     zero = SlipZero(1.0 / inverse if inverse else np.nan, _at_loads(used, middle, found), middle, found)
     if np.all(np.isfinite(of.RL)):
         by_radius, left = _robust_lines(design, (1.0 + used.kappa) / used.RL)
@@ -159,17 +159,17 @@ def slip_zero(of: Driven) -> SlipZero | None:
 def against_free_rolling(
     sweeps: Sequence[Sweep], config: Config, *, with_errors: bool = False
 ) -> tuple[tuple[Sweep, ...], SlipRemarks]:
-    """The sweeps with slip against free rolling, and what is to be said of the definition of slip and the shift.
+    """The sweeps with slip against free rolling, and remarks on its definition and shift.
 
-    Files whose slip has the same heading share the definition and the zero. ``with_errors``: a zero that is the same at every
-    load, and that nobody declared, stays in the slip, as an error of the rig.
+    Files whose slip has the same heading share the definition and the zero. ``with_errors``: an undeclared zero that is the same
+    at every load stays in the slip as a rig error.
     """
     stated: dict[str, tuple[str, str | None]] = {}
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
     sweeps, derived = _with_slip(sweeps, config.tyre.unloaded_radius)
-    # Not recorded, so it follows from speeds.
+    # Slip that was not recorded but computed from speeds.
     stated |= {s.file: (FROM_SPEEDS, None) for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
     out = list(sweeps)
     notes: list[str] = []
@@ -193,7 +193,7 @@ def against_free_rolling(
         if with_errors and against is None and not zero.falls:
             continue
         said = sentence(heading, against, zero)
-        if not (against == FREE and zero.is_free_rolling):  # declared so, and it is
+        if not (against == FREE and zero.is_free_rolling):  # no remark if the declaration is right
             expected = against is None if zero.is_free_rolling else against == LOADED
             (notes if expected else warnings).append(said)
         if against == LOADED or (against is None and not zero.is_free_rolling):
@@ -207,7 +207,7 @@ def against_free_rolling(
 
 
 def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
-    """What the slip of a column is against, and the shift that is taken off."""
+    """A sentence on the reference of a slip column, and on the subtracted shift."""
     found = f"Fx = 0 lies at slip {zero.said}"
     if zero.is_free_rolling:
         if against == LOADED:
@@ -224,15 +224,15 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
 
 
 def _too_weak(of: Driven) -> bool:
-    """Whether slips that show a force have less of one than any tyre."""
+    """Whether Fx over load is smaller than for any tyre although slip is large enough."""
     shown = (np.abs(of.kappa) > constants.SMALLEST_SWEEP_OF_SLIP) & np.isfinite(of.Fx) & (np.abs(of.Fz) > 0.0)
     if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.kappa[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
-        return False  # a wheel without drive: its slip says nothing
+        return False  # a wheel without drive
     return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < WEAKEST)
 
 
 def _weak(of: Driven, config: Config) -> str:
-    """What is wrong with the longitudinal force, and the remedy."""
+    """The error sentence for a longitudinal force that is too small, with the remedy."""
     column = config.columns.get("Fx_N")
     heading = (column.column if column is not None else None) or "Fx_N"
     return (
@@ -243,7 +243,7 @@ def _weak(of: Driven, config: Config) -> str:
 
 
 def _contradiction(heading: str, zero: SlipZero) -> str:
-    """Why a column cannot be slip as a ratio that is positive when driven; "" if it can."""
+    """Why a column cannot be slip as a ratio that is positive when driven; empty if it can."""
     if abs(zero.slope) < constants.SOFTEST_SLIP_STIFFNESS:
         return (
             f"Fx rises by {zero.slope:.2g} times the load per unit of {heading}, tyres by "
@@ -262,9 +262,9 @@ def readings_of(rows: MeasuredRows) -> Driven:
 
 
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:
-    """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip.
+    """Columns (n, k) of a linear model of the zero: load, its square, pressure, camber terms, sideslip, squared speed.
 
-    The free radius grows with the square of the speed, the last column.
+    The speed term stands for the growth of the free radius with the square of the speed.
     """
     load, camber = np.abs(of.Fz) / middle.Fz - 1.0, np.abs(of.gamma)
     nothing = np.zeros(len(load))
@@ -289,7 +289,7 @@ def _compliance(of: Driven, middle: Driven) -> np.ndarray:
 
 
 def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]:
-    """Least squares without the residuals beyond some standard deviations, and the scatter; an empty column gets zero."""
+    """Least-squares solution after rejection of outliers, and the robust scatter; empty columns get zero."""
     size = np.linalg.norm(design, axis=0)
     scaled = design / np.where(size > 0.0, size, 1.0)
     solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
@@ -302,7 +302,7 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]
 
 
 def _at_loads(of: Driven, middle: Driven, coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
-    """The zero at a low, the middle and a high load, upright and without sideslip as nearly as was run."""
+    """The zero at a low, the median and a high load, at the smallest camber and sideslip that were run."""
     low, high = constants.CORE
     loads = np.unique(np.percentile(np.abs(of.Fz), [low, 50.0, high]).round())
     usual = Driven(*(np.broadcast_to(value, len(loads)) for value in middle))
@@ -312,10 +312,10 @@ def _at_loads(of: Driven, middle: Driven, coefficients: np.ndarray) -> tuple[Zer
 
 
 def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[Sweep, ...], tuple[str, ...]]:
-    """The sweeps, with slip where speeds show that the wheel was driven and none was recorded; and a sentence about it.
+    """The sweeps, with slip computed from speeds if it was not recorded but the wheel was driven; and a sentence about it.
 
-    It is ``omega R / (V cos alpha) - 1`` with the radius that holds on average at the load. Its zero is free rolling only as far
-    as driving and braking balance; if Fx was measured, it is set to Fx = 0 later.
+    Slip is ``omega R / (V cos alpha) - 1`` with the mean radius at the load. Its zero is free rolling only if driving and braking
+    balance; if Fx was measured, the zero is later set to Fx = 0.
     """
     out, files = [], []
     for sweep in sweeps:
@@ -332,7 +332,7 @@ def _with_slip(sweeps: Sequence[Sweep], unloaded_radius: float) -> tuple[tuple[S
 
 
 def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
-    """Slip (n,) of a driven or braked wheel; None if it was recorded, if a speed lacks, or if the wheel rolled freely."""
+    """Slip (n,) of a driven or braked wheel; None if it was recorded, a speed is missing, or the wheel rolled freely."""
     if "kappa" in sweep.table or "V_mps" not in sweep.table:
         return None
     along = sweep.V * np.cos(sweep.alpha)
@@ -350,7 +350,7 @@ def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
 
 
 def _over_load(slip: np.ndarray, Fz: np.ndarray) -> np.ndarray:
-    """The slip (n,) as a parabola over load, as that of a freely rolling wheel against its unloaded radius."""
+    """Parabola of the slip over load, at each load (n,): the slip of free rolling against the unloaded radius."""
     if np.ptp(Fz) < constants.CONDITION * np.median(Fz):
         return np.full(len(slip), np.median(slip))
     return np.polynomial.Polynomial.fit(Fz, slip, 2)(Fz)

@@ -1,7 +1,7 @@
-"""Time series to stretches: where the rig stood still, and where it swept one angle or the longitudinal slip.
+"""Division of time series into stretches: plateaus, and sweeps of one angle or of the longitudinal slip.
 
-Only the settings (angles, slip, load, pressure, speed) decide this. The forces decide later how much of a stretch is
-transient, and whether it ever came to rest (``settling``).
+The division uses only the settings (angles, slip, load, pressure, speed). Later, :mod:`mffit.points.choice` uses the forces to
+remove transients and to drop plateaus that never settle.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ STEP = {
     "gamma": constants.STEP_OF_ANGLE.rad,
     "kappa": float(constants.SLIP),
 }
-"""Settings that a rig sweeps, in the order in which they are looked for, and the smallest change to another set-point."""
+"""Settings that a rig sweeps, in the order of the search, and the smallest change to another set-point."""
 RANGE = {
     "alpha": constants.SMALLEST_SWEEP.rad,
     "gamma": constants.SMALLEST_SWEEP.rad,
     "kappa": float(constants.SMALLEST_SWEEP_OF_SLIP),
 }
-"""Smallest range of a sweep of each."""
+"""Smallest range of a sweep, by setting."""
 Scale = Mapping[str, float]
 """Usual size of each setting in a recording."""
 
@@ -58,16 +58,16 @@ def stretches(
 
     Parameters
     ----------
-    settings : of one series
+    settings : settings of one series
     point : (n,) label of the point of every sample, "" between points; None: the settings decide
-    cuts : samples at which a new stretch begins, in addition to the gaps in time
-    scale : usual size of each setting in the whole campaign; of this series if None
+    cuts : samples at which a new stretch begins, in addition to gaps in time
+    scale : usual size of each setting in the whole campaign; if None, that of this series
 
     Returns
     -------
     list of Stretch
-        Plateaus, where all settings rest; sweeps, where an angle or the slip moves through its range and all else rests; and
-        moves, with the reason why they are neither, such as the way of an angle between two plateaus.
+        Plateaus, where all settings rest; sweeps, where one angle or the slip moves through its range and all else rests; and
+        moves, which are neither, with the reason, such as the change of an angle between two plateaus.
     """
     n = len(settings.time)
     if point is not None:
@@ -86,7 +86,7 @@ def stretches(
 
 
 def gaps(time: np.ndarray) -> np.ndarray:
-    """Samples behind a gap in time."""
+    """Indices of the first samples after gaps in time."""
     steps = np.diff(time)
     if not len(steps):
         return np.zeros(0, dtype=int)
@@ -95,7 +95,7 @@ def gaps(time: np.ndarray) -> np.ndarray:
 
 
 def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
-    """The stretches of a piece without gaps."""
+    """The stretches of a part without gaps."""
     if len(settings.time) < 2:
         return [Stretch(0, len(settings.time), "only one sample", MOVE)]
     masks = moves(settings, scale)
@@ -110,18 +110,18 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
 
 
 def _samples(settings: SteadySettings, seconds: float) -> int:
-    """Number of samples in a time, at least one."""
+    """Number of samples in a time [s], at least one."""
     n = len(settings.time)
     return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
 
 
 def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) -> list[Stretch]:
-    """The stretches of a piece of constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
+    """The stretches of a part at constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
     resting = ~np.any(list(moving.values()), axis=0)
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
     still = [rest for rest in rests if not _creeps(settings, rest)]
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in still]
-    staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # it rests for most of the time
+    staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # the rig rests most of the time
     shortest = 0.0 if staircase else constants.SHORTEST_STRETCH
     found = [s for s, seconds in zip(still, held, strict=True) if seconds >= shortest]
     covered = np.zeros(len(settings.time), dtype=bool)
@@ -135,7 +135,7 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
 def _swept(
     settings: SteadySettings, moving: Mapping[str, np.ndarray], begin: int, end: int, staircase: bool
 ) -> list[Stretch]:
-    """Sweeps of one setting in a moving piece; the rest of it moves between plateaus."""
+    """Sweeps of one setting in a moving part; the remaining samples are moves between plateaus."""
 
     def sweeps(name: str, pieces: list[tuple[int, int]]) -> list[Stretch]:
         values = getattr(settings, name)
@@ -167,13 +167,13 @@ def _swept(
 
 
 def _returns(x: np.ndarray) -> bool:
-    """Whether a setting goes back over a good part of its range."""
+    """Whether a setting returns over a large share of its range."""
     far = max(x.max() - max(x[0], x[-1]), min(x[0], x[-1]) - x.min())
     return bool(far > constants.RETURNED_SHARE * np.ptp(x))
 
 
 def scale_of(series: Sequence[SteadySettings]) -> Scale:
-    """Median size of each setting; 0 if it is not known."""
+    """Median absolute value of each setting; 0 if it is unknown."""
     every = {
         name: np.abs(np.concatenate([getattr(one, name) for one in series])) for name in (*STEP, *CONDITIONS)
     }
@@ -181,14 +181,14 @@ def scale_of(series: Sequence[SteadySettings]) -> Scale:
 
 
 def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
-    """Masks of the samples at which each setting changes.
+    """By setting, mask (n,) of the samples at which it changes.
 
-    ``scale`` is the usual size of each setting in the whole recording; of this series if None.
+    ``scale`` is the usual size of each setting in the whole recording; if None, that of this series.
     """
     n = len(settings.time)
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
-    clear = beyond(FALSE_ALARM / n)  # no pair of samples differs by so much by chance
+    clear = beyond(FALSE_ALARM / n)  # corrected for n comparisons
     masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
@@ -200,9 +200,9 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
                 usual = max(scale[name], float(np.median(np.abs(values))))
                 step = usual * _step_of_condition(masks["kappa"][lag:])
             smooth = uniform_filter1d(values, lag, mode="nearest")
-            noise = _noise(values) * np.sqrt(2.0 / lag)  # of the difference of two means
+            noise = _noise(values) * np.sqrt(2.0 / lag)  # standard deviation of the difference of two means
             change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(step, clear * noise)
-            # All samples between the two that differ: a change little above the smallest one shows in few of these pairs.
+            # Mark all samples between the two that differ, because a small change appears in few pairs only.
             begun = np.zeros(n + 1, dtype=int)
             begun[: n - lag] += change
             begun[lag + 1 :] -= change
@@ -212,7 +212,7 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
 
 
 def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
-    """Relative change of a condition to another set-point, where the slip rests and where it moves (n,)."""
+    """Relative change of a condition that counts as another set-point, larger where the slip moves (n,)."""
     if not np.any(driving):
         return float(constants.CONDITION)
     return np.where(
@@ -226,7 +226,7 @@ def _noise(values: np.ndarray) -> float:
 
 
 def _creeps(settings: SteadySettings, stretch: Stretch) -> bool:
-    """Whether an angle or the slip moves so slowly through the stretch that no single step shows."""
+    """Whether an angle or the slip moves through the stretch too slowly for :func:`moves` to detect it."""
     quarter = max((stretch.end - stretch.begin) // 4, 1)
     for name, step in STEP.items():
         part = getattr(settings, name)[stretch.begin : stretch.end]

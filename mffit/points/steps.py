@@ -1,4 +1,4 @@
-"""Recordings with steps of the sideslip angle or of slip: samples that show over which rolled distance the force follows."""
+"""Samples from recordings with steps of the sideslip angle or of slip, for the relaxation length."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from mffit.sweeps import Sweep
 class Stepped(NamedTuple):
     """A setting that a rig steps from one value to another."""
 
-    force: str  #: channel that follows it
-    smallest: float  #: change that is a step
-    beside: str  #: the other setting, which rests
-    rests: float  #: largest size of the other one
+    force: str  #: channel that responds
+    smallest: float  #: smallest change that counts as a step
+    beside: str  #: the other setting, which must rest
+    rests: float  #: largest absolute value of the other setting
 
 
 STEPPED = {
     "alpha": Stepped("Fy", STRAIGHT.rad, "kappa", float(constants.SLIP)),
     "kappa": Stepped("Fx", float(constants.SLIP), "alpha", STRAIGHT.rad),
 }
-"""By the name of the setting."""
+"""Stepped settings by name."""
 
 
 def steps(
     sweeps: Sequence[Sweep], phi_t: Mapping[str, float], radius: float, scale: Scale | None = None
 ) -> dict[str, Points]:
-    """Samples of every run of steps between held values, each run a sweep with its times, by the setting that steps.
+    """By stepped setting, the samples of all runs of steps between held values, with each run as a sweep with times.
 
-    A setting that no recording steps is left out.
+    Settings without steps have no entry.
 
     Parameters
     ----------
     sweeps : files of the campaign
     phi_t : turn slip of the path [1/m], by file
-    radius : unloaded radius [m], the size of relaxation lengths
+    radius : unloaded radius [m], the scale of relaxation lengths
     scale : usual size of the settings in the campaign
     """
     found: dict[str, list[Points]] = {}
@@ -60,7 +60,7 @@ def steps(
 
 
 def _runs(sweep: Sweep, radius: float, scale: Scale | None) -> list[tuple[str, int, int]]:
-    """The setting, the first and the last sample (excluded) of every run of steps."""
+    """The setting, the begin and the end (excluded) of every run of steps."""
     if len(sweep) < 2 or not all(np.all(np.isfinite(x)) for x in settings_of(sweep)):
         return []
     rolled = rolled_distance(sweep.time, sweep.V)
@@ -74,7 +74,7 @@ def _runs(sweep: Sweep, radius: float, scale: Scale | None) -> list[tuple[str, i
             if out and out[-1][::2] == (setting, before.end):
                 out[-1] = (setting, out[-1][1], after.end)
             else:
-                # What was before the first of the held values may still be settling.
+                # The force may still be settling to the first held value.
                 settled = int(np.searchsorted(rolled, rolled[before.begin] + rest))
                 out.append((setting, min(settled, before.end - 1), after.end))
     return out
@@ -83,7 +83,7 @@ def _runs(sweep: Sweep, radius: float, scale: Scale | None) -> list[tuple[str, i
 def _is_step(
     sweep: Sweep, setting: str, rolled: np.ndarray, before: Stretch, after: Stretch, radius: float
 ) -> bool:
-    """Whether a setting goes from one plateau to the next at once, all else the same, and is held long enough after it."""
+    """Whether a setting steps from one plateau to the next fast enough, with all else constant, and is then held long enough."""
     rows, step = slice(before.begin, after.end), STEPPED[setting]
     values = getattr(sweep, setting)
     first, last = (float(np.median(values[s.begin : s.end])) for s in (before, after))

@@ -1,4 +1,4 @@
-"""The record of one stretch of a recording: what it is, and why it is dropped if it gives no point."""
+"""The record of one stretch of a recording: its kind, and the reason if it is dropped."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ class Stretch(NamedTuple):
 
     begin: int
     end: int
-    dropped: str = ""  #: why they give no point; empty if they do
-    kind: str = PLATEAU  #: all settings rest; ``SWEEP``: one angle moves; ``MOVE``: anything else
+    dropped: str = ""  #: why the samples give no point; empty if they do
+    kind: str = PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle or the slip moves; ``MOVE``: anything else
 
 
 class StretchNote(NamedTuple):
     """One row of ``stretches.csv``, in a user's words and units."""
 
     file: str
-    sweep: str  #: label of the sweep it belongs to
+    sweep: str  #: label of its sweep
     kind: str
-    swept: str  #: name of the setting that a sweep moves, as in the columns of a file; empty for other kinds
+    swept: str  #: column of the setting that a sweep moves; empty for other kinds
     begin_s: float
     end_s: float
     first_line: int
@@ -39,7 +39,7 @@ class StretchNote(NamedTuple):
     Fz_N: float
     p_kPa: float
     T_degC: float
-    points: int  #: that it gives
+    points: int  #: number of points that it gives
     dropped: str  #: why it gives no point; empty if it does
 
 

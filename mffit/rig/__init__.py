@@ -1,4 +1,4 @@
-"""The forward model: the readings that a rig reports of a tyre, its own errors and the environment's influence included."""
+"""The forward model: readings of a tyre on a rig, including rig errors and influences of the environment."""
 
 from mffit.rig.histories import blocks, distance_km, reference_speed, sense, successive
 from mffit.rig.readings import Readings

@@ -21,9 +21,9 @@ from tir.outputs import outputs_of
 
 
 class Chain:
-    """One passage of points through rig and tyre; every quantity may be plain or traced.
+    """Computation of readings from set-points through rig and tyre; every quantity may be plain or traced.
 
-    The public attributes are what the formulae of :mod:`mffit.rig_errors` use.
+    The formulae of :mod:`mffit.rig_errors` use the public attributes.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Chain:
     numbers : every rig error, scalar or (n,)
     usual_radius : declared radius of the usual path [m]
     turn_slip, star : as in :class:`mffit.rig.Simulation`
-    history, rows : of the test of which the points are these rows (n,); default a test of their own
+    history, rows : history of the whole test, and the rows (n,) of the points in it; default: the points are the whole test
     """
 
     def __init__(
@@ -73,25 +73,25 @@ class Chain:
         return [self._quantities[channel] for channel in channels]
 
     def at_the_tyre(self) -> dict[str, np.ndarray]:
-        """Sideslip, camber [rad], load [N], turn slip [1/m] and longitudinal slip that the tyre itself has (n,)."""
+        """True sideslip, camber [rad], load [N], turn slip [1/m] and longitudinal slip of the tyre (n,)."""
         self._pass(BEFORE)
         names = [n for n in ("alpha", "gamma", "Fz", "phi_t", "kappa") if n in self._quantities]
         return {name: np.broadcast_to(plain(self._quantities[name]), len(self.points)) for name in names}
 
     def _pass(self, errors: Iterable[RigError]) -> None:
-        """Let rig errors act on what they change."""
+        """Apply rig errors to the quantities and coefficients that they change."""
         for error in errors:
             if error.formula is None or not self._acts(error):
                 continue
             number = self.numbers[error.name]
             for name in error.acts_on:
-                if name in CHANNELS and name not in self._quantities:  # not asked for
+                if name in CHANNELS and name not in self._quantities:  # channel not requested
                     continue
                 owner = self._quantities if name in self._quantities else self._coefficients
                 owner[name] = error.formula(number, owner[name], self)
 
     def _acts(self, error: RigError) -> bool:
-        """Whether an error may change anything: it has another number than without the error, or is traced."""
+        """Whether an error has an effect or is traced for derivatives."""
         number = self.numbers[error.name]
         return isinstance(number, Traced) or error.acts(number)
 
@@ -112,7 +112,7 @@ class Chain:
 
     @cached_property
     def beyond_usual_path(self) -> np.ndarray:
-        """Distance (n,) of each path from the usual one, outwards [m]."""
+        """Radius (n,) of each path less that of the usual one [m]."""
         return path_radii(self.points) - self._usual_radius
 
     @cached_property
@@ -150,18 +150,18 @@ class Chain:
 
     @property
     def along_sweep(self) -> np.ndarray:
-        """Place (n,) of every point in its sweep: 0 the first, 1 the last."""
+        """Position (n,) of every point in its sweep: 0 for the first, 1 for the last."""
         return self._history.along_sweep[self._rows]
 
     def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
-        """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""
+        """Sideslip (n,) [rad] that lags behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""
         read = plain(alpha)
         follows, slope = lagged_setting(self.points.replace(alpha=read), plain(sigma))
-        # Small changes of the reading count as of a wheel that follows at once.
+        # Derivatives by the reading neglect the lag.
         return alpha + (follows - read) + slope * (sigma - plain(sigma))
 
     def turned_by_moment(self, alpha: Any, give: Any) -> Any:
-        """Sideslip (n,) [rad] of a wheel that its own moment turns by ``give`` [rad/Nm] from ``alpha``."""
+        """Sideslip (n,) [rad] of a wheel on a steering with compliance ``give`` [rad/Nm], unloaded at ``alpha`` [rad]."""
         k, start = float(plain(give)), plain(alpha)
         held = np.broadcast_to(start, len(self.points))
         slope: Any = 0.0
@@ -175,11 +175,11 @@ class Chain:
                     break
         if self._tape is None:
             return held
-        # One Newton step on traced numbers: its value is the angle found, its derivatives are those of the solution.
+        # One Newton step with traced numbers keeps the solution and gives it the derivatives by the implicit function theorem.
         return held + (alpha + give * self._moment(held) - held) / (1.0 - k * slope)
 
     def held_in_play(self, alpha: Any, half_play: Any) -> Any:
-        """Sideslip (n,) [rad] of a wheel that is free by ``half_play`` [rad] to either side of ``alpha``."""
+        """Sideslip (n,) [rad] of a wheel that can turn freely by ``half_play`` [rad] to either side of ``alpha``."""
         conditions = self._without_history()
         middle = np.broadcast_to(plain(alpha), len(self.points))
         rest = settled(
@@ -199,7 +199,7 @@ class Chain:
         return plain(Mz), gradient(Mz, [at])[..., 0]
 
     def _following_root(self, alpha: np.ndarray) -> Any:
-        """Angles without moment (n,) that move with the traced numbers so that the moment stays zero."""
+        """Angles (n,) of zero moment, with derivatives by the traced numbers such that the moment stays zero."""
         tape = self._tape
         if tape is None:
             return alpha
@@ -213,7 +213,7 @@ class Chain:
         return self._tyre(("Mz",), alpha, rows)[0]
 
     def _tyre(self, wanted: tuple[str, ...], alpha: Any, rows: np.ndarray | None = None) -> list[Any]:
-        """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad]; of some rows only."""
+        """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad], for all or some rows."""
         conditions = {
             **{name: self._quantities[name] for name in self._conditions},
             "Vx": self.points.Vx,
@@ -226,12 +226,12 @@ class Chain:
 
     @property
     def _tape(self) -> list[Traced] | None:
-        """The record of the traced numbers; None if there are none."""
+        """The tape of the traced numbers; None without any."""
         known = (*self._coefficients.values(), *self.numbers.values())
         return next((value.tape for value in known if isinstance(value, Traced)), None)
 
     def _without_history(self) -> Chain:
-        """The same conditions with plain values only."""
+        """A copy with plain values only."""
         other = object.__new__(Chain)
         vars(other).update(vars(self))
         for name in ("_coefficients", "_quantities"):

@@ -1,4 +1,4 @@
-"""What a point owes to the points before it: distance rolled, sense of the sweep, usual path and usual speed."""
+"""Quantities of a point that depend on the other points: distance rolled, sense of the sweep, usual path and speed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mffit.rig import constants
 
 
 class History:
-    """What the points of a test owe to each other, computed once for all of them when it is first asked for."""
+    """Quantities of the points of a test that depend on other points, computed on first use."""
 
     def __init__(self, points: Points) -> None:
         self.points = points
@@ -30,7 +30,7 @@ class History:
 
     @cached_property
     def along_sweep(self) -> np.ndarray:
-        """Place (n,) of every point in its sweep: 0 the first, 1 the last."""
+        """Position (n,) of every point in its sweep: 0 for the first, 1 for the last."""
         out = np.zeros(len(self.points))
         for k in np.unique(self.points.sweep):
             rows = np.flatnonzero(self.points.sweep == k)
@@ -44,9 +44,9 @@ class History:
 
 
 def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
-    """Rows (m,) of successive blocks of the points, in their order; with ``by_sweep`` no sweep is divided.
+    """Row indices (m,) of successive blocks of the points; with ``by_sweep`` no sweep is divided.
 
-    Blocks of this size stay in the processor's cache. A sweep that is larger is a block by itself then.
+    The size of the blocks fits the processor's cache. With ``by_sweep`` a larger sweep is one block.
     """
     n, most = len(points), int(constants.POINTS_OF_A_BLOCK)
     if n <= most:
@@ -65,7 +65,7 @@ def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
 
 
 def successive(rows: np.ndarray) -> np.ndarray | slice:
-    """The rows (m,) as a slice if each follows the one before, which saves copies; else as they are."""
+    """The rows (m,) as a slice if they are consecutive, which saves copies; else unchanged."""
     if len(rows) and rows[-1] - rows[0] == len(rows) - 1 and np.all(np.diff(rows) == 1):
         return slice(int(rows[0]), int(rows[-1]) + 1)
     return rows
@@ -88,7 +88,7 @@ def reference_speed(points: Points) -> float:
 
 
 def sense(points: Points) -> np.ndarray:
-    """Sense (n,) in which the sideslip was moving along its sweep: 1 up, -1 down, 0 held."""
+    """Sense (n,) of the sideslip's motion along its sweep: 1 up, -1 down, 0 held."""
     out = np.zeros(len(points))
     for k in np.unique(points.sweep):
         rows = np.flatnonzero(points.sweep == k)
@@ -111,7 +111,7 @@ def distance_km(points: Points) -> np.ndarray:
 
 
 def of_part(points: Points, name: str) -> np.ndarray:
-    """1 at the points (n,) of the set-up, the file or the sweep of that name, the first of the three that has it; else 0."""
+    """Indicator (n,): 1 at the points of the set-up, else the file, else the sweep of that name; 0 elsewhere."""
     counted = ((points.setups, points.setup), (points.files, points.file), (points.sweep_names, points.sweep))
     names, index = next((pair for pair in counted if name in pair[0]), counted[0])
     return np.asarray(np.array([float(other == name) for other in names])[index])

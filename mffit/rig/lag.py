@@ -8,11 +8,11 @@ from mffit.points import Points
 
 
 def lagged_setting(points: Points, sigma: float, setting: str = "alpha") -> tuple[np.ndarray, np.ndarray]:
-    """Sideslip angle or slip (n,) that the force answers to [rad or -], and its derivative by the relaxation length [1/m].
+    """Lagged sideslip angle or slip (n,) to which the force corresponds [rad or -], and its derivative by the relaxation length.
 
-    ``sigma d(alpha')/ds + alpha' = alpha``; the same for ``setting`` kappa. Exact for an angle that moves linearly over the
-    rolled distance between samples, however far these are apart. Where the wheel does not roll, the lag stays constant. Every
-    sweep begins settled; steady points have no lag.
+    ``sigma d(alpha')/ds + alpha' = alpha``; the same for ``setting`` kappa. Exact for an angle that is linear in the rolled
+    distance between samples. If the wheel does not roll, the lag stays constant. Every sweep begins settled; steady points have
+    no lag.
 
     Over a step of length d from (alpha_0, alpha_0') to alpha_1, with q = d/sigma and f = (1 - exp(-q))/q, the lag
     b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
@@ -55,18 +55,18 @@ def _lag(moved: np.ndarray, steps: np.ndarray, sigma: float) -> tuple[np.ndarray
 def lag_of_move(
     row: int, moved: float, rolled: np.ndarray, sigma: float, share: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What a move between two samples adds to the lag (n,) if it went all at once, at a share of the way, and not evenly.
+    """Change of the lag (n,) if a move between two samples is abrupt instead of linear, and its two derivatives.
 
-    With its derivatives by the relaxation length [1/m] and by the share. A move at share u of a distance d leaves the lag
-    exp(-(1 - u) q) with q = d/sigma, and an even one (1 - exp(-q))/q, which is the mean over u.
+    The derivatives are by the relaxation length [1/m] and by the share. An abrupt move at share u of the distance d leaves the
+    lag exp(-(1 - u) q) with q = d/sigma, a linear one (1 - exp(-q))/q, which is the mean over u.
 
     Parameters
     ----------
-    row : the sample before the move
-    moved : the move [rad or -]
-    rolled : (n,) distance of every sample [m]
+    row : index of the sample before the move
+    moved : size of the move [rad or -]
+    rolled : (n,) distance rolled at every sample [m]
     sigma : relaxation length [m]
-    share : of the distance between the two samples, from 0 to 1
+    share : position of the move between the two samples, from 0 to 1
     """
     out = np.zeros((3, len(rolled)))
     q = (rolled[row + 1] - rolled[row]) / sigma

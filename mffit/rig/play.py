@@ -1,4 +1,4 @@
-"""Play of the steering axis: the sideslip at which the moment of the tyre holds a wheel that is free between two stops."""
+"""Play of the steering axis: the sideslip at which the tyre's moment holds a wheel that can turn between two stops."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ Moment = Callable[[np.ndarray], np.ndarray]
 
 
 class Settled(NamedTuple):
-    """Where the wheel comes to rest; arrays (n,)."""
+    """Rest positions of the wheel; arrays (n,)."""
 
     side: np.ndarray  #: +1 where a positive moment holds it at the lower stop, -1 at the upper one
-    floats: np.ndarray  #: bool: the moment vanishes between the stops, and the wheel rests there
-    alpha: np.ndarray  #: the sideslip angle at which it floats [rad]; NaN where a stop holds it
+    floats: np.ndarray  #: bool: whether the moment vanishes between the stops, where the wheel then rests
+    alpha: np.ndarray  #: sideslip angle at which it floats [rad]; NaN where a stop holds it
 
 
 def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_play: float) -> Settled:
-    """Where a wheel comes to rest that may turn by ``half_play`` to either side of ``alpha``.
+    """The rest positions of a wheel that can turn by ``half_play`` to either side of ``alpha``.
 
     Parameters
     ----------
-    moment_of : indices (m,) of conditions -> their moment on the wheel; a positive one turns it towards smaller sideslip
+    moment_of : takes indices (m,) of conditions and returns their moment; a positive one turns the wheel to smaller sideslip
     alpha : (n,) sideslip angle in the middle of the play [rad]
-    half_play : [rad]
+    half_play : half of the play [rad]
     """
     n = len(alpha)
-    both = moment_of(np.tile(np.arange(n), 2))  # both stops in one call, as a call costs more than its points
+    both = moment_of(np.tile(np.arange(n), 2))  # both stops in one call, because calls are expensive
     lower, upper = np.split(both(np.concatenate([alpha - half_play, alpha + half_play])), 2)
-    # If both stops would hold it, the moment in the middle decides to which of them the wheel turns.
+    # If both stops would hold the wheel, the moment in the middle decides to which one it turns.
     middle = moment_of(np.arange(n))(alpha) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
     at_lower, at_upper = lower > 0.0, upper < 0.0
     side = np.where(at_lower & (~at_upper | (middle > 0.0)), 1.0, -1.0)
     floats = ~at_lower & ~at_upper
-    rest = np.where(floats, alpha, np.nan)  # the middle, where no moment acts at all
+    rest = np.where(floats, alpha, np.nan)  # the middle, if there is no moment at all
     which = np.flatnonzero(floats & (lower < upper))
     if len(which):
         rest[which] = _without_moment(
@@ -48,10 +48,9 @@ def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_p
 def _without_moment(
     moment: Moment, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray
 ) -> np.ndarray:
-    """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a secant, then inverse quadratic steps.
+    """Root (m,) of the moment between ``a`` and ``b``, where it has opposite signs: a secant, then inverse quadratic steps.
 
-    The moment is nearly linear over so small an angle, so two evaluations are enough; scipy's root finder costs ten
-    times as much here.
+    The moment is nearly linear over such small angles, so two evaluations suffice; scipy's root finder takes ten times as long.
     """
     x = a - at_a * (b - a) / (at_b - at_a)
     for _ in range(12):  # two are usual
@@ -63,7 +62,7 @@ def _without_moment(
         inside = (proposed > a) & (proposed < b)  # false for NaN, too
         following = np.where(value == 0.0, x, np.where(inside, proposed, 0.5 * (a + b)))
         moved, x = np.abs(following - x), following
-        if np.all(moved < 1e-7):  # [rad]; the error left is its square
+        if np.all(moved < 1e-7):  # [rad]; the remaining error is about the square of this step
             break
     return np.asarray(x)
 

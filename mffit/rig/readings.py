@@ -12,7 +12,7 @@ from mffit.quantities import CHANNELS
 class Readings(dict[str, np.ndarray]):
     """Arrays by channel, in the order of ``CHANNELS`` and in their units.
 
-    Each array is (n,), a reading per point; or (n, k), its derivatives by k numbers.
+    Each array is (n,), one reading per point, or (n, k), its derivatives by k numbers.
 
     Examples
     --------
@@ -36,10 +36,10 @@ class Readings(dict[str, np.ndarray]):
 
     @property
     def stacked(self) -> np.ndarray:
-        """All channels one below the other: (c n,), or (c n, k)."""
+        """All channels concatenated: (c n,) or (c n, k)."""
         return np.concatenate([*self.values()])
 
     @classmethod
     def split(cls, stacked: np.ndarray, channels: Sequence[str]) -> Readings:
-        """The readings of some channels, from :attr:`stacked`."""
+        """The readings from concatenated channels, the inverse of :attr:`stacked`."""
         return cls(**dict(zip(channels, np.split(stacked, len(channels)), strict=True)))

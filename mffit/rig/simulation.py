@@ -1,4 +1,4 @@
-"""The forward model: what this rig would read of this tyre, and how that changes with any number in it."""
+"""The forward model: readings of a tyre on a rig, and their derivatives by any number of tyre or rig."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from tir.equations.forces import Forces, State
 
 SWITCH = "turn_slip"
 LAG = "relaxation_m"
-"""The rig error at which a point depends on all points before it in its sweep."""
+"""The rig error that makes a point depend on all previous points of its sweep."""
 SIMULATED = tuple(name for name in CHANNELS if name in (*Forces._fields, *State._fields))
 """Channels that tir computes, under the same names."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Simulation(Brief):
-    """A tyre on a rig. Points keep the angle as read; all that lies between reading and tyre is in ``faults``."""
+    """A tyre on a rig. Points keep the angles as read; ``faults`` has all differences between reading and tyre."""
 
     values: Mapping[str, Any]  #: every value of the property file
     faults: Faults = NO_FAULTS
-    turn_slip: bool = True  #: whether the simulation knows path curvature and spin
-    star: bool = False  #: tan(alpha), sin(gamma) as inputs
+    turn_slip: bool = True  #: whether the simulation accounts for path curvature and spin
+    star: bool = False  #: whether tan(alpha) and sin(gamma) replace the angles as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
     of_parts: Mapping[str, float] = field(default_factory=dict)
-    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
+    """Additional rig error of single files, set-ups or sweeps, by names such as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
 
     @classmethod
     def of(
@@ -62,7 +62,7 @@ class Simulation(Brief):
         return usual_radius(points) if math.isnan(self.radius_m) else self.radius_m
 
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
-        """The same with some coefficients, rig errors or switches replaced."""
+        """The simulation with some coefficients, rig errors or switches replaced."""
         faults = {name: value for name, value in numbers.items() if name in BY_NAME}
         of_parts = {name: value for name, value in numbers.items() if OF_RUN in name}
         values = {n: v for n, v in numbers.items() if n not in {*faults, *of_parts, SWITCH}}
@@ -81,25 +81,25 @@ class Simulation(Brief):
         return replace(self, faults=Faults(**own), of_parts={})
 
     def readings(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
-        """What the rig would report at every point.
+        """The simulated readings at every point.
 
         Parameters
         ----------
         points : set-points (n,): angles as read, slip, load, pressure, speed, direction, mount and path curvature
-        channels : those to compute; the others take no time
+        channels : channels to compute
 
         Returns
         -------
         Readings
-            In ISO-W, contact frame, rig-fixed also when rolling backwards.
+            In ISO-W axes, contact frame, rig-fixed also when rolling backwards.
         """
         return self.sensitivities(points, (), channels)[0]
 
     def felt(self, points: Points) -> Points:
-        """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
+        """The points with the tyre's true conditions, and with readings corrected for rig and environment.
 
-        The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
-        those of ``points``.
+        The correction is that of this simulation, so the residuals of the tyre alone at the returned points equal those of the
+        simulation at ``points``.
         """
         channels = _in_order((*SIDEWAYS, *(name for name in points.measured if name in SIMULATED)))
         felt = points.replace(**self._chain(points, {}).at_the_tyre())
@@ -108,15 +108,15 @@ class Simulation(Brief):
         return felt.replace(**{name: points.channel(name) - (rig[name] - tyre[name]) for name in channels})
 
     def predict(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
-        """The readings (c n,), channel after channel."""
+        """The simulated readings (c n,), channel by channel."""
         return self.readings(points, channels).stacked
 
     def sensitivities(
         self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
     ) -> tuple[Readings, Readings]:
-        """The readings, and their exact derivatives by the named numbers: each channel (n, k).
+        """The readings (n,) by channel, and their exact derivatives (n, k) by the named numbers.
 
-        The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
+        For a wheel with play the derivatives are at a fixed stop, or at zero moment if the wheel floats.
         """
         return self.at_rows(points, names, channels)(np.arange(len(points)))
 
@@ -128,9 +128,9 @@ class Simulation(Brief):
         *,
         by_sweep: bool = False,
     ) -> Iterator[tuple[np.ndarray, Readings, Readings]]:
-        """:meth:`sensitivities` block after block: rows (m,) of the points, readings (m,), derivatives (m, k).
+        """:meth:`sensitivities` block by block: row indices (m,), readings (m,), derivatives (m, k).
 
-        With ``by_sweep`` no sweep is divided. A block never holds derivatives of more points than it needs to be fast.
+        With ``by_sweep`` no sweep is divided. Blocks limit the memory for derivatives.
         """
         at_rows = self.at_rows(points, names, channels)
         for rows in blocks(points, by_sweep=by_sweep or self._lags(names)):
@@ -139,7 +139,7 @@ class Simulation(Brief):
     def at_rows(
         self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
     ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
-        """:meth:`sensitivities` as a function of the rows (m,) of a test; if sweeps lag, rows of whole sweeps."""
+        """:meth:`sensitivities` as a function of row indices (m,) of a test; with lag, these must cover whole sweeps."""
         channels = _in_order(channels)
         history = History(points)
         numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
@@ -164,7 +164,7 @@ class Simulation(Brief):
         return found
 
     def _lags(self, names: Sequence[str]) -> bool:
-        """Whether a reading depends on those before it in its sweep."""
+        """Whether readings depend on previous points of their sweep."""
         return bool(self.faults[LAG]) or any(n.partition(OF_RUN)[0] == LAG for n in (*names, *self.of_parts))
 
     def _linearised(
@@ -187,7 +187,7 @@ class Simulation(Brief):
             slope = np.broadcast_to(gradient(x, columns), (n, len(columns)))
             as_it_is = place == list(range(len(columns))) and not any(OF_RUN in name for name in names)
             slopes[name] = slope if as_it_is else slope.T[place].T
-        # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
+        # A number of a part is added to that of the whole test, so its derivative is equal at the points of the part.
         for k, name in enumerate(names):
             if OF_RUN in name:
                 own = of_part(points, name.partition(OF_RUN)[2])
@@ -202,7 +202,7 @@ class Simulation(Brief):
         history: History | None = None,
         rows: np.ndarray | slice = slice(None),
     ) -> Chain:
-        """The passage of the points with some numbers traced."""
+        """The chain for the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
         for key, added in self.of_parts.items():
             name, _, part = key.partition(OF_RUN)

@@ -1,4 +1,4 @@
-"""What a rig, its environment and its motion do to a reading: one record per error."""
+"""Errors of readings from a rig, its environment and its motion: one record per error."""
 
 from mffit.rig_errors.catalog import (
     AFTER,

@@ -1,4 +1,4 @@
-"""Errors between the sideslip angle as read and the one that the tyre runs at, in the order in which they act."""
+"""Errors between the sideslip angle as read and the true one, in the order in which they act."""
 
 from __future__ import annotations
 

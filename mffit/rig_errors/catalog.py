@@ -1,4 +1,4 @@
-"""All rig errors in one list, in the order of the chain from reading to reading."""
+"""All rig errors in one list, in the order of the chain from set-point readings to force readings."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ RIG_ERRORS: tuple[RigError, ...] = (
 )
 BY_NAME: dict[str, RigError] = {error.name: error for error in RIG_ERRORS}
 BEFORE = tuple(error for error in RIG_ERRORS if error.place in BEFORE_THE_TYRE)
-"""Those between the readings of the set-points and the conditions of the tyre."""
+"""Errors that act between the readings of the set-points and the conditions of the tyre."""
 AFTER = tuple(error for error in RIG_ERRORS if error.place not in (*BEFORE_THE_TYRE, None))
-"""Those between the forces of the tyre and their readings."""
+"""Errors that act between the forces of the tyre and their readings."""
 DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declared is not None)
-"""Those whose uncertainty ``[rig]`` states, each with its declaration."""
+"""Errors whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
-"""Those that every set-up of the rig has anew."""
+"""Errors that differ from set-up to set-up."""
 BESIDE = (REFERENCE_PRESSURE, PRESSURE_ARM)
-"""Those of the tyre by conditions that every reading and prediction states, for which the formula has no coefficient."""
+"""Effects of the tyre over known conditions, for which the formula has no coefficient."""
 CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
@@ -38,4 +38,4 @@ MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
 WORDS = {
     error.name: error.word or error.seen_as[0].name for error in RIG_ERRORS if error.word or error.seen_as
 }
-"""What a reader calls a number of the rig, by its name."""
+"""By name of a rig number, its words in sentences."""

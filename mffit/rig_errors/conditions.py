@@ -1,4 +1,4 @@
-"""Errors of camber, load and path: between what the rig is set to and what the tyre runs at."""
+"""Errors of camber, load, path and longitudinal slip between the set-points and the true conditions of the tyre."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ PATH_RADIUS = RigError(
     kind="rig",
     place=Place.PATH,
     acts_on=("phi_t",),
-    # An error of the usual path's radius is common to all paths: the wheel is moved between them by known distances.
+    # All paths share the error of the usual path's radius, because the distances between paths are known.
     formula=lambda radius, phi_t, at: np.sign(phi_t) / (radius + at.beyond_usual_path),
     undisturbed=math.nan,
     spread=0.03,

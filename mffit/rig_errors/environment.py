@@ -1,4 +1,4 @@
-"""Influences of the surroundings and of wear on the tyre while it is tested."""
+"""Influences of the environment and of wear on the tyre during the test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rig errors of one rig: a value for every record."""
+"""Values of all rig errors for one rig."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mffit.rig_errors.catalog import BY_NAME, MEANINGS, RIG_ERRORS, UNITS, WORDS
 from mffit.rig_errors.record import RigError
 
 OF_RUN = "@"
-"""Separates the name of an error from the run or set-up to which the number belongs: ``F0_N@zeros.csv``, ``F0_N@A``."""
+"""Separates the name of an error from its run or set-up, as in ``F0_N@zeros.csv`` or ``F0_N@A``."""
 
 
 def number_of(name: str, part: str) -> str:
@@ -18,40 +18,40 @@ def number_of(name: str, part: str) -> str:
 
 
 def unit_of(name: str) -> str:
-    """Unit of a number of the rig, of the whole test or of a part of it."""
+    """Unit of a rig number, for the whole test or one part."""
     return UNITS[name.partition(OF_RUN)[0]]
 
 
 def meaning_of(name: str) -> str:
-    """Formula, in words, of a number of the rig, of the whole test or of a part of it."""
+    """Formula, in words, of a rig number, for the whole test or one part."""
     return MEANINGS[name.partition(OF_RUN)[0]]
 
 
 def words_of(name: str) -> str:
-    """Words for a number of the rig, followed by its run or set-up; empty if there are none."""
+    """Words for a rig number, followed by its run or set-up; empty without words."""
     error, _, part = name.partition(OF_RUN)
     words = WORDS.get(error, "")
     return f"{words}, {part}" if words and part else words
 
 
 def shown(name: str, value: float, u: float) -> tuple[float, float, str]:
-    """A number of the rig and its uncertainty in the unit in which people read it, and that unit; empty without one."""
+    """A rig number and its uncertainty in the unit for display, and that unit; empty if it is dimensionless."""
     error = error_of(name)
     unit, size = error.shown_in if error is not None and error.shown_in else (unit_of(name), 1.0)
     return value * size, u * size, "" if unit == "-" else unit
 
 
 def error_of(name: str) -> RigError | None:
-    """The rig error that a number belongs to, of the whole test or of a part of it; None for other numbers."""
+    """The rig error of a number, for the whole test or one part; None for other numbers."""
     return BY_NAME.get(name.partition(OF_RUN)[0])
 
 
 class Faults(Mapping[str, float]):
-    """Values of all rig errors by name, in ISO-W and the unit of the name; immutable.
+    """Values of all rig errors by name, in ISO-W axes and the unit of the name; immutable.
 
     Parameters
     ----------
-    values : those that differ from a perfect rig
+    values : values that differ from a perfect rig
 
     Raises
     ------
@@ -92,7 +92,7 @@ class Faults(Mapping[str, float]):
         return f"Faults({', '.join(f'{name}={value!r}' for name, value in self.disturbed.items())})"
 
     def replace(self, **values: float) -> Faults:
-        """The same with some values replaced."""
+        """The record with some values replaced."""
         return Faults(**{**self._values, **values})
 
     @property

@@ -1,6 +1,6 @@
-"""The virtual rig: a known tyre on a rig with known errors, tested like a real one.
+"""The virtual rig: simulated tests of a known tyre on a rig with known errors.
 
-``mffit build`` is tested with its data, and a test plan can be tried on it before it is run on the rig.
+Its data serve to test ``mffit build``, and to try a test plan before it is run on the real rig.
 """
 
 from mffit.virtual_rig.campaign import Campaign, run

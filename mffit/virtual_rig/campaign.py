@@ -1,4 +1,4 @@
-"""A whole virtual test campaign: from the plan to tables, tyre.toml and truth, in memory."""
+"""A virtual test campaign in memory: tables, tyre.toml and truth from a plan."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Campaign:
 
 
 def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
-    """Test a tyre on the virtual rig.
+    """The campaign of a tyre on the virtual rig.
 
     Parameters
     ----------
     plan : the sweeps and the rig errors
     tyre : the true tyre
-    seed : of the noise and the drawn rig errors; default the plan's
+    seed : seed of the noise and the drawn rig errors; default the plan's
 
     Returns
     -------
@@ -52,7 +52,7 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
     seed = plan.tables.seed if seed is None else seed
     if seed < 0:
         raise InputError(f"the seed is {seed}; give a whole number, 0 or larger")
-    # Every sweep has random numbers of its own, so that one more sweep does not change the others.
+    # Every sweep has its own random numbers, so an additional sweep does not change the others.
     for_faults, for_radii, *for_sweeps = np.random.SeedSequence(seed).spawn(2 + len(plan.tables.sweep))
     faults = faults_in_setups(plan, tyre, np.random.default_rng(for_faults))
     sweeps = settings_of(plan)
@@ -79,7 +79,7 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
 
 
 def faults_in_setups(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> dict[str, Faults]:
-    """The rig errors of every set-up; with ``draw``, declared errors that the plan does not give are drawn."""
+    """The rig errors of every set-up; with ``draw``, declared errors without a value in the plan are drawn."""
     table, rig = plan.tables.faults, plan.declared.rig
     setups = tuple(dict.fromkeys(plan.setups))
     for name in plan.tables.setup:
@@ -107,7 +107,7 @@ def faults_in_setups(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) 
 def sweep_table(
     plan: RigPlan, machine: Machine, sweep: SweepPlan, settings: Settings, generator: np.random.Generator
 ) -> pd.DataFrame:
-    """Run one sweep, as finished points or as a recording."""
+    """The table of one sweep, as finished points or as a recording."""
     machine = machine.with_faults(sweep.faults.values())
     if sweep.recording is not None:
         return recorded_table(
@@ -117,10 +117,10 @@ def sweep_table(
 
 
 def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:
-    """Finished points with noise."""
+    """The channels of finished points with added noise."""
     n = len(forces.Fy)
     Fy, Mz, My = generator.standard_normal((3, n))
-    # Each further channel draws after these, so that one more channel does not change them.
+    # Further channels draw after these, so an additional channel does not change the others.
     added = {
         name.partition("_")[0]: (noise.of(name) or 0.0) * generator.standard_normal(n)
         for name in ADDED
@@ -135,7 +135,7 @@ def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generato
 
 
 def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed: int) -> Truth:
-    """The true values at the loads of the campaign and at the nominal load; ``machine`` is that of the first set-up."""
+    """The true values at the loads of the campaign and at the nominal load; ``machine`` is the one of the first set-up."""
     nominal = plan.declared.tyre.nominal_load
     loads = sorted({load for sweep in plan.tables.sweep for load in sweep.load_N})
     driven = plan.reports_slip or bool(plan.tables.noise.added)
@@ -160,7 +160,7 @@ def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed
 
 
 def _differing(plan: RigPlan, setup: str) -> list[str]:
-    """Names of the rig errors that a set-up may have of its own."""
+    """Names of the rig errors that may differ between set-ups."""
     table = plan.tables.setup.get(setup)
     return list(dict.fromkeys([*(error.name for error in ZEROS), *(table.values() if table else ())]))
 
@@ -225,7 +225,7 @@ def written_down(
     Notes
     -----
     Angles are read to 0.1 deg. The notches of the disc are aligned by eye at the start and at the end, so the wheel travels
-    ``2 pi R`` and two small arcs.
+    ``2 pi R`` plus two small random arcs.
     """
     chance = generator.standard_normal(4)
     if row.u_effective_radius is not None:
@@ -246,7 +246,7 @@ def written_down(
 
 
 def as_declared(rig: RigTable) -> Faults:
-    """The declared rig: its play and path radius; all other errors are absent."""
+    """The declared rig, with its play and path radius and without other errors."""
     radius = rig.radius
     return declared_faults(rig).replace(path_radius_m=math.inf if radius is None else radius)
 
@@ -263,17 +263,17 @@ def drawn(
     generator: np.random.Generator,
     setups: Sequence[str] = ("",),
 ) -> dict[str, Faults]:
-    """The errors of every set-up of a rig that follow the declared uncertainties; the zeros are drawn for each set-up.
+    """Random rig errors of every set-up by the declared uncertainties; the zeros are drawn for each set-up.
 
     Parameters
     ----------
     rig : the declaration; every ``u_`` is one standard deviation of a normal distribution
-    values : errors that are given and therefore not drawn
-    C_alpha : cornering stiffness at the nominal load [N/rad], turns ``u_slip_alignment_N`` into an angle
+    values : given errors, which are not drawn
+    C_alpha : cornering stiffness at the nominal load [N/rad], converts ``u_slip_alignment_N`` to an angle
     generator : source of random numbers
     setups : names of the set-ups; the first has the same errors as a rig with one set-up
     """
-    # Each error draws from a stream of its own name: fixing one, or declaring one more, does not change the others.
+    # Each error has its own stream, seeded by its name: fixing or adding one error does not change the others.
     seed = int(generator.integers(2**32))
     out = {}
     for k, setup in enumerate(setups):

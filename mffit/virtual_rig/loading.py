@@ -1,4 +1,4 @@
-"""From the text of ``rig.toml`` to a :class:`RigPlan`, or one sentence that says what to correct."""
+"""A :class:`RigPlan` from ``rig.toml``, or an InputError that says what to correct."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mffit.errors import InputError
 from mffit.virtual_rig.plan import RigPlan, RigTables
 
 OWN = frozenset(RigTables.model_fields)
-"""Tables that only ``rig.toml`` has; all others are those of ``tyre.toml``."""
+"""Tables that only ``rig.toml`` has; all others are as in ``tyre.toml``."""
 
 RIG_TOML = TomlKind(
     name="rig.toml",
@@ -26,12 +26,12 @@ RIG_TOML = TomlKind(
 
 
 def load_plan(source: str | Path | Mapping[str, Any], *, folder: str | Path | None = None) -> RigPlan:
-    """Read and check a virtual test campaign.
+    """The checked plan of a virtual test campaign.
 
     Parameters
     ----------
     source : path of a ``rig.toml``, or its content as a mapping
-    folder : where relative file names start; default the file's own, the current one for a mapping
+    folder : base of relative file names; default the file's folder, for a mapping the current one
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """A tyre on a rig with errors: true angles and forces of the tyre, and the readings of the rig.
 
-Every rig error has a formula here that is independent of the one in its record, so that these data reveal a mistake in the
-record. Everything is in ISO-W, contact frame.
+Every rig error has a formula here that is independent of the one in its record, so these data reveal a mistake in the record.
+All quantities are in ISO-W axes, contact frame.
 """
 
 from __future__ import annotations
@@ -30,28 +30,28 @@ class Channels(NamedTuple):
     Fx: np.ndarray | float = 0.0
     RL: np.ndarray | float = np.nan  #: loaded radius [m]
     omega: np.ndarray | float = np.nan  #: wheel speed [rad/s], negative rolling backwards
-    slip: np.ndarray | float = 0.0  #: longitudinal slip as the rig reports it
+    slip: np.ndarray | float = 0.0  #: longitudinal slip reported by the rig
 
 
 class Machine(NamedTuple):
     """A tyre on a rig with its errors."""
 
     tyre: Tyre  #: the true one
-    faults: Faults  #: with the true path radius
-    phi_t_sign: int  #: of the usual path: -1 with the centre to the left, 0 on a flat track
-    usual_speed: float  #: [m/s], where the speed has no influence
-    drag: float = 0.0  #: moment against the rotation of a wheel that rolls freely [Nm]
-    slip_against: str = "free-rolling"  #: what the slip that the rig reports is against
+    faults: Faults  #: rig errors, with the true path radius
+    phi_t_sign: int  #: sign of the usual path's turn slip: -1 with the centre to the left, 0 on a flat track
+    usual_speed: float  #: speed at which speed has no influence [m/s]
+    drag: float = 0.0  #: moment against the rotation of a freely rolling wheel [Nm]
+    slip_against: str = "free-rolling"  #: reference of the reported slip
 
     def with_faults(self, added: Mapping[str, float]) -> Machine:
-        """The machine with ``added`` rig errors, for a sweep that has errors of its own."""
+        """The machine with additional rig errors, for a sweep that has its own errors."""
         return self._replace(
             faults=self.faults.replace(**{name: self.faults[name] + x for name, x in added.items()})
         )
 
 
 Formula = Callable[[float, Settings, Machine], np.ndarray | float]
-"""(size of the error, settings (n,), machine) -> the term that is added, or the factor."""
+"""(size of the error, settings (n,), machine) -> additive term or factor."""
 
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
@@ -64,12 +64,12 @@ def _kelvin(s: Settings, m: Machine) -> np.ndarray:
 
 
 def _grip(s: Settings, m: Machine) -> np.ndarray:
-    """Friction (n,) at the temperature of the settings, as far as it is linear, over that at the reference."""
+    """Ratio (n,) of the friction at the settings' temperature to that at the reference, with the linear term only."""
     return 1.0 + m.faults["k_T_grip_per_K"] * _kelvin(s, m)
 
 
 def _usual_pressure(m: Machine) -> float:
-    """At which the coefficients of the tyre hold [kPa]."""
+    """Pressure at which the coefficients of the tyre hold [kPa]."""
     stated = m.faults["p_ref_kPa"]
     return m.tyre["NOMPRES"] / 1000.0 if np.isnan(stated) else stated
 
@@ -80,16 +80,16 @@ STEERS: dict[str, Formula] = {
     "camber_skew_deg": lambda x, s, m: np.deg2rad(x * np.sin(_leant(s, m))),
     "hysteresis_deg": lambda x, s, m: np.where(s.sense > 0, -1.0, np.where(s.sense < 0, 1.0, 0.0)) * np.deg2rad(x),
 }  # fmt: skip
-"""Added to the sideslip angle as read [rad]."""
+"""Terms added to the sideslip angle as read [rad]."""
 LEANS: dict[str, Formula] = {
     "gain_gamma": lambda x, s, m: x * s.gamma - s.gamma,
     "gamma_0_deg": lambda x, s, m: np.deg2rad(x),
     "gamma_0_deg_per_kN": lambda x, s, m: np.deg2rad(x * (s.Fz / 1000.0 - m.tyre["FNOMIN"] / 1000.0)),
     "disc_tilt_deg_per_kN": lambda x, s, m: m.phi_t_sign * s.side * np.deg2rad(x * s.Fz / 1000.0),
 }
-"""Added to the camber as read [rad]."""
+"""Terms added to the camber as read [rad]."""
 SLIPS: dict[str, Formula] = {"kappa_0": lambda x, s, m: x}
-"""Added to the longitudinal slip as read."""
+"""Terms added to the longitudinal slip as read."""
 LOADS: dict[str, Formula] = {
     "gain_Fz": lambda x, s, m: x,
     "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0,
@@ -114,7 +114,7 @@ SCALES: dict[str, tuple[str, Formula]] = {
 ADDED: dict[str, tuple[str, Formula]] = {
     "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m))),
 }
-"""Added to coefficients of the tyre."""
+"""Terms added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
     "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
     "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),
@@ -124,7 +124,7 @@ SURROUNDINGS: dict[str, Formula] = {
 }
 """Factors on Fy and Mz."""
 YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
-"""Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
+"""Errors of the angle that depend on the tyre's moment at that angle; see :func:`true_alpha`."""
 CELL = (
     "gain", "nonlinearity_per_kN", "crosstalk", "crosstalk_camber", "F0_direction_N", "F0_N", "M0_Nm", "Fx0_N",
     "Mx0_Nm", "My0_Nm", "gain_Fx", "gain_Mx", "gain_My", "gain_Mz",
@@ -132,23 +132,24 @@ CELL = (
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "p_ref_kPa", "relaxation_m")
-"""Path radius and crown: :func:`at_the_tyre`; references: the factors and terms; lag: :mod:`mffit.virtual_rig.recording`."""
+"""Errors with formulae elsewhere: path radius and crown in :func:`at_the_tyre`, references in the factors and terms, lag in
+:mod:`mffit.virtual_rig.recording`."""
 FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *ADDED, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
-"""Names of the rig errors that have a formula here."""
+"""Names of all rig errors with a formula in the virtual rig."""
 
 
 def steady(machine: Machine, settings: Settings) -> Channels:
-    """The settled readings of the rig, without noise."""
+    """The steady readings of the rig, without noise."""
     if settings.free:
         settings = replace(settings, kappa=rolling_slip(machine, settings))
     return reported(machine, settings, at_the_tyre(machine, settings, true_alpha(machine, settings)))
 
 
 def rolling_slip(machine: Machine, settings: Settings) -> np.ndarray:
-    """Slip (n,) at which the force on a wheel without drive balances rolling resistance and drag."""
+    """Slip (n,) of an undriven wheel, at which Fx balances rolling resistance and drag."""
 
     def unbalanced(kappa: np.ndarray) -> np.ndarray:
-        """Moment (n,) about the wheel's axis that would slow its rotation [Nm]."""
+        """Moment (n,) about the wheel's axis that slows its rotation [Nm]."""
         out = at_the_tyre(machine, replace(settings, kappa=kappa), settings.alpha)
         forwards = np.sign(settings.Vx)
         return np.asarray(forwards * (out.Fx * out.RL - out.My) + machine.drag)
@@ -176,9 +177,9 @@ def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
 
 
 def yielded(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, give: float) -> np.ndarray:
-    """Angle (n,) [rad] at which a steering that turns by ``give`` [rad/Nm] carries the moment of the wheel."""
+    """Angle (n,) [rad] of a steering with compliance ``give`` [rad/Nm] in equilibrium with the moment of the wheel."""
     held = alpha
-    for _ in range(60):  # each round leaves a tenth of the error or less
+    for _ in range(60):  # each iteration reduces the error to a tenth or less
         held = alpha + give * moment(held)
     return held
 
@@ -194,7 +195,7 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
     either = moment(alpha) > 0.0
     held_at_lower = at_lower & (~at_upper | either)
     floats = ~at_lower & ~at_upper
-    for _ in range(20 if floats.any() else 0):  # bisections: a millionth of the play is left
+    for _ in range(20 if floats.any() else 0):  # bisections, to a millionth of the play
         middle = 0.5 * (lower + upper)
         turns_back = moment(middle) > 0.0
         lower, upper = np.where(turns_back, lower, middle), np.where(turns_back, middle, upper)
@@ -204,9 +205,9 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
 
 def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Channels:
     """Forces and moments (n,) of the tyre at the true sideslip angle ``alpha`` (n,) [rad]."""
-    # The wheel is moved between paths by known distances, so the error of the radius is common to all paths.
+    # Distances between paths are known, so the error of the radius is common to all paths.
     lean = _leant(settings, machine)
-    side = machine.phi_t_sign * settings.side  # of the disc's centre: -1 left
+    side = machine.phi_t_sign * settings.side  # side of the disc's centre: -1 left
     crown = side * machine.faults["crown_m"] * np.sin(lean)  # towards the centre
     phi_t = side / (machine.faults["path_radius_m"] + settings.outward - crown)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
@@ -230,13 +231,13 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
 
 
 def true_slip(machine: Machine, settings: Settings) -> np.ndarray | float:
-    """True longitudinal slip (n,); the number 0 where the wheel is neither driven nor braked."""
+    """True longitudinal slip (n,); the number 0 if the wheel is never driven or braked."""
     slip = settings.kappa + _sum(SLIPS, settings, machine)
     return slip if np.any(slip) else 0.0
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
-    """Readings of the load cells under the true forces and moments; the reading of the load is its setting."""
+    """Readings of the load cells for the true forces and moments; the reading of the load is its set-point."""
     faults, surroundings = machine.faults, _product(SURROUNDINGS, settings, machine)
     seen = faults["gain"] * surroundings * true.Fy
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
@@ -284,7 +285,7 @@ def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine)
 def loaded_radius(
     p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, gamma: Any, omega: Any, pressure: Any
 ) -> Any:
-    """Distance (n,) of the wheel's centre from the contact point [m], by bisection of the load over it.
+    """Distance (n,) of the wheel's centre from the contact point [m], by bisection for the load.
 
     Parameters
     ----------
@@ -303,7 +304,7 @@ def loaded_radius(
     growth = p["Q_CAM2"] / p["Q_CAM1"] if p["Q_CAM1"] else np.inf
     steepness = 2.0 if np.isinf(growth) else 1.0
     lower, upper = 0.0 * free, free + edge
-    for _ in range(60):  # a rounding error is left
+    for _ in range(60):  # down to rounding
         radius = 0.5 * (lower + upper)
         ratio = (radius / free) ** steepness
         if np.isfinite(growth):

@@ -1,6 +1,6 @@
 """``rig.toml`` as frozen records: true tyre, rig errors, noise and sweeps.
 
-Angles, forces and directions are in ISO-W here, independent of the axes in which the rig reports.
+Angles, forces and directions are in ISO-W axes here, whatever axes the rig reports in.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ Angles = Annotated[tuple[float, ...], BeforeValidator(angles), Field(min_length=
 
 
 Numbers = BeforeValidator(angles)
-"""Before a tuple of numbers: reads what :func:`angles` reads."""
+"""Validator of a tuple of numbers that accepts the same forms as :func:`angles`."""
 Loads = Annotated[tuple[q.Load, ...], Numbers, Field(min_length=1)]
 Pressures = Annotated[tuple[q.Pressure, ...], Numbers, Field(min_length=1)]
 Speeds = Annotated[tuple[q.Speed, ...], Numbers, Field(min_length=1)]
@@ -80,7 +80,7 @@ else:
 
 
 class OwnFaultsTable(RigErrorValues):
-    """[sweep.faults]: rig errors that one sweep has in addition to those of the rig."""
+    """[sweep.faults]: rig errors of one sweep in addition to those of the rig."""
 
     def values(self) -> dict[str, float]:
         """The rig errors given in the file."""
@@ -88,17 +88,17 @@ class OwnFaultsTable(RigErrorValues):
 
 
 class SetupFaultsTable(OwnFaultsTable):
-    """[setup.NAME]: rig errors that one set-up has in addition to those of the rig."""
+    """[setup.NAME]: rig errors of one set-up in addition to those of the rig."""
 
 
 class FaultsTable(OwnFaultsTable):
-    """[faults]: the errors of the rig, a key for each record of :mod:`mffit.rig_errors`."""
+    """[faults]: the errors of the rig, with one key for each record of :mod:`mffit.rig_errors`."""
 
-    draw: bool = False  #: draw every declared error that is not given from its uncertainty in [rig]
+    draw: bool = False  #: draw declared errors without a given value from their uncertainty in [rig]
 
 
 ADDED = ("Fx_N", "Mx_Nm", "RL_m", "omega_radps")
-"""Columns of the channels that a rig may measure beside Fy, Mz and My."""
+"""Columns of channels that a rig may measure in addition to Fy, Mz and My."""
 
 
 class NoiseTable(Table):
@@ -106,12 +106,12 @@ class NoiseTable(Table):
 
     Fy_N: NonNegativeFloat = 0.0
     Mz_Nm: NonNegativeFloat = 0.0
-    My_Nm: NonNegativeFloat | None = None  #: None: the rig does not measure My; the same for those below
+    My_Nm: NonNegativeFloat | None = None  #: None: the rig does not measure My; likewise for the keys below
     Fx_N: NonNegativeFloat | None = None
     Mx_Nm: NonNegativeFloat | None = None
     RL_m: NonNegativeFloat | None = None
     omega_radps: NonNegativeFloat | None = None
-    declared: bool = True  #: write the scatter beside every point, as u_Fy_N and so on
+    declared: bool = True  #: whether to write the scatter with every point, as u_Fy_N and so on
 
     def of(self, channel: str) -> float | None:
         """Scatter of a channel by its column; None if it is not measured."""
@@ -120,12 +120,12 @@ class NoiseTable(Table):
 
     @property
     def added(self) -> tuple[str, ...]:
-        """Columns that are measured beside Fy, Mz and My, in the order of the table."""
+        """Columns measured in addition to Fy, Mz and My, in the order of the table."""
         return tuple(name for name in ADDED if self.of(name) is not None)
 
 
 class DriveTable(Table):
-    """[drive]: the drive of the wheel and how the rig reports its slip."""
+    """[drive]: the drive of the wheel, and the reference of the reported slip."""
 
     slip_against: Literal["free-rolling", "loaded-radius"] = "free-rolling"
     drag_Nm: NonNegativeFloat = (
@@ -149,7 +149,7 @@ class RollingRadiusPlan(Table):
     u_angle_deg: stated.Angle = 1.0
     u_arc_m: stated.Length = 0.001
     u_effective_radius: stated.Length | None = (
-        None  #: if given, a radius with this uncertainty is written, no revolution
+        None  #: if given, a radius with this uncertainty is written instead of a revolution
     )
 
 
@@ -182,7 +182,7 @@ class SweepPlan(Table):
     gamma_deg: Angles = (0.0,)
     kappa: Slips = (0.0,)
     free_rolling: bool = (
-        False  #: nothing drives the wheel: rolling resistance and drag hold it at a small slip
+        False  #: whether the wheel is undriven: rolling resistance and drag then cause a small slip
     )
     p_kPa: Pressures | None = None
     V_mps: Speeds | None = None
@@ -216,7 +216,7 @@ class SweepPlan(Table):
 
 
 class RigTables(Table):
-    """The tables of ``rig.toml`` that ``tyre.toml`` does not have, or has in another form."""
+    """The tables of ``rig.toml`` that ``tyre.toml`` lacks or has in another form."""
 
     seed: int = 0
     truth: TruthTable
@@ -235,7 +235,7 @@ class RigPlan:
 
     declared: Config  #: the content of tyre.toml without the rolling radii
     tables: RigTables  #: tables that only rig.toml has
-    folder: Path  #: where relative file names start
+    folder: Path  #: base of relative file names
 
     @property
     def tyre_path(self) -> Path:

@@ -1,4 +1,4 @@
-"""A sweep as a data logger records it: the motion of the steering, noise and ripple."""
+"""A sweep as a time series of a data logger: with motion of the steering, noise and ripple."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def record(
     settings : set-points (n,) of one sweep, all at one load, speed and pressure
     table : settings of the recording
     generator : source of random numbers
-    added : columns of the channels that are measured beside Fy, Mz and My
+    added : columns of the channels measured in addition to Fy, Mz and My
     """
     time, alpha, gamma, kappa = course(settings, table)
     seen = settings.at(alpha, gamma, kappa)
@@ -51,7 +51,7 @@ def record(
         machine, follows, lagged(true_alpha(machine, seen), settings.V[0], sigma, table.rate_Hz)
     )
     forces = reported(machine, seen, true)
-    if np.any(kappa):  # the force lags behind the slip, its reading does not
+    if np.any(kappa):  # the force lags behind the slip; the reported slip does not
         forces = forces._replace(slip=at_the_tyre(machine, seen, seen.alpha).slip)
     turned = settings.V[0] / state.Re * time
     forces = forces._replace(
@@ -70,7 +70,7 @@ def record(
 def course(
     settings: Settings, table: RecordingTable
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Time [s], sideslip and camber as read [rad] and slip of every sample (m,): straight to each point, then held."""
+    """Time [s], sideslip and camber as read [rad] and slip of every sample (m,): linear to each point, then held."""
     slip = np.broadcast_to(settings.kappa, len(settings))
     stations = np.column_stack([settings.alpha, settings.gamma, slip])
     rates = np.array([math.radians(table.steering_deg_per_s)] * 2 + [table.slip_per_s])
@@ -83,7 +83,7 @@ def course(
 
 
 def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:
-    """The lagged angle (m,), which determines the force: ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
+    """The lagged angle (m,) that determines the force: ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
 
     The sideslip angle changes linearly between samples.
 

@@ -13,7 +13,7 @@ from mffit.virtual_rig.plan import RigPlan, SweepPlan
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Settings as the displays of the rig show them at every point of a sweep, ISO-W and SI; arrays (n,)."""
+    """Set-points as read at every point of a sweep, in ISO-W axes and SI units; arrays (n,)."""
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber as read [rad]
@@ -21,21 +21,21 @@ class Settings:
     p: np.ndarray  #: inflation pressure [Pa]
     V: np.ndarray  #: speed, positive in both directions [m/s]
     T: np.ndarray  #: tyre temperature [degC]
-    t: np.ndarray  #: when the point was taken [s]
+    t: np.ndarray  #: time of the point [s]
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
     rolled_m: np.ndarray  #: distance rolled since the start of the campaign [m]
-    side: float = 1.0  #: of the disc: 1 the usual one, -1 the other
-    outward: float = 0.0  #: radius of the path less that of the usual one [m]
+    side: float = 1.0  #: side of the disc: 1 the usual one, -1 the other
+    outward: float = 0.0  #: radius of the path less that of the usual path [m]
     kappa: np.ndarray = field(default_factory=lambda: np.zeros(1))  #: longitudinal slip (n,) or (1,) [-]
-    free: bool = False  #: nothing drives the wheel
+    free: bool = False  #: whether the wheel is undriven
 
     def __len__(self) -> int:
         return len(self.alpha)
 
     @property
     def sense(self) -> np.ndarray:
-        """Sense (n,) of the steering to each point: 1 up, -1 down, 0 held; the first point has that of the second."""
+        """Sense (n,) of the steering's motion to each point: 1 up, -1 down, 0 held; the first point takes that of the second."""
         steps = np.sign(np.diff(np.degrees(self.alpha).round(6)))
         return np.concatenate([steps[:1], steps]) if len(steps) else np.zeros(len(self.alpha))
 
@@ -45,7 +45,7 @@ class Settings:
         return np.asarray(self.direction * self.V)
 
     def at(self, alpha: np.ndarray, gamma: np.ndarray, kappa: np.ndarray) -> Settings:
-        """The same conditions as at the first point, at other angles (m,) [rad] and slips (m,)."""
+        """The conditions of the first point at other angles (m,) [rad] and slips (m,)."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
         repeated = {name: np.full(len(alpha), value[0]) for name, value in arrays.items()}
@@ -112,6 +112,6 @@ def _outward(plan: RigPlan, sweep: SweepPlan) -> float:
 
 
 def usual_speed(sweeps: list[Settings]) -> float:
-    """The speed at which most points are taken [m/s]."""
+    """The most frequent speed [m/s]."""
     speeds, counts = np.unique(np.round(np.concatenate([sweep.V for sweep in sweeps]), 1), return_counts=True)
     return float(speeds[counts.argmax()]) if len(speeds) else math.nan

@@ -1,4 +1,4 @@
-"""``mffit simulate``: from rig.toml to a folder of sweeps that ``mffit build`` reads."""
+"""``mffit simulate``: writes a folder of sweeps, which ``mffit build`` reads, from rig.toml."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from mffit.virtual_rig.truth import Truth
 def simulate(
     plan: RigPlan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None
 ) -> Truth:
-    """Run a virtual test campaign and write its files.
+    """The truth of a virtual test campaign, whose files are written.
 
     Parameters
     ----------
     plan : path of a ``rig.toml``, its content, or a loaded plan
     out : folder for the sweeps, ``tyre.toml`` and ``truth.json``
-    seed : of the noise and the drawn rig errors; default the plan's
+    seed : seed of the noise and the drawn rig errors; default the plan's
 
     Returns
     -------
@@ -40,8 +40,7 @@ def simulate(
     Raises
     ------
     InputError, tir.errors.TirError
-        The plan or the tyre's file is wrong, or a file in ``out`` is not one that an earlier run wrote;
-        nothing is written then.
+        The plan or the tyre's file is wrong, or ``out`` has a file that no earlier run wrote; then nothing is written.
     """
     read = [Path(plan)] if isinstance(plan, str | Path) else []
     plan = plan if isinstance(plan, RigPlan) else load_plan(plan)
@@ -53,7 +52,7 @@ def simulate(
 
 
 TRUTH = "truth.json"
-"""The true values behind the data; also lists the files of the campaign for later runs."""
+"""Name of the file with the true values behind the data."""
 
 
 def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Output of the rig: columns with the contract's names and units, in the rig's own axes and frame."""
+"""Tables of the rig: columns with the names and units of docs/files.md, in the rig's own axes and frame."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ RECORDED_DECIMALS = {
     "Fx_N": 0,
     "Mx_Nm": 1,
 }
-"""Resolution of a logger: far below its noise; the files are a third as large."""
+"""Decimals of recordings: far finer than the noise, and a third of the file size."""
 
 
 def point_table(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
-    """One row per finished point (n,); ``forces`` is in ISO-W with the noise in it."""
+    """Table with one row per finished point (n,); ``forces`` is in ISO-W axes and includes noise."""
     table = _channels(plan, settings, forces)
     noise = plan.tables.noise
     if noise.declared and (noise.Fy_N or noise.Mz_Nm):
@@ -44,7 +44,7 @@ def point_table(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataF
 
 
 def recorded_table(plan: RigPlan, recording: Recording) -> pd.DataFrame:
-    """One row per sample of a recorded sweep (m,)."""
+    """Table with one row per sample of a recorded sweep (m,)."""
     table = _channels(plan, recording.settings, recording.forces)
     table.insert(0, "time_s", recording.time)
     return table.round(DECIMALS | RECORDED_DECIMALS)
@@ -56,7 +56,7 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
         forces = in_wheel_carrier(forces, settings.gamma)
 
     def turned(channel: str, values: np.ndarray) -> np.ndarray:
-        # Adding zero turns -0.0, which a CSV would show, into 0.0.
+        # Adding zero replaces -0.0, which would appear in the CSV, by 0.0.
         return np.asarray(from_iso(rig.axes, channel, values) + 0.0)
 
     table = pd.DataFrame(
@@ -83,9 +83,9 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
 
 
 def in_wheel_carrier(forces: Channels, gamma: np.ndarray) -> Channels:
-    """Contact frame W to wheel-carrier frame C: turned about x by the camber ``gamma`` (n,) [rad].
+    """The channels in the wheel-carrier frame C: frame W turned about x by the camber ``gamma`` (n,) [rad].
 
-    The moments stay those about the contact point: a lever to the wheel's centre would not change Mz.
+    Moments still refer to the contact point; a lever to the wheel's centre would not change Mz.
     """
     c, s = np.cos(gamma), np.sin(gamma)
     return forces._replace(

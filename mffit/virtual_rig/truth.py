@@ -27,15 +27,15 @@ DRIVEN_SECTIONS = (
 
 @dataclass(frozen=True, slots=True)
 class DirectTruth:
-    """True values at one load, nominal pressure, ISO-W; the path curvature is that of the rig.
+    """True values at one load, nominal pressure and the rig's path curvature, in ISO-W axes.
 
-    Slopes are those on a straight path, as they are defined, with turn slip on and off.
+    Slopes are on a straight path unless stated otherwise, with turn slip on or off.
     """
 
     load_N: float
-    epsilon_gamma: float  #: of (17), from the slopes with turn slip on
+    epsilon_gamma: float  #: by (17), from the slopes with turn slip on
     C_phit_Nm: float  #: slope of Fy over phi_t at zero [N m]
-    C_phit_secant_Nm: float | None  #: F_phit / phi_t, which a disc measures [N m]
+    C_phit_secant_Nm: float | None  #: F_phit / phi_t, as measured on a disc [N m]
     C_gamma_N_per_rad: float  #: camber stiffness without turn slip
     C_gamma_turn_slip_N_per_rad: float  #: camber stiffness with turn slip on, larger by R0/r_e
     C_alpha_N_per_rad: float  #: cornering stiffness without turn slip
@@ -66,8 +66,8 @@ class Truth:
 
     nominal: DirectTruth
     per_load: tuple[DirectTruth, ...]
-    faults: Faults  #: in the first set-up
-    faults_of_sweeps: dict[str, dict[str, float]]  #: errors that single sweeps have in addition, by file
+    faults: Faults  #: rig errors in the first set-up
+    faults_of_sweeps: dict[str, dict[str, float]]  #: additional errors of single sweeps, by file
     faults_of_setups: dict[str, dict[str, float]]  #: zeros of every set-up, if there are several
     coefficients: dict[
         str, float
@@ -77,7 +77,7 @@ class Truth:
     drive: Mapping[str, Any] = field(default_factory=dict)  #: the table [drive], if the rig reports slip
 
     def to_json(self) -> dict[str, Any]:
-        """The content of truth.json; the flat-track path radius is null, and a reference that is as declared is left out."""
+        """The content of truth.json; the path radius of a flat track is null, and errors that are NaN are left out."""
         faults: dict[str, float | None] = {
             n: value for n, value in self.faults.items() if not math.isnan(value)
         }
@@ -101,12 +101,12 @@ class Truth:
 def direct_truth(
     tyre: Tyre, load: float, speed: float, pressure: float, phi_t: float, R: float
 ) -> DirectTruth:
-    """True direct-method quantities at one load.
+    """True values of the direct method's quantities at one load.
 
     Parameters
     ----------
     tyre : the tyre on the rig
-    load, speed, pressure : [N], [m/s], [Pa]
+    load, speed, pressure : load [N], speed [m/s], pressure [Pa]
     phi_t : turn slip of the path [1/m]; 0 on a flat track
     R : true radius of the path [m]
     """
@@ -162,6 +162,6 @@ def driven_truth(tyre: Tyre, load: float, speed: float) -> DrivenTruth:
 
 
 def coefficients_of(tyre: Tyre, *, driven: bool = False) -> dict[str, float]:
-    """The coefficients that disc data can determine, by name; those of all channels if more were measured."""
+    """By name, the coefficients that disc data can determine; with ``driven``, those of all channels."""
     sections = (*DRIVEN_SECTIONS, *SECTIONS) if driven else SECTIONS
     return {row.name: float(tyre[row.name]) for row in TABLE if row.section in sections}
