@@ -67,7 +67,7 @@ class ShownStep:
         done, left = remaining(self.sentence, self.seconds, since, writes=self.writes)
         if not done:
             return self.sentence
-        said = f"{grain * math.floor(100.0 * done / grain + 1e-9)} % done"
+        said = f"{min(100 - grain, grain * math.floor(100.0 * done / grain + 1e-9))} % done"
         if left is not None:
             said += f", about {grain * max(1, round(left / grain))} s left"
         return f"{said}: {self.sentence}"

@@ -111,6 +111,9 @@ def test_a_step_tells_how_far_the_run_is(monkeypatch):
     assert step.text(grain=5) == f"60 % done, about 40 s left: {JUDGING}"
     now[0] += 100.0
     assert step.text().startswith("67 % done, about 1 s left")
+    assert ShownStep(JUDGING, now[0] - 58.0, writes=False).text().startswith("86 % done")
+    now[0] += 100.0
+    assert ShownStep(JUDGING, 0.0, writes=False).text(grain=5).startswith("85 % done")
     assert ShownStep("trying every effect", 0.0).text() == "trying every effect"
 
 

@@ -114,7 +114,7 @@
     select(rig, "axes of the readings", "axes", ["iso", "sae", "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
     const radius = field(rig, "path radius [m]", "path_radius", optional);
     const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]), "left");
-    const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.disabled = type.value !== "rotating-disk"; };
+    const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.parentNode.hidden = one.disabled = type.value !== "rotating-disk"; };
     type.addEventListener("change", curved);
     curved();
   }

@@ -469,6 +469,7 @@ def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original,
         shown = browser.find_element("css selector", ".folder").text
         assert "sideslip_900.csv" in shown
         assert "rolls backwards" not in shown  # which nobody ticked
+        assert "path radius" not in shown  # of a belt
         assert browser.find_element("css selector", "#tyre").is_displayed()
         look(browser)
         assert console_errors(browser) == []
