@@ -24,8 +24,11 @@ def _wrong_tir(found: ModuleSpec | None) -> str:
             "the package tir is missing, probably because mffit-tir or tir, which have files of the same names as mffit, "
             f"was removed: {_REINSTALL}"
         )
-    source = getattr(found.loader, "get_source", lambda name: None)("tir")
-    if source is None or "MF-6.2" in source:
+    try:
+        source = found.loader.get_data(found.origin)  # type: ignore[union-attr]
+    except (AttributeError, OSError):
+        return ""  # packed by a program that shows no sources
+    if b"MF-6.2" in source or not found.origin.endswith(".py"):
         return ""
     replaced = Path(found.origin).parents[1] == Path(__file__).parents[1]
     remedy = f"pip uninstall tir, then {_REINSTALL}" if replaced else "rename it, or start in another folder"

@@ -156,7 +156,9 @@ def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:
     elsewhere: list[bool] = []
     file.visititems_links(lambda _, link: elsewhere.append(isinstance(link, h5py.ExternalLink)))
     file.visititems(
-        lambda _, one: elsewhere.append(isinstance(one, h5py.Dataset) and bool(one.external or one.is_virtual))
+        lambda _, one: elsewhere.append(
+            isinstance(one, h5py.Dataset) and bool(one.external or one.is_virtual)
+        )
     )
     if any(elsewhere):
         raise InputError("takes numbers out of other files; save it as one file", file=path)

@@ -48,7 +48,9 @@ def bare(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "platform", "win32")
     for name in ("chown", "geteuid", "O_NONBLOCK", "kill", "listxattr"):
         monkeypatch.delattr(os, name, raising=False)
-    monkeypatch.setattr("shutil._copyxattr", lambda *given, **more: None)  # shutil has decided when it was imported
+    monkeypatch.setattr(
+        "shutil._copyxattr", lambda *given, **more: None
+    )  # shutil has decided when it was imported
     return locked
 
 
