@@ -41,7 +41,7 @@ CAMBER_IN_CARSIM = "KGAMMA"
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class LookupTable:
     """Values of a channel on a grid of conditions."""
 
     name: str  #: of the file or variable: ``Fy``, ``Fy_combined``
@@ -78,11 +78,11 @@ class Table:
         }
 
 
-class Tables(NamedTuple):
+class LookupTables(NamedTuple):
     """What :func:`write_table` wrote."""
 
     written: list[Path]
-    tables: list[Table]
+    tables: list[LookupTable]
     turn_slip: bool
     warnings: list[str]  #: tables that miss the goal or are left out, and what helps
 
@@ -96,7 +96,7 @@ def write_table(
     error: float = constants.TABLE_ERROR,
     ranges: Mapping[str, tuple[float, float]] | None = None,
     progress: Progress = silent,
-) -> Tables:
+) -> LookupTables:
     """Write a property file as lookup tables of Fx, Fy, Mx and Mz on a straight path, at the file's speed and pressure.
 
     Parameters
@@ -113,7 +113,7 @@ def write_table(
 
     Returns
     -------
-    Tables
+    LookupTables
         The files and their tables, each with the error that was found.
 
     Raises
@@ -142,7 +142,7 @@ def write_table(
         if not grid.axes:
             warnings.append(f"{name} does not depend on {', '.join(asked.ranges)}: no table")
             continue
-        tables.append(Table(name, asked.heading, grid, asked.held | grid.held, asked.lost(grid)))
+        tables.append(LookupTable(name, asked.heading, grid, asked.held | grid.held, asked.lost(grid)))
         if grid.error > error:
             warnings.append(
                 f"{name} misses {100.0 * grid.error:.2f} % instead of {100.0 * error:g} %: {grid.values.size} nodes are the "
@@ -153,7 +153,7 @@ def write_table(
     stem = path.stem + mode_suffix(tyre, on)
     with output_folder(out, by="export", protected=[path]) as folder:
         names = FORMS[form].write(folder, stem, about, tables)
-    return Tables([out / name for name in names], tables, on, warnings)
+    return LookupTables([out / name for name in names], tables, on, warnings)
 
 
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:
@@ -217,7 +217,7 @@ def _all_slips(tyre: tir.Tyre, on: bool, inside: Ranges) -> dict[str, Asked]:
     return asked
 
 
-def _csv(folder: Path, stem: str, about: str, tables: list[Table]) -> list[str]:
+def _csv(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:
     names = []
     for table in tables:
         columns = {**table.grid.mesh(), table.heading: table.grid.values}
@@ -229,7 +229,7 @@ def _csv(folder: Path, stem: str, about: str, tables: list[Table]) -> list[str]:
     return names
 
 
-def _mat(folder: Path, stem: str, about: str, tables: list[Table]) -> list[str]:
+def _mat(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:
     from scipy.io import savemat
 
     content = {
@@ -278,7 +278,7 @@ def _part(force: Function, name: str, sign: float, mirror: float) -> Function:
     return part
 
 
-def _carsim(folder: Path, stem: str, about: str, tables: list[Table]) -> list[str]:
+def _carsim(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:
     lines = ["PARSFILE", f"! {about}"]
     for table in tables:
         load = table.grid.axes.get("Fz_N", np.array([table.held.get("Fz_N", 0.0)]))
@@ -305,7 +305,7 @@ class Form(NamedTuple):
     """A kind of file."""
 
     asked: Callable[[tir.Tyre, bool, Ranges], dict[str, Asked]]
-    write: Callable[[Path, str, str, list[Table]], list[str]]
+    write: Callable[[Path, str, str, list[LookupTable]], list[str]]
     signs: str  #: what the files say of axes and units
 
 
