@@ -87,8 +87,9 @@ def write_table(
         tables.append(LookupTable(name, asked.heading, grid, asked.held | grid.held, asked.lost(grid)))
         if grid.error > error:
             warnings.append(
-                f"{name} misses {100.0 * grid.error:.3g} % instead of {100.0 * error:g} %, as a table has at most "
-                f"{constants.TABLE_NODES:d} nodes: narrow its ranges, for example --range alpha_deg=-12:12, or allow a larger --error"
+                f"{name} misses {100.0 * grid.error:.3g} % instead of {100.0 * error:g} %, as a table has at "
+                f"most {constants.TABLE_NODES:d} nodes: narrow its ranges, for example --range alpha_deg=-12:12, "
+                "or allow a larger --error"
             )
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
     about = f"{path.name}, {words(on)}, {at}; {FORMS[form].signs}"
