@@ -154,7 +154,8 @@ def test_carsims_tables_are_the_symmetric_part_of_the_tyre(made, keyword, channe
     rows = carsim(text)[f"{keyword} 2D_FROM_ZERO"]
     loads, slips = rows[0], np.append(0.0, rows[1:, 0])
     values = np.vstack([np.zeros(len(loads)), np.column_stack([np.zeros(len(slips) - 1), rows[1:, 1:]])])
-    assert loads[0] == 0.0
+    assert (loads[0], loads[1], loads[-1]) == (0.0, tir.read(CAR)["FZMIN"], tir.read(CAR)["FZMAX"])
+    assert slips[-2] == {"kappa": 1.0, "alpha_deg": 20.0535}[slip]
     assert np.all(values[1:4, 1:] > 0.0)
     assert np.all(np.diff(loads) > 0.0)
     assert np.all(np.diff(slips) > 0.0)
@@ -207,7 +208,10 @@ def test_too_many_nodes_are_refused_with_the_error_reached(tmp_path, monkeypatch
     poor = [one for one in made.tables if one.grid.error > 0.005]
     assert [one.name for one in poor] == ["FX_TIRE", "FY_TIRE", "MZ_TIRE"]
     for one, sentence in zip(poor, made.warnings, strict=True):
-        assert f"{one.name} misses {100 * one.grid.error:.2f} % instead of 0.5 %" in sentence
+        assert (
+            f"{one.name} misses {100 * one.grid.error:.3g} % instead of 0.5 %, as a table has at most 60 nodes"
+            in sentence
+        )
         assert "--range alpha_deg=-12:12" in sentence
 
 
