@@ -89,8 +89,9 @@ def _best_addition(
 ) -> Effect | None:
     """The candidate that reduces the misfit of left-out sweeps most, if substantially and significantly; None without any.
 
-    A channel counts as predicted worse only if its loss is as large as a gain must be: an effect of one channel changes the
-    estimated coefficients, and with them the other channels, slightly but in all sweeps alike, which would be significant.
+    A candidate is rejected if a channel's misfit grows significantly and by at least the smallest gain required. Significance
+    alone is not enough, because an effect of one channel changes the coefficients and thereby all sweeps of other channels
+    slightly and alike.
     """
     before = prediction.of(current)
     enough = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before)

@@ -57,7 +57,7 @@ def repair(
 ) -> Repair:
     """The repair of the ``named`` effects that are likely, or of ``every`` one.
 
-    Tied effects count as one answer, which is likely if all of them together are. ``validation`` is that of all named effects,
+    Tied effects are one answer, with the confidence of the whole tie. ``validation`` belongs to all named effects together,
     ``alternatives`` has the confidences of other effects by id. ``seen``: the model was fitted to these points.
     """
     likely = tuple(

@@ -343,7 +343,7 @@ def _of_channel(
 def _weighted(
     channel: ScatterOfChannel, *, offsets: bool = False
 ) -> tuple[list[Described], ScatterOfChannel, float]:
-    """The descriptions, most likely first, the channel with weights, and its degrees of freedom, estimated in turn."""
+    """The descriptions, most likely first, the weighted channel, and the degrees of freedom of its tails, by iteration."""
     found, tails = _descriptions(channel, offsets=offsets), math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
         z = channel.standardised(found[0])

@@ -48,7 +48,7 @@ LACKING = {
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """The test plan that was run, as far as it decides what is identifiable."""
+    """The properties of the test plan that decide which coefficients are identifiable."""
 
     run: Mapping[str, int]
     """By need of the parameter table, the number of levels that were run; 0 or 1 for needs without levels."""
@@ -113,10 +113,10 @@ def _straight_on(points: Points) -> np.ndarray:
 
 
 def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
-    """The coverage matrix: per stage the free coefficients, the held ones, and what the data lack for these.
+    """The coverage matrix: per stage the free coefficients, the held ones, and the reason why each is held.
 
-    Coefficients named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels other
-    than Fy and Mz are listed only if there are such data.
+    Coefficients named in ``by_hand`` are always held. Stages of longitudinal slip and of channels other than Fy and Mz are
+    listed only if there are such data.
     """
     seen = design(points, side)
     rows = []

@@ -300,9 +300,9 @@ def _with_measured_skew(
 ) -> tuple[DirectEvidence, Quantity | None]:
     """The evidence with the measured value of the rig error that adds to the camber stiffness, and this value in declared units.
 
-    Rolling backwards, the camber force keeps its sign and the slip force reverses it. Half the difference of the two slopes is
-    therefore the contribution of the rig, half their sum the camber stiffness. Only the sum of several such errors is measurable;
-    it is assigned to the one with the largest declared uncertainty.
+    Rolling backwards, the camber force keeps its sign and the slip force changes sign. Therefore half the sum of the two slopes
+    is the camber stiffness, and half their difference is the contribution of the rig. Only the sum of several such errors is
+    measurable; it is assigned to the error with the largest declared uncertainty.
     """
     both = [
         (row.C_alpha, row.C_gamma, row.C_gamma_backward)

@@ -1,4 +1,4 @@
-"""Signs that recordings were made on a disc, whose curved path would otherwise be taken for a straight one."""
+"""Signs that recordings were made on a disc; without them its curved path would be taken for a straight one."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class DiscPath(NamedTuple):
 
 
 def disc_signs(sniffed: Sniffed) -> list[str]:
-    """What speaks for a disc, each in words; empty for recordings of a belt."""
+    """Each sign of a disc, as a phrase; empty for recordings of a belt."""
     found = []
     backward = [r.path.name for r in sniffed.recordings if r.backward]
     if backward:
@@ -38,7 +38,7 @@ def disc_signs(sniffed: Sniffed) -> list[str]:
 
 
 def zero_of_upright(points: Points) -> float:
-    """Sideslip [deg] at which the side force of the upright wheel, rolling forwards, vanishes; NaN if points do not show it."""
+    """Sideslip [deg] at zero side force of the upright wheel rolling forwards; NaN if the points do not determine it."""
     alpha = np.degrees(points.alpha)
     near = (
         (np.abs(np.degrees(points.gamma)) < UPRIGHT)
@@ -54,7 +54,7 @@ def zero_of_upright(points: Points) -> float:
 
 
 def _both_ways(points: Points, path: Path) -> bool:
-    """Whether one file has points of both directions."""
+    """Whether the points of this file have both rolling directions."""
     rows = np.array([name == str(path.absolute()) for name in points.files], dtype=bool)[points.file]
     return len(np.unique(points.direction[rows])) > 1
 

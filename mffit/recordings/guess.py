@@ -26,20 +26,20 @@ CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d
 
 
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
-"""What is written in several ways in headings."""
+"""Characters that headings spell in several ways, and one spelling for each."""
 
 
 MISSED = {"Mz_Nm": "moments", "V_mps": "speeds", "p_kPa": "pressures"}
-"""Channels that are asked for by the unit of an unused column, and the word for what such units measure."""
+"""Optional channels, and the word for their kind of unit; if one is missing, a remark names unused columns in such units."""
 ABOUT_LETTERS = {
     "C": "turned with the wheel carrier, about the wheel centre",
     "H": "horizontal, about the wheel centre",
 }
-"""Letters of TYDEX whose axes are not those of the contact."""
+"""TYDEX letters of axes other than the contact frame W, and their description."""
 
 
 class ColumnChoice(NamedTuple):
-    """What a user says of a column."""
+    """A user's choice of channel, unit and sign for a column."""
 
     heading: str
     channel: str  #: "" if it is not used
@@ -55,7 +55,7 @@ class Guesses(NamedTuple):
 
 
 def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
-    """The channels found in a file.
+    """The guessed channels of a file, and remarks.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
 
 
 def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]) -> Guesses:
-    """The channels of a file with the columns that a user chose differently."""
+    """The guesses, with the user's choices in place of the guesses for the same columns."""
     if not choices:
         return guessed
     touched = {choice.heading for choice in choices}
@@ -104,7 +104,7 @@ def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]
 
 
 def _headings(raw: RawTable) -> dict[str, str]:
-    """The first heading of each spelling, without regard to case, blanks and hyphens."""
+    """The heading by its simplified spelling; the first one if several share a spelling."""
     return {simplified(heading): heading for heading in reversed(raw.headings)}
 
 
@@ -114,13 +114,16 @@ def simplified(heading: str) -> str:
 
 
 def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
-    """Columns of numbers that are channels; the first known name with suitable readings counts."""
+    """The column of each numerical channel: the first known name with suitable readings."""
     named = {c.name: candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
     return {name: columns[0] for name, columns in named.items() if columns}
 
 
 def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
-    """The columns without moments in other axes than the first moment, and a remark on axes that TYDEX's letters state."""
+    """The columns, and remarks on their axes by TYDEX's letters.
+
+    A moment is dropped if its axes differ from those of the decisive moment (Mz, else My, else Mx).
+    """
     letters = {name: letter_of(columns[name].heading) for name in (*FORCES, *MOMENTS) if name in columns}
     of_moments = [letters[name] for name in reversed(MOMENTS) if name in letters]
     odd = [name for name in MOMENTS if name in letters and letters[name] != of_moments[0]]
@@ -162,7 +165,7 @@ def _is_of_kind(unit: str, channel: Channel) -> bool:
 
 
 def _labels(raw: RawTable) -> dict[str, Guess]:
-    """Columns that are labels or directions, by their own names; under another spelling only if the labels differ."""
+    """Columns of labels or directions; a heading in another spelling counts only if its labels differ."""
     headings = _headings(raw)
     found = {}
     for channel in SWEEP_CHANNELS:
@@ -175,7 +178,7 @@ def _labels(raw: RawTable) -> dict[str, Guess]:
 
 
 def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str, Guess]) -> str:
-    """Why the time of a file is when its points were taken, not that of samples; "" if it is that of samples."""
+    """The reason to read the time column as times of finished points; "" if it holds times of samples."""
     if "time_s" not in columns or "t_s" in columns or columns["time_s"].heading == "time_s":
         return ""
     time = columns["time_s"].values
@@ -188,7 +191,7 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
 
 
 def _without(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
-    """Which columns may be a channel that is missing, by their units."""
+    """Remarks that name unused columns whose unit fits a missing channel."""
     taken = {guess.heading for guess in found.values()}
     remarks = []
     for name, kind in MISSED.items():
@@ -207,7 +210,7 @@ def _without(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
 
 
 def _without_time(raw: RawTable) -> str:
-    """That every row counts as a point, and which column has clock times instead of seconds."""
+    """The remark for a file without time: every row is a point; it names a column of clock times, if any."""
     sentence = f"no time: each of {len(raw)} rows is treated as a finished point"
     for heading, cells in zip(raw.headings, raw.cells, strict=True):
         if not isinstance(cells, np.ndarray) and len(cells) and CLOCK.match(str(cells[0])):

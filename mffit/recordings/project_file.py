@@ -1,4 +1,4 @@
-"""The ``tyre.toml`` for recordings: everything that they state themselves, with comments that say where it comes from."""
+"""The ``tyre.toml`` for recordings: every value that they state, with comments that name its source."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from mffit.sweeps.formats import stem
 TYRE_IN_TITLE = re.compile(
     r"\b(?:tyre|tire|reifen)\s*[:=]\s*(\S.*?)\s*(?=$|[;|]|\s[^\s:=]+\s*[:=](?:\s|$))", re.IGNORECASE
 )
-"""What a title names as the tyre, up to its next entry."""
+"""The name of the tyre within a title, up to the title's next entry."""
 MOST_OF_SIZE = 60
-"""Characters of a size or title that are written."""
+"""Maximum number of characters of a size or title in ``tyre.toml``."""
 ZEROS_OF_A_DISC = [
     "# backlash_deg = 0.0       # full play of the sideslip axis; this and how well the zeros are known decide how certain",
     '# u_loadcell_offset_N = 10 # the camber reduction factor is; see "Run a programme on a disc" in the documentation',
@@ -38,7 +38,7 @@ ROLLING_RADIUS = [
     "# angle_start_deg =        # of the wheel, before and after",
     "# angle_end_deg = ",
 ]
-"""What recordings of a disc do not contain."""
+"""Placeholder for measurements that recordings of a disc do not contain."""
 METRIC_SIZE = re.compile(r"(?<!\d)([6-9]\d|\d{3})/\d{2}\s*-?\s*[A-Z]{0,3}\s*-?\s*(\d{2})(?!\d)")
 """``120/70 ZR17``: width in millimetres, rim in inches."""
 INCH_SIZE = re.compile(r"(?<!\d)\d{2}(?:\.\d+)?\s*x\s*(\d{1,2}(?:\.\d+)?)\s*-\s*(\d{2})(?!\d)", re.IGNORECASE)
@@ -49,7 +49,7 @@ SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 
 
 class Stated(NamedTuple):
-    """What a user, or recordings, say of tyre and rig; None where nothing is said."""
+    """Data of tyre and rig that a user or recordings state; None where they state nothing."""
 
     unloaded_radius: float | None = None  #: [m]
     nominal_load: float | None = None  #: [N]
@@ -59,19 +59,19 @@ class Stated(NamedTuple):
         None  #: of the output files; else the name of the recording, or of the folder for several
     )
     size: str | None = None
-    width: float | None = None  #: [m]; else as the size says
-    rim_radius: float | None = None  #: [m]; else as the size says
+    width: float | None = None  #: [m]; else from the size
+    rim_radius: float | None = None  #: [m]; else from the size
     side: str | None = None
-    axes: str | None = None  #: else those that agree with physics
+    axes: str | None = None  #: else the axes that agree with physics
     disc: DiscPath | None = None  #: None for a belt, or if it is not known
-    belt: bool = False  #: whether the path is known to be straight, whatever the recordings look like
+    belt: bool = False  #: whether the path is straight for certain, even if the recordings look like a disc
 
 
 NOTHING_STATED = Stated()
 
 
 def tyre_found(sniffed: Sniffed, folder: Path) -> Stated:
-    """What recordings, and the name of the folder of their project, say of the tyre, in the digits that are written."""
+    """Data of the tyre from the recordings and the name of the project's folder, rounded as in ``tyre.toml``."""
     size = next((tyre for r in sniffed.recordings if (tyre := named_tyre(r.about))), "")
     width, rim_radius = _of_size(size)
     several = len(sniffed.recordings) > 1 and folder.name
@@ -86,7 +86,7 @@ def tyre_found(sniffed: Sniffed, folder: Path) -> Stated:
 
 
 def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED) -> str:
-    """The text of a ``tyre.toml``; recordings are named relative to ``folder``, where it will be."""
+    """The text of a ``tyre.toml`` in ``folder``; its paths to recordings are relative to ``folder``."""
     recordings = sniffed.recordings
     shared = _shared_columns(sniffed)
     of_all = [remark for remark in recordings[0].remarks if all(remark in r.remarks for r in recordings)]
@@ -110,7 +110,7 @@ def project_text(sniffed: Sniffed, folder: Path, stated: Stated = NOTHING_STATED
 
 
 def sweeps_text(sniffed: Sniffed, folder: Path, columns: Mapping[str, Column]) -> str:
-    """The [[sweep]] of recordings for a ``tyre.toml`` in ``folder`` whose [columns] are given."""
+    """The text of one [[sweep]] per recording, for a ``tyre.toml`` in ``folder`` with these [columns]."""
     own_names = {name: Column(column=name) for recording in sniffed.recordings for name in recording.guesses}
     named = {name: one.model_copy(update={"column": one.column or name}) for name, one in columns.items()}
     return _text(_sweeps(sniffed.recordings, folder, {**own_names, **named}, ()))
@@ -121,7 +121,7 @@ def _text(tables: Sequence[Sequence[str]]) -> str:
 
 
 def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
-    """The lines of [tyre]; a stated value that the recordings also say is one of theirs."""
+    """The lines of [tyre]; a stated value equal to that of the recordings gets the comment that names them as source."""
     found = tyre_found(sniffed, folder)
 
     def line(key: str, unit: str, why: str) -> Iterator[str]:
@@ -153,7 +153,7 @@ def _value(value: str | float) -> str:
 
 
 def _of_size(tyre: str) -> tuple[float | None, float | None]:
-    """Width and rim radius [m] as the size of a tyre says them; None for an unknown notation."""
+    """Width and rim radius [m] from the size of a tyre; None for an unknown notation."""
     metric, inches = METRIC_SIZE.search(tyre), INCH_SIZE.search(tyre)
     if metric:
         width, rim = 1e-3 * float(metric[1]), INCH * float(metric[2])
@@ -199,7 +199,7 @@ def _speed(sniffed: Sniffed) -> float | None:
 
 
 def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
-    """Belt or disc, as given; else as the recordings look."""
+    """The lines of [rig] about the path: as given, else by signs of a disc in the recordings."""
     if disc is not None:
         return [
             'type = "rotating-disk"',
@@ -219,7 +219,7 @@ def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
 
 
 def _bad_runs(sniffed: Sniffed, folder: Path) -> list[list[str]]:
-    """The runs that a summary calls bad as [fit] exclude."""
+    """The table [fit] with ``exclude`` for the runs that a summary calls bad; empty without any."""
     entries = [
         f"    {{ file = {quoted(relative(run.recording, folder))}, lines = {quoted(run.lines)}, why = {quoted(run.why)} }},"
         for run in sniffed.bad_runs
@@ -246,7 +246,7 @@ def _sweeps(
 
 
 def _content(recording: SniffedRecording, shared: Mapping[str, Column]) -> tuple[str, ...]:
-    """What the [[sweep]] of a recording says beside its file."""
+    """The lines of a recording's [[sweep]] after ``file``: direction, and columns that differ from [columns]."""
     own = {name: guess for name, guess in recording.guesses.items() if guess.column != shared.get(name)}
     return (
         *([f'direction = "backward"  # {_why_backward(recording)}'] if recording.backward else []),
@@ -263,7 +263,7 @@ def _comments(remarks: Iterable[str]) -> list[str]:
 
 
 def named_tyre(about: Mapping[str, str]) -> str:
-    """The tyre that a recording names; of a title, only what follows the word tyre."""
+    """The tyre that a recording names; from a title, only the text after the word tyre."""
     if about.get("tireid"):
         return about["tireid"]
     found = TYRE_IN_TITLE.search(title_of(about))
@@ -295,7 +295,7 @@ def _axes(sniffed: Sniffed, stated: str | None) -> str:
 
 
 def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:
-    """The column of every channel, as in the first file that has it; none whose heading is another channel elsewhere."""
+    """The column of every channel in the first file that has it; headings that name several channels are left out."""
     shared: dict[str, Guess] = {}
     channels: dict[str, set[str]] = {}
     for recording in sniffed.recordings:
@@ -306,7 +306,7 @@ def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:
 
 
 def _columns(guesses: Mapping[str, Guess]) -> list[str]:
-    """The columns that have another heading or unit than the contract."""
+    """Lines for the columns whose heading, unit or sign differs from the contract."""
     return [_column(guess) for guess in guesses.values() if guess.column != Column(column=guess.channel.name)]
 
 

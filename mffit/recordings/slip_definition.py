@@ -1,4 +1,4 @@
-"""Which column of a file is longitudinal slip, in which unit and sign, and what it is against: decided by where Fx is zero."""
+"""The column of longitudinal slip with its unit, sign and reference radius, found from the slip at which Fx is zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SLIP = "kappa"
 def slip_definition(
     candidates: Sequence[FoundChannel], found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
 ) -> tuple[Guess | None, tuple[str, ...]]:
-    """The column to take as slip, None if none holds slip, with remarks: the one against free rolling, else one to be shifted.
+    """The column to take as slip, None without any, and remarks; it is the column whose slip at Fx = 0 is closest to zero.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def slip_definition(
 
 
 def _wheel_not_recorded(column: FoundChannel) -> bool:
-    """Whether the slip is that of a wheel at rest in every sample: -1 or -100 % but for the noise of the road speed."""
+    """Whether every sample has the slip of a wheel at rest: -1 or -100 %, within the noise of the road speed."""
     seen = column.values[np.isfinite(column.values)]
     return any(
         bool(len(seen)) and float(np.max(np.abs(seen / one + 1.0))) < SMALLEST_SWEEP_OF_SLIP
@@ -59,7 +59,7 @@ def _wheel_not_recorded(column: FoundChannel) -> bool:
 def _judged(
     column: FoundChannel, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
 ) -> tuple[Guess, SlipZero | None]:
-    """One candidate with unit, sign and what it is against; and its zero."""
+    """A candidate with its unit, sign and reference radius, and its slip at Fx = 0; None if that cannot be found."""
     zero = _zero(converted(column.values, column.unit, "") if column.unit else column.values, found, unit_of)
     choice = None
     if not column.unit:
@@ -84,7 +84,7 @@ def _judged(
 def _zero(
     slip: np.ndarray, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
 ) -> SlipZero | None:
-    """Where Fx is zero, from the columns of a file; None without Fx."""
+    """The slip at which Fx is zero, from the columns of a file; None without Fx, or if it cannot be found."""
     if "Fx_N" not in found:
         return None
 

@@ -48,15 +48,15 @@ class SniffedRecording(NamedTuple):
     rate: float  #: samples per second; NaN for finished points
     seconds: float  #: from first to last sample
     gaps: int  #: number of gaps in time
-    remarks: tuple[str, ...]  #: on columns that are not certain
-    backward: bool = False  #: it was recorded rolling backwards, as its name or a user says
+    remarks: tuple[str, ...]  #: on doubtful columns
+    backward: bool = False  #: whether the wheel rolled backwards, by the file's name or a user's choice
 
 
 class ChosenFile(NamedTuple):
-    """What a user says of one recording."""
+    """A user's choices for one recording."""
 
-    columns: tuple[ColumnChoice, ...]  #: that are not as guessed
-    backward: bool
+    columns: tuple[ColumnChoice, ...]  #: columns that differ from the guess
+    backward: bool  #: whether the wheel rolled backwards
 
 
 NOTHING_CHOSEN: Mapping[Path, ChosenFile] = {}
@@ -71,17 +71,17 @@ class Level(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Sniffed:
-    """What recordings hold."""
+    """The content of recordings."""
 
     recordings: tuple[SniffedRecording, ...]
-    axes: tuple[str, ...]  #: axes that agree with physics, first those tried first; empty if none does
-    wrong: tuple[str, ...]  #: contradictions with physics under the axes first tried
+    axes: tuple[str, ...]  #: axes that agree with physics, those of ``reading`` first; empty if none agrees
+    wrong: tuple[str, ...]  #: contradictions with physics under the axes tried first
     reading: Reading  #: points and stretches under the likeliest axes
     conditions: dict[
         str, tuple[Level, ...]
     ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
 
-    of_two_tyres: bool = False  #: the last warning says so
+    of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
 
     @property
@@ -103,7 +103,7 @@ def sniff(
     ----------
     paths : files, also as patterns like ``runs/*.csv``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
-    chosen : what a user says of some of the files
+    chosen : a user's choices for some of the files
 
     Raises
     ------
@@ -138,7 +138,13 @@ def sniff(
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """The files that a name or a pattern means, sorted by name."""
+    """The file of this name, or the files that match this pattern, sorted by name.
+
+    Raises
+    ------
+    InputError
+        No file matches, the name is that of a folder, or there is no such file.
+    """
     if is_pattern(str(path), Path()):
         found = matches(str(path), Path())
         if not found:
@@ -207,7 +213,7 @@ def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
 
 
 def _first_axes(recordings: Sequence[SniffedRecording]) -> str:
-    """Axes with the sign of the load in the recordings."""
+    """The axes to try first: "sae" if a recording has negative loads, else "iso"."""
     negative = [r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings]
     return "sae" if any(negative) else "iso"
 
@@ -238,15 +244,15 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
 
 
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The axes under which the points behave like a tyre, the declared ones first, and the contradictions under these.
+    """The axes under which the points behave like a tyre, and contradictions under the declared axes.
 
-    Axes that the format of a file prescribes are the only ones if they agree.
+    The declared axes come first. If axes that a file format prescribes are among them, only these are returned.
 
     Parameters
     ----------
     points : read under ``declared``
     declared : axes
-    load_falls : the load is reported as a negative force, as in some axes only
+    load_falls : whether the load is reported as a negative force; axes with positive load are then skipped
     """
     agreeing = []
     for axes in (declared, *(axes for axes in FLIPPED if axes != declared)):
@@ -260,9 +266,9 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting, of the stretches that give points and of finished points; sideslip of slip sweeps only.
+    """The levels of every setting, from stretches that give points and from finished points.
 
-    Pressure and speed count only if measured; a setting that no recording holds has no level.
+    Sideslip has levels only in sweeps of longitudinal slip; pressure and speed only where they are measured.
     """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
     finished = points_from(reading.points, set(reading.points.files) - {note.file for note in kept})
@@ -284,7 +290,7 @@ def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> d
 
 
 def holding(recordings: Sequence[SniffedRecording], channel: str) -> frozenset[str]:
-    """The files that hold a channel, by the names that points and stretches have."""
+    """Absolute paths of the recordings with this channel, as points and stretches name them."""
     return frozenset(str(r.path.absolute()) for r in recordings if channel in r.guesses)
 
 
@@ -306,7 +312,7 @@ BACKWARD = re.compile(
     rf"backward|reverse|(?<!{LETTER})(?:(?:zu)?r(?:ü|ue|u)ck(?:w(?:ä|ae|a)rts|lauf|fahrt|rollen|rollend)?|bwd|rev)(?!{LETTER})",
     re.IGNORECASE,
 )
-"""Words in the name of a file that was recorded rolling backwards; no others that begin like them, such as Rückstellmoment."""
+"""Words for rolling backwards in names of files; other words with the same beginning, such as Rückstellmoment, do not match."""
 
 
 def rolls_backward(path: Path) -> bool:

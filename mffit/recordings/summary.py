@@ -1,4 +1,4 @@
-"""The summary of a test, a table with a row per run next to the recordings: quality flags and specimens."""
+"""Quality flags and specimens from the summary of a test: a table next to the recordings, with a row per run."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ NO = {"0", "0.0", "no", "n", "false", "nein"}
 
 
 class SummaryRow(NamedTuple):
-    """What a summary says of one recording."""
+    """One recording's row in a summary."""
 
     recording: Path
     place: str  #: file and line of the summary
-    bad: str  #: why the run is bad; "" if nothing says so
+    bad: str  #: why the run is bad; "" if it is not
     specimen: str  #: "" if none is named
 
 
@@ -56,7 +56,7 @@ class BadRun(NamedTuple):
 
 
 def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:
-    """Recordings among the files, and what summaries among the files and beside them say of these."""
+    """The recordings among the files, and the rows about them in summaries among the files and in their folders."""
     given = [file for file in files if _may_be_summary(file) and _raw_summary(file) is not None]
     recordings = [file for file in files if file not in given] or list(files)
     folders = dict.fromkeys(file.absolute().parent for file in recordings)
@@ -68,7 +68,7 @@ def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:
 
 
 def bad_runs(rows: Iterable[SummaryRow]) -> tuple[BadRun, ...]:
-    """Every recording that a summary calls bad, with all its lines, to be excluded."""
+    """The recordings that a summary calls bad, with the range of all their lines, for ``[fit] exclude``."""
     found: dict[Path, BadRun] = {}
     for row in rows:
         if row.bad and row.recording not in found:
@@ -79,7 +79,7 @@ def bad_runs(rows: Iterable[SummaryRow]) -> tuple[BadRun, ...]:
 
 
 def two_specimens(rows: Iterable[SummaryRow]) -> str:
-    """That recordings are of two tyres, if a summary names two specimens; "" otherwise."""
+    """A sentence that recordings are of two tyres, if summaries name two specimens; "" otherwise."""
     named = [row for row in rows if row.specimen]
     other = next((row for row in named if row.specimen != named[0].specimen), None)
     if other is None:
@@ -92,7 +92,7 @@ def two_specimens(rows: Iterable[SummaryRow]) -> str:
 
 
 def _may_be_summary(file: Path) -> bool:
-    """Whether a file is a table of text or a workbook, and no longer than a list of runs."""
+    """Whether a file is a text table or a workbook, and no larger than a list of runs."""
     endings = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm")
     return (
         file.name.lower().endswith(endings)
@@ -103,7 +103,7 @@ def _may_be_summary(file: Path) -> bool:
 
 
 def _raw_summary(file: Path) -> RawTable | None:
-    """The table of a file that names runs and holds no recording."""
+    """The table of a file that names runs; None if the file is a recording or cannot be read."""
     try:
         raw = formats.read(file)
     except InputError:

@@ -1,6 +1,6 @@
-"""Units that a file does not state: the one in which the readings are those of a tyre, with the reason.
+"""Units that a file does not state: the unit in which the readings are plausible for a tyre, with the reason.
 
-One table says for every kind of reading which units rigs use and what tyres allow. Columns of one kind share a unit.
+A table lists, for every kind of reading, the units that rigs use and the plausible range. Columns of one kind share a unit.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from mffit.sweeps.units import converted, spelt
 
 
 class Choice(NamedTuple):
-    """A unit that no file states."""
+    """The unit chosen for a column whose file states none."""
 
     unit: str
-    why: str  #: follows "the file states no unit: "
+    why: str  #: the reason; it follows the words "the file states no unit: "
 
 
 class Guess(NamedTuple):
@@ -38,10 +38,10 @@ class Guess(NamedTuple):
     assumed: bool = False  #: neither the file nor the heading states the unit
     lower: float = np.nan  #: range of the readings, in the file's unit
     upper: float = np.nan
-    why: str = ""  #: reason for a unit that nothing states
-    scale: float = 1.0  #: -1 if the file has the other sign
+    why: str = ""  #: reason for the unit, if neither the file nor the heading states it
+    scale: float = 1.0  #: -1 if the file has the opposite sign
     against: str | None = (
-        None  #: what longitudinal slip is against; None for other channels, or if nothing shows it
+        None  #: reference radius of longitudinal slip; None for other channels, or if unknown
     )
 
     @property
@@ -66,11 +66,11 @@ class FoundChannel(NamedTuple):
 
     @property
     def unit(self) -> str:
-        """The stated unit, or the contract's under the contract's heading; "" if neither gives it."""
+        """The stated unit, else the contract's unit if the heading is the contract's; "" otherwise."""
         return self.stated or (self.channel.unit if self.heading == self.channel.name else "")
 
     def guess(self, choice: Choice | None) -> Guess:
-        """The column with the unit that was chosen where none is stated."""
+        """The guess for this column, with the chosen unit if the file states none."""
         unit, why = choice or ("", "")
         seen = self.values[np.isfinite(self.values)]
         lower, upper = (float(seen.min()), float(seen.max())) if len(seen) else (np.nan, np.nan)
@@ -84,7 +84,7 @@ class FoundChannel(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """The usual reading, without its sign."""
+        """Median of the absolute readings."""
         return float(np.nanmedian(np.abs(self.values)))
 
     @property
@@ -94,11 +94,11 @@ class FoundChannel(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """A kind of reading."""
+    """Units and plausible range of one kind of reading."""
 
-    units: tuple[str, ...]  #: that rigs use, the likeliest first
-    limits: tuple[float, ...]  #: of tyres, in the contract's unit
-    american: str = ""
+    units: tuple[str, ...]  #: units that rigs use, the likeliest first
+    limits: tuple[float, ...]  #: lowest and highest plausible reading, in the contract's unit
+    american: str = ""  #: the American unit; "" without one
 
 
 RADII = BY_NAME["RL_m"].lower, BY_NAME["RL_m"].upper
@@ -112,7 +112,7 @@ KINDS: Mapping[str, Kind] = {
     "degC": Kind(("degC", "degF"), (BY_NAME["T_degC"].lower, HOTTEST_TREAD), "degF"),
     "s": Kind(("s", "ms", "us"), tuple(1.0 / rate for rate in reversed(constants.STEERING_RATES))),  # per deg
 }
-"""By the contract's unit."""
+"""Kinds of readings, by the contract's unit."""
 ROTATION_UNITS = ("rad/s", "rpm")
 FOOT_POUNDS = "ft-lb"
 AMERICAN = frozenset(
@@ -123,7 +123,7 @@ AMERICAN = frozenset(
 def choices(
     found: Mapping[str, FoundChannel], radius: float | None
 ) -> tuple[dict[str, Choice], dict[str, str], list[str]]:
-    """Units of the columns for which nothing states one, why optional columns are left out, and remarks on doubtful units.
+    """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units.
 
     Parameters
     ----------
@@ -149,26 +149,26 @@ def choices(
 
 
 class _Known(NamedTuple):
-    """What is known of a file's columns so far."""
+    """The columns of a file, with the units chosen so far."""
 
     found: Mapping[str, FoundChannel]
     chosen: Mapping[str, Choice]
     radius: float | None  #: unloaded [m]
 
     def unit(self, name: str) -> str:
-        """Unit of a column, stated or chosen; "" while it is open, or without the column."""
+        """Unit of a column, stated or chosen; "" if not yet chosen, or without the column."""
         if name not in self.found:
             return ""
         return self.found[name].unit or (self.chosen[name].unit if name in self.chosen else "")
 
     @property
     def load(self) -> float:
-        """The largest load [N]; 0 while its unit is open."""
+        """The largest load [N]; 0 if its unit is not yet chosen."""
         unit = self.unit("Fz_N")
         return _in(self.found["Fz_N"].size, unit, "N") if unit else 0.0
 
     def possible(self, kind: str, value: float) -> dict[str, float]:
-        """Units in which a reading of a kind is that of a tyre, the likeliest first, with the reading in the contract's unit."""
+        """Units in which a reading is plausible, the likeliest first, each with the reading in the contract's unit."""
         lower, upper = KINDS[kind].limits
         if kind == "N m":
             upper *= self.load
@@ -189,7 +189,7 @@ def _from_usual_patch(kPa: float, load: float) -> float:
 
 
 def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, FoundChannel]]:
-    """Columns of one kind that share a unit: all, unless forces exceed the load more than the grip of any tyre allows."""
+    """Groups of columns of one kind that share a unit: one group, unless forces exceed the load by more than any tyre's grip."""
     group = {name: column for name, column in found.items() if column.channel.unit == kind}
     load = {name: column for name, column in group.items() if name == "Fz_N"}
     rest = {name: column for name, column in group.items() if name not in load}
@@ -200,7 +200,7 @@ def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, Foun
 
 
 def _shared_unit(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> dict[str, Choice]:
-    """One unit for all columns of a group that state none: that of another column, else the one of a tyre."""
+    """The unit of all columns of a group that state none: another column's stated unit, else the likeliest plausible unit."""
     open_ones = {name: column for name, column in group.items() if not column.unit}
     stated = next((column for column in group.values() if column.unit), None)
     if stated is not None:
@@ -228,7 +228,7 @@ def _shared_unit(kind: str, group: Mapping[str, FoundChannel], known: _Known) ->
 
 
 def _with_size(kind: str, unit: str, fits: Mapping[str, float]) -> str:
-    """A unit, with the reading in the contract's unit if that is another one."""
+    """The unit as text, with the reading in the contract's unit if the two units differ."""
     if unit == kind:
         return unit
     if kind == "s":
@@ -237,7 +237,7 @@ def _with_size(kind: str, unit: str, fits: Mapping[str, float]) -> str:
 
 
 def _decisive(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> float | None:
-    """The reading by which the unit of a group is decided, in that unit; None if there is none."""
+    """The reading, as written in the file, that decides the unit of a group; None if there is none."""
     if kind in ("kPa", "m", "degC"):
         return next(iter(group.values())).middle
     if kind != "s":
@@ -249,7 +249,7 @@ def _decisive(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> fl
 
 
 def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
-    """Time in which the sideslip angle moves by a degree where it is steered, in the unit of ``time``; None if it rests."""
+    """Time per degree of sideslip while it is steered, in the unit of ``time``; None if it does not move."""
     seen = np.isfinite(time) & np.isfinite(alpha_deg)
     time, alpha_deg = spread(time[seen]), alpha_deg[seen]
     width = int(constants.SAMPLES_PER_RATE) if len(time) > 4 * constants.SAMPLES_PER_RATE else 1
@@ -263,10 +263,10 @@ def _time_per_degree(time: np.ndarray, alpha_deg: np.ndarray) -> float | None:
 
 
 def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
-    """American units of the kinds without a stated unit, if a column can only be in one; a remark if one is in one.
+    """American units for the columns without a stated unit, and a remark if these units are possible but not certain.
 
-    A pressure in psi is no such sign: rigs in Europe have gauges in psi, too. A pressure or a stated unit that is not American
-    speaks against them.
+    They are certain if some column can only be in an American unit and no stated unit or pressure is in another one. A
+    pressure in psi is no such column, because rigs in Europe have gauges in psi, too.
     """
     found, chosen, _ = known
     stated = {column.channel.unit: column.unit for column in found.values() if column.unit}
@@ -307,7 +307,7 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
 
 
 def _only_american(name: str, known: _Known) -> bool:
-    """Whether a column can only be in an American unit; of a pressure that says nothing of others."""
+    """Whether a column can only be in an American unit; psi does not count, because rigs in Europe use it, too."""
     column = known.found[name]
     if column.unit:
         return spelt(column.unit) in AMERICAN - {spelt("psi")}
@@ -318,7 +318,7 @@ def _only_american(name: str, known: _Known) -> bool:
 
 
 def _turning(known: _Known) -> dict[str, Choice] | str:
-    """Units of speed and rotation in which the wheel turns at its size, where none is stated; or why rotation is left out."""
+    """Unstated units of speed and rotation that give a plausible rolling radius, or the reason to leave out rotation."""
     found = known.found
     column, speed = found.get("omega_radps"), found.get("V_mps")
     if column is None:
@@ -364,7 +364,7 @@ def _measured_radius(known: _Known) -> float | None:
 
 
 def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str) -> float:
-    """Median of speed over rotation [m] in these units; infinite or 0 if the wheel or the road rests."""
+    """Median of speed over rotation [m] in these units; infinite if the wheel or the road is at rest."""
     V = np.abs(converted(speed.values, unit, "m/s"))
     omega = np.abs(converted(rotation.values, unit_of_rotation, "rad/s"))
     seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
@@ -373,7 +373,7 @@ def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit
 
 
 def _implausible(name: str, known: _Known) -> str:
-    """Why an optional column is left out: its readings are outside the plausible range; "" if they are not."""
+    """The reason to leave out an optional column: readings outside the plausible range; "" if they are inside."""
     column, channel = known.found[name], known.found[name].channel
     if channel.required or name == "time_s":
         return ""
@@ -391,7 +391,7 @@ def _implausible(name: str, known: _Known) -> str:
 
 
 def _hot(found: Mapping[str, FoundChannel]) -> list[str]:
-    """A remark if a temperature that is stated in degC is that of no tyre."""
+    """A remark if a temperature stated in degC is implausible for a tyre but plausible in degF."""
     column = found.get("T_degC")
     if column is None or not column.unit or spelt(column.unit) != "degC":
         return []

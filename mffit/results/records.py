@@ -1,4 +1,4 @@
-"""The records of a build, and of one of many builds."""
+"""The results of one build, and its outcome among many builds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
 CORRECTION = "-correction.csv"
-"""End of the name of the table of what the formula misses."""
+"""End of the file name of the table of model error."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -41,16 +41,16 @@ class BuildResult(Brief):
     plain: str  #: the use whose file has the plain name
     warnings: tuple[str, ...]
     seconds: float
-    members: tuple[Tyre, ...] = ()  #: drawn from the posterior, if requested
+    members: tuple[Tyre, ...] = ()  #: tyres drawn from the posterior, if requested
     trust: Trust = SOUND  #: the judgement by all rules
-    remains: Remains = NOTHING_REMAINS  #: what the fit leaves of the readings
+    remains: Remains = NOTHING_REMAINS  #: the examination of the residuals
     made: Made = field(default_factory=made_now)
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
-    prediction: Predictor | None = None  #: of forces at any conditions
+    prediction: Predictor | None = None  #: predicts forces at any conditions
     missed: Mapping[str, MissedAtReadings] = field(default_factory=dict)
-    """By channel, what the formula is proven to miss at the readings."""
-    correction: CorrectionTable | None = None  #: what the formula misses, where that is proven
-    excluded: Points | None = None  #: finished points that were left out by hand; None without any
+    """Model error at the readings, by channel, where it is proven."""
+    correction: CorrectionTable | None = None  #: table of the model error, where it is proven
+    excluded: Points | None = None  #: finished points excluded by hand; None without any
 
     @property
     def headline(self) -> str:
@@ -59,12 +59,12 @@ class BuildResult(Brief):
 
     @property
     def trusted(self) -> bool:
-        """Whether nothing speaks against the result."""
+        """Whether no rule found a reason against the result."""
         return self.trust.trusted
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why the result is not to be trusted, as sentences; empty for a sound one."""
+        """Sentences on why the result is not to be trusted; empty if it is."""
         return self.trust.reasons
 
     @property
@@ -74,7 +74,7 @@ class BuildResult(Brief):
 
     @property
     def uses(self) -> tuple[str, ...]:
-        """Uses of the files without the temperature as an input."""
+        """Uses of the written files that do not have the temperature as an input."""
         return () if self.fit.files is None else tuple(self.fit.files.by_use)
 
     @property
@@ -89,12 +89,12 @@ class BuildResult(Brief):
 
     @property
     def correction_name(self) -> str:
-        """Name of the table of what the formula misses."""
+        """File name of the table of model error."""
         return f"{self.config.tyre.name}{CORRECTION}"
 
     @property
     def tir_path(self) -> str:
-        """The plain name, relative to the output folder."""
+        """The file with the plain name, relative to the output folder."""
         return self.files[self.plain]
 
 
@@ -115,15 +115,15 @@ class BuildOutcome:
     misfit: Mapping[str, float] = field(default_factory=dict)  #: rms by channel, [N] and [Nm]
     warnings: int = 0
     file: str = ""  #: the property file with the plain name, in ``out``
-    reasons: tuple[str, ...] = ()  #: why the result is not to be trusted; empty for a sound one
-    in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
+    reasons: tuple[str, ...] = ()  #: why the result is not to be trusted; empty if it is
+    in_doubt: tuple[str, ...] = ()  #: doubts for the engineer to check
 
     @property
     def whole(self) -> bool:
-        """Whether its output is complete."""
+        """Whether the output is complete."""
         return self.state in ("built", "unchanged")
 
     @property
     def trusted(self) -> bool:
-        """Whether it was built, and nothing speaks against the result."""
+        """Whether the output is complete and there is no reason against the result."""
         return self.whole and not self.reasons

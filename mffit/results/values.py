@@ -1,7 +1,7 @@
-"""JSON of records by one rule, and the keys of those records that state their own.
+"""JSON of records.
 
-A record has its fields as keys. :func:`keys` states others for a kind of record: in which order, of which attribute, in which
-unit. Standard JSON has no NaN and no infinity; both are null.
+The keys of a record are its fields, unless :func:`keys` states other keys for its class: their order, attributes and units.
+Standard JSON has no NaN and no infinity; both become null.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ FROM_SI: Mapping[str, Callable[[float], float]] = {
     "deg_per_s": math.degrees,
     "kPa": lambda pressure: pressure / 1e3,
 }
-"""To the units of keys from those of records; the other units are the same."""
+"""Conversion from SI, by the unit of the key; values in other units need none."""
 
 _KEYS: dict[type, tuple[str, Mapping[str, Callable[..., object]]]] = {}
 
 
 def keys(record: type[Record], words: str, /, **computed: Callable[[Record], object]) -> None:
-    """State the keys of a kind of record.
+    """State the JSON keys of a class of records.
 
     Parameters
     ----------
     record : the class
-    words : the keys in their order, each of the attribute of its name with or without the unit at the end; ``*`` are all
-        fields. ``key=path`` is another attribute, such as ``best.effect`` or ``limits.0``. ``±key`` adds the standard
-        uncertainty of a quantity, ``**key`` the entries of a mapping or record in place of the key. ``key?`` is null where
-        the value is empty, ``[key]`` is left out where it is None.
-    computed : functions of the record for keys that no attribute gives
+    words : the keys in their order; a key takes the attribute of the same name, with or without the unit at its end.
+        ``*`` takes all fields. ``key=path`` takes another attribute, such as ``best.effect`` or ``limits.0``. ``±key`` adds
+        the standard uncertainty of a quantity. ``**key`` inserts the entries of a mapping or record. ``key?`` is null if
+        the value is empty; ``[key]`` is left out if it is None.
+    computed : functions that compute the values of keys from the record
     """
     _KEYS[record] = (words, computed)
 
@@ -82,7 +82,7 @@ def _fields(record: object) -> list[str]:
 
 
 def _attribute(record: object, key: str, path: str) -> object:
-    """The value of a key in its unit, from an attribute."""
+    """The value of an attribute, in the unit of the key."""
     unit = UNIT.search(key)
     if not path:
         path = key if hasattr(record, key) else UNIT.sub("", key)
@@ -97,7 +97,7 @@ def _attribute(record: object, key: str, path: str) -> object:
 
 
 def _converted(value: object, convert: Callable[[float], float]) -> object:
-    """Numbers in another unit; None stays."""
+    """The value with its numbers converted; any other value, such as None, unchanged."""
     if isinstance(value, Quantity):
         return Quantity(convert(value.value), convert(value.u), "")
     if isinstance(value, tuple):
@@ -106,7 +106,7 @@ def _converted(value: object, convert: Callable[[float], float]) -> object:
 
 
 def with_u(name: str, number: object) -> dict[str, Json]:
-    """A quantity under its name and its standard uncertainty under ``u_`` + name; null for None."""
+    """A quantity as two entries, ``name`` and its standard uncertainty ``u_name``; both null for None."""
     value, u = number[:2] if isinstance(number, Quantity) else (None, None)
     return {name: plain(value), f"u_{name}": plain(u)}
 
@@ -136,10 +136,10 @@ def plain(value: object) -> Json:
 
 
 def text(content: object) -> str:
-    """A record, or what is made of some, as text."""
+    """JSON text of a record, or of a list or mapping of records."""
     return json.dumps(plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write(path: Path, content: object) -> None:
-    """Write the text as UTF-8."""
+    """Write the JSON text in UTF-8."""
     path.write_text(text(content), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Numbers of a stored result against those of a new run: which come out again, and which changed."""
+"""Comparison of a stored result with a new run: the numbers that agree, and those that changed."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from mffit.results.values import Json
 from tir.errors import counted
 
 MISSING = "missing"
-"""In place of a number that one of the two results lacks."""
+"""Stands for a number that the new result lacks."""
 PASSING = ("made", "lab", "warnings", "fit.seconds")
-"""Keys of ``result.json`` that no figure of the tyre is in: they differ from run to run, or are copied from the configuration."""
+"""Keys of ``result.json`` that are not compared: they differ from run to run, or are copied from the configuration."""
 
 
 @dataclass(frozen=True, slots=True)
 class NumberAgain:
-    """A number of a stored result and of the new one."""
+    """A number of a stored result, and the same number of the new result."""
 
     file: str  #: "result.json" or a property file
-    key: str  #: dotted, or the name of a coefficient
+    key: str  #: dotted key, or the name of a coefficient
     old: Json
     new: Json
-    size: float  #: of the change in units of the tolerance; infinite if one is missing or of another kind
+    size: float  #: change over tolerance; infinite if the new number is missing or has another type
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Verification(Brief):
-    """What a new run from the stored inputs says about a stored result."""
+    """Comparison of a stored result with a new run from the stored inputs."""
 
     folder: str
     compared: tuple[NumberAgain, ...]
@@ -47,17 +47,17 @@ class Verification(Brief):
 
     @property
     def exact(self) -> int:
-        """Of them the same to the last digit."""
+        """How many numbers are the same to the last digit."""
         return sum(row.old == row.new for row in self.compared)
 
     @property
     def changes(self) -> tuple[NumberAgain, ...]:
-        """Those that do not come out again, the largest change first."""
+        """The numbers whose change exceeds the tolerance, the largest change first."""
         return tuple(sorted((row for row in self.compared if row.size > 1.0), key=lambda row: -row.size))
 
     @property
     def same(self) -> bool:
-        """Whether every number comes out again."""
+        """Whether every number agrees within the tolerance."""
         return not self.changes
 
     @property
@@ -70,7 +70,7 @@ class Verification(Brief):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences about another method or source."""
+        """Sentences about differences of method, source or libraries."""
         return tuple(self._notes())
 
     def _notes(self) -> Iterator[str]:
@@ -93,9 +93,9 @@ class Verification(Brief):
 
 
 def compared(file: str, old: Json, new: Json) -> list[NumberAgain]:
-    """The numbers of a JSON document, true, false and null included, against those of a new one.
+    """The numbers of two JSON documents, compared; true, false and null count as numbers.
 
-    Keys that only the new one has, and texts, are not compared.
+    Texts, and keys that only the new document has, are not compared.
     """
     return [NumberAgain(file, key, a, b, _size(a, b, u)) for key, a, b, u in _pairs(old, new)]
 
@@ -103,7 +103,7 @@ def compared(file: str, old: Json, new: Json) -> list[NumberAgain]:
 def _pairs(
     old: Json, new: Json, key: str = "", u: float = math.nan
 ) -> Iterator[tuple[str, Json, Json, float]]:
-    """Key, old and new number, and the scale on which a change is judged as an uncertainty; NaN if none is stated."""
+    """Key, old and new number, and the uncertainty that scales the tolerance; NaN if none is stated."""
     if key in PASSING or isinstance(old, str):
         return
     if isinstance(old, dict):
@@ -127,13 +127,13 @@ def _pairs(
 
 
 def _uncertainty(table: dict[str, Json], name: str) -> float:
-    """Standard uncertainty that a table states for one of its numbers; NaN without one."""
+    """Standard uncertainty of a number, from another key of the same table; NaN without one."""
     keys = (f"u_{name}", *(("stderr", "u") if name == "value" else ()))
     return next((abs(u) for key in keys if isinstance(u := table.get(key), float)), math.nan)
 
 
 def _spread(rows: list[Json]) -> list[float]:
-    """Square roots of the diagonal of a symmetric matrix, whole or up to it, by which its elements are judged; else empty."""
+    """Square roots of the diagonal of a square matrix, or of its lower triangle; empty for other rows."""
     square = [row for k, row in enumerate(rows) if isinstance(row, list) and len(row) in (len(rows), k + 1)]
     diagonal = [x for k, row in enumerate(square) if _is_number(x := row[min(k, len(row) - 1)])]
     return [math.sqrt(abs(x)) for x in diagonal] if len(diagonal) == len(rows) else []
@@ -144,7 +144,7 @@ def _is_number(x: Json) -> TypeGuard[float]:
 
 
 def _size(old: Json, new: Json, u: float) -> float:
-    """Change of a number in units of the tolerance; infinite if one is missing or of another kind."""
+    """Change of a number over its tolerance; infinite if the types differ or a number is missing."""
     if old == new and isinstance(old, bool) == isinstance(new, bool):
         return 0.0
     if not _is_number(old) or not _is_number(new):

@@ -25,7 +25,7 @@ def groups(points: Points) -> list[Group]:
     """Every sweep, and every condition (load, pressure, direction, mount, camber) of a sweep with several conditions."""
     found = [*_sweeps(points), *_conditions(points)]
     unique = {group.index.tobytes(): group for group in reversed(found)}
-    # Only a minority can be said to contradict the rest.
+    # Only a minority of the points can contradict the others.
     return [g for g in reversed(unique.values()) if constants.FEWEST <= len(g.index) <= 0.5 * len(points)]
 
 

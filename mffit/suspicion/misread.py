@@ -1,6 +1,6 @@
 """Detection of a single sweep that a simulation misses because it was recorded wrongly.
 
-Its sign is reversed, its unit is another one, or its label states a wrong load, camber or pressure.
+Its sign is reversed, its unit is wrong, or its label states a wrong load, camber or pressure.
 """
 
 from __future__ import annotations

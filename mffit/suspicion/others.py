@@ -65,11 +65,11 @@ class Error(NamedTuple):
 class Doubt:
     """A sweep, or one of its conditions, that the other sweeps do not predict."""
 
-    sweep: str  #: name of the sweep, with the condition if only one is meant
+    sweep: str  #: name of the sweep, with the condition if only one condition is in doubt
     file: str
     index: np.ndarray  #: (m,) indices of the points
     errors: tuple[Error, ...]  #: by channel, the worst first
-    whole: bool = True  #: False if one condition is meant
+    whole: bool = True  #: False if only one condition is in doubt
     looks: str = ""  #: possible explanation in words; empty if no known cause fits
     mistake: Mistake | None = None  #: recording mistake that explains a gross error
     left: float = 1.0  #: error after undoing the mistake, as a share of the usual size

@@ -1,4 +1,4 @@
-"""From the columns of a file to sweeps in ISO-W and SI; the signs of a rig are converted here and nowhere else."""
+"""Conversion of a file's columns to sweeps in ISO-W and SI; only this module converts a rig's signs."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _sweep(columns: Columns, config: Config, entry: SweepTable, setup: str) -> S
 
 
 def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
-    """A sweep made of some rows (m,) of another."""
+    """The sweep ``name`` of these rows (m,) of a sweep."""
     values = {field.name: getattr(sweep, field.name) for field in fields(sweep)}
     arrays: dict[str, Any] = {
         field: value[rows] for field, value in values.items() if isinstance(value, np.ndarray)
@@ -89,7 +89,7 @@ def usual_sign(Fz: np.ndarray) -> float:
 def check_loads(columns: Columns, axes: str) -> None:
     """Refuse loads in kilonewtons or of the wrong sign for the axes; in a table of points also zero loads and mixed signs.
 
-    A recording may begin with the tyre off the belt, so that the load is noise about zero.
+    Zero loads and mixed signs are allowed in a recording, because it may begin with the tyre off the belt.
     """
     Fz = columns.table["Fz_N"].to_numpy(dtype=float)
 

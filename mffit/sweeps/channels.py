@@ -20,8 +20,8 @@ class Channel:
     lower: float  #: plausible range, in ``unit``
     upper: float
     required: bool
-    below: str  #: what a value below the range usually is
-    above: str  #: what a value above the range usually is
+    below: str  #: usual cause of a value below the range
+    above: str  #: usual cause of a value above the range
     aliases: tuple[str, ...]  #: headings that rigs use; they do not state a unit, so they are only suggested
     description: str
 
@@ -50,7 +50,7 @@ BY_NAME = {channel.name: channel for channel in SWEEP_CHANNELS}
 
 
 def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
-    """The heading of a file that most likely is this channel; "" if none is."""
+    """The heading that most likely names this channel; "" if none does."""
     headings = list(headings)
     written = {heading.lower(): heading for heading in headings}
     for alias in (channel.name, *channel.aliases):
@@ -63,6 +63,6 @@ def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
 
 
 def nearest_channel(heading: str, *, likeness: float) -> str:
-    """The channel whose name is most like a heading; "" if none is as like as ``likeness``, from 0 to 1."""
+    """The channel whose name is most similar to a heading; "" if all similarities are below ``likeness``, from 0 to 1."""
     lower = {name.lower(): name for name in BY_NAME}
     return lower.get(meant(heading.lower(), lower, likeness=likeness), "")

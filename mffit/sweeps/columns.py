@@ -1,4 +1,4 @@
-"""From the cells of a file to the contract's columns, in the contract's units and the rig's own axes."""
+"""Conversion of a file's cells to the contract's columns, in the contract's units and the rig's own axes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
 MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
-"""What recorders write, in lower case, where there is no reading."""
+"""Texts, in lower case, that recorders write in place of a missing reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Columns:
     table: pd.DataFrame  #: contract columns in contract units, then all other columns of the file as text
     direction: np.ndarray | None  #: +1 or -1 (n,), None without such a column
     warnings: tuple[str, ...]
-    headings: Mapping[str, str] = field(default_factory=dict)  #: in the file, by contract column
+    headings: Mapping[str, str] = field(default_factory=dict)  #: headings of the file, by contract column
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
@@ -49,7 +49,7 @@ class Columns:
 
 
 class _Source(NamedTuple):
-    """Where a channel is found in a file."""
+    """The column of a file that holds a channel."""
 
     raw: RawTable
     channel: Channel
@@ -79,14 +79,14 @@ class _Read(NamedTuple):
 
 
 def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str] = ()) -> Columns:
-    """Find, convert and check the contract's columns.
+    """The contract's columns of a file, converted and checked.
 
     Parameters
     ----------
     raw : the file's cells
     mapping : ``[sweep.columns]``: contract column -> heading, unit and scale; its keys are contract columns
-    shared : those of its keys that come from ``[columns]``, which applies to all files: if a file lacks the heading, the key
-        is ignored unless the column is required
+    shared : the keys of ``mapping`` that come from ``[columns]``, which applies to all files; if a file lacks the heading, the
+        key is ignored unless the column is required
 
     Notes
     -----
@@ -120,9 +120,9 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
 
 
 def _without_rows_that_are_none(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:
-    """The rows to read, and sentences about what a spreadsheet added: rows of means, and cells such as ``#NV``.
+    """The rows to read, and sentences about rows and cells that a spreadsheet added: rows of means, and cells such as ``#NV``.
 
-    Such a cell is missing in a recording; in a table of points its row is skipped.
+    Rows of means are skipped. A cell such as ``#NV`` is a missing sample in a recording; a table of points loses the row.
     """
     out = np.zeros(len(raw), dtype=bool)
     sentences = []
@@ -176,7 +176,7 @@ def _not_in_file(raw: RawTable, name: str, heading: str) -> InputError:
 
 
 def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
-    """The error about required columns that a file lacks, with what to write for each of them."""
+    """The error about required columns that a file lacks, with a remedy for each."""
     near = {channel: nearest_heading(channel, raw.headings) for channel in channels}
     entries = [
         f'{channel.name} = {{ column = "{heading}", unit = "{raw.unit(heading) or channel.unit}" }}'
@@ -295,7 +295,7 @@ def _is_blank(cell: str | float) -> bool:
 
 
 def _is_gap(cell: str | float) -> bool:
-    """Whether a recorder writes this where it has no reading."""
+    """Whether a cell is a text for a missing reading, or an empty cell of numbers."""
     return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING or is_spreadsheet_error(cell)
 
 
@@ -322,7 +322,13 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
 
 
 def _in_range(source: _Source, values: np.ndarray) -> _Read:
-    """The values, all in their plausible range; rare spikes of a recording become NaN."""
+    """The values, checked against the plausible range; rare spikes of a recording become NaN.
+
+    Raises
+    ------
+    InputError
+        More values are outside the range than spikes explain.
+    """
     channel = source.channel
     outside = _outside(values, channel)
     if not np.any(outside):
@@ -350,7 +356,7 @@ def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) ->
 
 
 def _positive(source: _Source, read: _Read) -> _Read:
-    """Uncertainties, NaN where not above zero: a point of zero uncertainty would outweigh all others."""
+    """Uncertainties, with NaN for values not above zero, because a point without uncertainty would outweigh all others."""
     wrong = read.values <= 0.0
     if not np.any(wrong):
         return read
@@ -371,7 +377,7 @@ def _is_constant(cells: Cells) -> bool:
 
 
 def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
-    """Warnings about unused headings that look like a channel that was not found."""
+    """Warnings about unused headings that resemble the name of a missing channel."""
     sentences = []
     for heading, cells in extras.items():
         near = nearest_channel(heading, likeness=constants.LIKENESS_OF_UNUSED_HEADING)

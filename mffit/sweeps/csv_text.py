@@ -1,6 +1,6 @@
 """The reader of text tables: CSV of any dialect, tab-separated ``.dat`` with title and unit lines, columns between blanks.
 
-Encoding, separator, decimal comma and headings are found from the first lines; pandas reads the rows below them.
+The first lines show separator, decimal comma and headings; pandas reads the rows below them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from mffit.sweeps.raw_table import (
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")
-"""Sorted by priority: a comma is last, because it may also be a decimal comma."""
+"""Separators by priority; the comma is last, because it may also be a decimal comma."""
 BLANKS = " "
 HEAD = 65_536
 """Bytes at the start of a file that show separator, decimal comma and headings."""
@@ -46,7 +46,7 @@ LABELS = frozenset(channel.name for channel in SWEEP_CHANNELS if channel.kind ==
 
 
 class Dialect(NamedTuple):
-    """How a text file writes its cells."""
+    """Separator and decimal mark of a text file."""
 
     separator: str
     has_comma: bool  #: decimal comma instead of point
@@ -64,7 +64,7 @@ def read_csv(path: Path) -> RawTable:
 
 
 def table_of(rows: Iterable[Sequence[str | float]], path: Path) -> RawTable:
-    """A table made of rows of cells, as of a spreadsheet; the number of a row is its line."""
+    """The table in a spreadsheet's rows of cells; the line of a row is its number in the sheet."""
     text = io.StringIO()
     lines = csv.writer(text, delimiter="\t", lineterminator="\n")
     lines.writerows([" ".join(c.split()) if isinstance(c, str) else c for c in row] for row in rows)
@@ -192,7 +192,7 @@ def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path
 
 
 def _open_quote(body: bytes, path: Path, above: int) -> InputError:
-    """The error about a text whose rows are not its lines, at the first line with an odd number of quotation marks."""
+    """The error about a row that spans several lines, at the first line with an odd number of quotation marks."""
     lines = body.split(b"\n")
     line = above + 1 + next((k for k, one in enumerate(lines) if one.count(b'"') % 2), 0)
     sentence = "a quotation mark is not closed in its line; remove it, or the line break within the cell"

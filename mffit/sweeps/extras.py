@@ -1,4 +1,4 @@
-"""What several readers share: the bytes of a file, libraries imported when needed, and errors about damaged files."""
+"""Functions that several readers share: bytes of a file, libraries imported when needed, errors about damaged files."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from mffit.sweeps import constants
 
 
 def needed(module: str, what: str, path: Path) -> Any:
-    """The module.
+    """The imported module.
 
     Raises
     ------
     InputError
-        It is not installed; says how to install it.
+        The module is not installed; the error says how to install it.
     """
     try:
         return importlib.import_module(module)
@@ -38,7 +38,7 @@ def damaged(path: Path, kind: str, reason: object) -> InputError:
 
 @contextmanager
 def undamaged(path: Path, kind: str) -> Iterator[None]:
-    """Within this block, any error becomes an :class:`InputError`: libraries fail on a damaged file in countless ways."""
+    """Turn any error within this block into an :class:`InputError`; a damaged file may raise any error in a library."""
     with readable(path):
         path.open("rb").close()
     try:
@@ -57,18 +57,18 @@ def opened(path: Path) -> IO[bytes]:
 
 BYTES_OF_A_NUMBER = 8
 FLOOR = 65_536
-"""Bytes that are added to a packed size, so that a few rows that are all alike are no suspicion."""
+"""Bytes added to a packed size before the limit is computed, because a small file of equal rows packs very well."""
 TIME_TO_READ = 600.0
-"""Time [s] in which a file is read that is read in a process of its own."""
+"""Longest time [s] for a reader in a separate process."""
 
 
 def content_of(path: Path) -> bytes:
-    """The file's unpacked bytes, read no further than the largest recording.
+    """The file's unpacked bytes.
 
     Raises
     ------
     InputError
-        The file cannot be read, is not a complete gzip file, or holds more.
+        The file cannot be read, is not a complete gzip file, or holds more than :func:`largest` bytes.
     """
     with readable(path):
         try:
@@ -81,13 +81,13 @@ def content_of(path: Path) -> bytes:
 
 
 def largest(path: Path) -> int:
-    """Bytes that a recording of the size of this file holds at most once it is unpacked."""
+    """Maximum number of unpacked bytes accepted for a file of this size."""
     ratio = int(constants.LARGEST_RATIO)
     return min(int(constants.LARGEST_UNPACKED), ratio * (path.stat().st_size + FLOOR))
 
 
 def check_size(size: int, path: Path) -> None:
-    """Refuse a file that holds more bytes than any recording once it is unpacked; a small file may claim to."""
+    """Refuse a file with more unpacked bytes than :func:`largest`; a small packed file may unpack to a huge one."""
     if size > (most := largest(path)):
         raise InputError(
             f"holds more than {most / 1e6:.0f} MB when unpacked; split it, or export fewer channels",

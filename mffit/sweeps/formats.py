@@ -1,4 +1,4 @@
-"""The file formats of sweeps; a new one is a reader and one record here."""
+"""The file formats of sweeps; a new format needs a reader and one record in ``FORMATS``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Format(NamedTuple):
     name: str  #: for messages
     endings: tuple[str, ...]  #: of file names, in lower case
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
-    axes: str = ""  #: that the format prescribes; "" if it leaves them open
+    axes: str = ""  #: axes that the format prescribes; "" if none
 
 
 FORMATS = (
@@ -36,17 +36,17 @@ FORMATS = (
 )
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
 LARGEST_TABLE_KEPT = 5_000_000
-"""Cells of a table that is kept in memory while a command reads the same file repeatedly."""
+"""Maximum number of cells of a table that stays in memory while a command reads the same file repeatedly."""
 ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
 def read(path: Path) -> RawTable:
-    """Read a file in the format that the ending of its name says, CSV by default.
+    """Read a file in the format that its ending names, CSV by default.
 
     Raises
     ------
     InputError
-        The file cannot be read, or holds more than any recording.
+        The file cannot be read or is too large.
     """
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
@@ -73,7 +73,7 @@ def reading_once() -> Iterator[None]:
 
 
 def format_of(path: Path) -> Format:
-    """The format that the ending of the name says, CSV by default."""
+    """The format that the file's ending names, CSV by default."""
     return next((kind for kind in FORMATS if path.name.lower().endswith(kind.endings)), FORMATS[0])
 
 

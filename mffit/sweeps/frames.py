@@ -1,11 +1,12 @@
-"""From the wheel-carrier frame C to the contact frame W, and from the wheel centre to the contact point.
+"""Conversion from the wheel-carrier frame C to the contact frame W, and from the wheel centre to the contact point.
 
 TYDEX names axes and reference point with the last letter of a channel: C is turned with the wheel carrier and H is horizontal,
 both at the wheel centre; W is horizontal at the contact point. On a flat road H and W are parallel, and x is the same in all.
 
 Frames C and W share the x axis. C leans with the wheel: a camber ``gamma > 0`` moves the top of the wheel to -y, so
 that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` in W
-is ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma`` in C; so are moments about the same point.
+is ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma`` in C; moments about the same point
+transform likewise.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class FileFrame(NamedTuple):
     forces_lean: bool  #: the forces are in frame C
     moments_lean: bool
     at_centre: bool  #: the moments are about the wheel centre
-    load_is_vertical: bool | None = None  #: in frame C; None if the headings do not say it
+    load_is_vertical: bool | None = None  #: None if the headings do not state it
 
 
 class MixedAxesError(ValueError):
@@ -45,11 +46,11 @@ def letter_of(heading: str) -> str:
 
 
 def frame_of(headings: Mapping[str, str], rig: MachineTable) -> FileFrame:
-    """The frame of a file: as TYDEX's letters say, else as ``[rig]`` declares.
+    """The frame of a file: by TYDEX's letters in its headings, else as ``[rig]`` declares.
 
     Parameters
     ----------
-    headings : of the file, by the contract's columns
+    headings : headings of the file, by contract column
     rig : ``[rig]``
 
     Raises
@@ -138,8 +139,8 @@ def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
 def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
     """Whether the load column is the vertical load, although the forces are in frame C.
 
-    Rigs control the vertical load, so it varies little along a cambered sweep. The interpretation of the column with the
-    smaller variation is right. Without cambered sweeps both give the same forces.
+    Rigs control the vertical load, so it varies little along a cambered sweep. The column is therefore interpreted in the way
+    that makes the vertical load vary less. Without cambered sweeps both interpretations give the same forces.
     """
     as_given, turned = [], []
     for sweep in sweeps:

@@ -1,4 +1,4 @@
-"""The rows above the data of a table: title, headings and units; for text files and spreadsheets."""
+"""Title, headings and units from the rows above the data of a text table or spreadsheet."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def without_data(path: Path, line: int) -> InputError:
 
 
 def ragged(count: int, width: int, path: Path, line: int) -> InputError:
-    """The error about a row with another number of cells than headings."""
+    """The error about a row whose number of cells differs from that of the headings."""
     remedy = "complete or remove this row"
     if count > width:
         remedy = "remove the cells too many, or the decimal comma that splits a number, or the row"
@@ -54,7 +54,7 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)
     usual = max(widths, key=lambda width: (widths[width], width))
-    # The first row that is filled for the most part; a title is not.
+    # The headings are the first row with most cells filled, because a title fills few.
     at = next((k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual), 0)
     found = _trimmed(rows[at])
     headings = tuple(str(cell) for cell in found)
@@ -74,7 +74,7 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
 
 
 def _units(rows: Sequence[Row], at: int, width: int) -> tuple[tuple[str, ...], int]:
-    """Units in the row below the headings, all "" without such a row; and the number of rows above the data."""
+    """Units from the row below the headings, all "" without a row of units; and the number of rows above the data."""
     nothing = ("",) * width, at + 1
     if at + 1 >= len(rows):
         return nothing
@@ -100,7 +100,7 @@ def _trimmed(row: Row) -> Row:
 
 
 def _width(row: Row) -> int:
-    """Number of cells up to the last that is not empty."""
+    """Number of cells up to the last filled one."""
     return max((k + 1 for k, cell in enumerate(row) if cell != ""), default=0)
 
 

@@ -46,7 +46,7 @@ def load(config: Config) -> Sweeps:
     Raises
     ------
     InputError
-        A file cannot be read, or a value in it is impossible; names file, line and column. Or no reading is left.
+        A file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
     """
     found: list[Sweep] = []
     excluded: list[ExcludedRows] = []
@@ -103,7 +103,7 @@ def load(config: Config) -> Sweeps:
 
 
 def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
-    """Warnings with their files, each kind once: of more than three that differ in nothing but numbers, that of the first."""
+    """The sentences; of many that differ only in numbers, only the first, with the count and files of the others."""
     alike: dict[str, list[tuple[Path, str]]] = {}
     for path, sentence in warnings:
         alike.setdefault(NUMBER.sub("0", sentence.removeprefix(str(path))), []).append((path, sentence))
@@ -153,9 +153,9 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
 def _apart(
     config: Config, entry: SweepTable, raw: RawTable
 ) -> tuple[RawTable | None, list[tuple[ExcludeTable, RawTable]]]:
-    """The rows of a file that are kept, None without any, and the excluded ones with their entries.
+    """The kept rows of a file, None without any, and the excluded rows with their entries of ``[fit] exclude``.
 
-    They are taken apart before anything is checked, so that a damaged row can be excluded without editing the file.
+    Rows are excluded before any check, so that a user can exclude a damaged row without editing the file.
     """
     lines = np.asarray(raw.lines)
     out = np.zeros(len(lines), dtype=bool)
@@ -172,12 +172,12 @@ def _apart(
 
 
 def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
-    """Refuse entries of ``[fit] exclude`` about a file whose rows are at ``lines`` (n,), if a range ends beside these.
+    """Check that the ranges of ``[fit] exclude`` for a file begin and end at lines (n,) with readings.
 
     Raises
     ------
     InputError
-        Names the entry and the first such end.
+        A range begins or ends at another line.
     """
     for index, one in enumerate(config.fit.exclude):
         ends = (end for pair in one.ranges for end in pair) if one.file == file else ()
@@ -199,7 +199,7 @@ def _no_reading(name: str, lines: np.ndarray, wrong: int) -> str:
 def _as_far_as_readable(
     config: Config, index: int, entry: SweepTable, raw: RawTable, setup: str
 ) -> tuple[tuple[Sweep, ...], FileFrame | None]:
-    """The sweeps of excluded rows and their frame; none if a row is damaged, which may be why it is excluded."""
+    """The sweeps of excluded rows and their frame; () and None if they cannot be read, as damaged rows are often excluded."""
     try:
         columns = _columns(config, index, entry, raw)
         return tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
@@ -268,8 +268,9 @@ def _contradicting(columns: Columns, entry: SweepTable) -> list[str]:
 
 
 def _about_frames(sweeps: Sequence[Sweep], frames: Mapping[str, FileFrame], *, vertical: bool) -> list[str]:
-    """Sentences about what the conversion to frame W and the contact point lacks; ``vertical``: the load column is found to be
-    the vertical load although the forces lean.
+    """Sentences about approximations in the conversion to frame W and the contact point.
+
+    ``vertical`` states that the load column was found to be the vertical load although the other forces are in frame C.
     """
     warnings = []
     if vertical:

@@ -28,7 +28,7 @@ from mffit.sweeps.raw_table import RawTable
 KIND = "MATLAB file"
 HDF5_MARK = b"\x89HDF"
 CONDITION_OF = re.compile("(alpha|gamma|camber|fz|pressure|speed)_?(fx|fy|mx|my|mz)", re.IGNORECASE)
-"""A condition under which one channel was measured."""
+"""Name of a vector that holds a condition of one channel only."""
 
 
 def read_mat(path: Path) -> RawTable:
@@ -67,9 +67,10 @@ def read_mat(path: Path) -> RawTable:
 
 
 def _with_common_conditions(vectors: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], list[str]]:
-    """The vectors, where each channel has conditions of its own (``alphaFy``, ``Fz_Fy``, ``alphaMz``) under plain names.
+    """The vectors with common conditions under plain names, and the names of channels left out.
 
-    A channel whose conditions are not those of the first one is left out and named.
+    Some files have separate conditions for each channel (``alphaFy``, ``Fz_Fy``, ``alphaMz``). A channel is left out if its
+    conditions differ from those of the first channel.
     """
     own: dict[str, dict[str, str]] = {}
     for name in vectors:
@@ -92,7 +93,7 @@ def _with_common_conditions(vectors: dict[str, np.ndarray]) -> tuple[dict[str, n
 
 
 def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
-    """Names in the order of the structure ``channel``, and their units; both empty without it."""
+    """Names and units from the structure ``channel``, in its order; both empty without it."""
     channel = content.get("channel")
     if not isinstance(channel, dict):
         return [], {}

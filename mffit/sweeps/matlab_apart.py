@@ -1,7 +1,7 @@
-"""MATLAB files of v4 to v7, read in a process of their own: scipy's reader may crash the process on a damaged file.
+"""MATLAB files of v4 to v7, read in a separate process, because scipy's reader may crash on a damaged file.
 
 ``python -P matlab_apart.py FILE OUT MOST`` imports nothing of mffit. It writes numbers and texts of the file to the folder OUT
-for :func:`mffit.sweeps.matlab.read_mat`, or the reason why it cannot be read to OUT/trouble.txt.
+for :func:`mffit.sweeps.matlab.read_mat`. If the file cannot be read, it writes the reason to OUT/trouble.txt.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ import numpy as np
 LARGEST_TEXT = 10_000  # letters; not a record of constants.py, which this module must not import
 TROUBLE, TEXTS, SIZE = "trouble.txt", "texts.json", "size.txt"
 PACKED = 15
-"""The kind of an element of MATLAB v5 to v7 that zlib packed."""
+"""Data type of a compressed element in MATLAB v5 to v7."""
 NESTED = (1, 2, 3)
-"""Classes of arrays whose parts whosmat does not count: cells, structures, objects."""
+"""Classes of arrays whose parts scipy's ``whosmat`` does not count: cells, structures, objects."""
 CHUNK = 1 << 20
 
 
 def load(path: Path) -> dict[str, Any]:
-    """Column vectors (n,) and texts, by themselves or in a structure, and the names and units of the structure ``channel``."""
+    """Vectors (n,) and texts by name, including those in structures, and names and units of the structure ``channel``."""
     import scipy.io
 
     loaded = scipy.io.loadmat(path, chars_as_strings=True)
@@ -46,7 +46,7 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def _known(variables: dict[str, Any]) -> dict[str, Any]:
-    """Those that are vectors or texts."""
+    """The variables that are vectors or texts."""
     content: dict[str, Any] = {}
     for name, value in variables.items():
         if value.dtype.kind == "U" and value.size == 1:
@@ -66,7 +66,7 @@ def _texts(cells: Any) -> list[str]:
 
 
 def unpacked(path: Path, most: int) -> int:
-    """Bytes that scipy may load of a file, counted no further than past ``most``, before it loads them all at once."""
+    """Number of bytes that scipy would load; counting stops once it exceeds ``most``."""
     import scipy.io
 
     size = 0
@@ -94,9 +94,9 @@ def _first(packed: bytes, order: str) -> int:
 
 
 def main(source: str, out: str, most: str) -> None:
-    """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``.
+    """Load the file and write its vectors as ``k.npy``, where k is the index of the name in ``texts.json``.
 
-    A file that holds more than ``most`` bytes is not loaded; as far as they were counted they are written to ``size.txt``.
+    If the file holds more than ``most`` bytes, only the number of bytes counted so far is written, to ``size.txt``.
     """
     folder = Path(out)
     try:

@@ -1,4 +1,4 @@
-"""A file as headings and cells with the line of every row, before headings and units are interpreted."""
+"""Headings and cells of a file, before headings and units are interpreted."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from mffit.errors import InputError
 from tir.errors import counted
 
 Cells = Sequence[str | float] | np.ndarray
-"""One column (n,): an array of floats if all cells are numbers in the file, else the cells as written."""
+"""One column (n,): an array of floats if the file holds only numbers in it, else the cells as written."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawTable:
-    """What a reader finds in one file; ``lines`` and every column of ``cells`` have the same length (n,).
+    """The content of one file; ``lines`` and every column of ``cells`` have the same length (n,).
 
     Raises
     ------
     InputError
-        There are no rows, a heading is empty or appears twice, or a column has another length.
+        There are no rows, a heading is empty or appears twice, or a column's length differs from the number of rows.
     """
 
     headings: tuple[str, ...]
     units: tuple[str, ...]  #: as the file states them, "" if it does not
     cells: tuple[Cells, ...]  #: one column per heading; text is stripped of blanks
-    lines: Sequence[int] | np.ndarray  #: from 1, of each row; in binary formats the number of the row
+    lines: Sequence[int] | np.ndarray  #: line of each row, from 1; in binary formats the row's number
     path: Path
     heading_line: int | None  #: None in formats without lines
     about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
@@ -69,7 +69,7 @@ class RawTable:
 
 
 NUMBER_WITH_COMMA = re.compile(r"[-+]?(?:\d*|\d{1,3}(?:\.\d{3})+),\d+(?:[eE][-+]?\d+)?")
-"""A number with a decimal comma, also with points between its thousands: ``-8,0``, ``1.500,0``."""
+"""A number with a decimal comma, with or without points between thousands: ``-8,0``, ``1.500,0``."""
 THOUSANDS_WITH_POINT = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+")
 THOUSANDS_WITH_COMMA = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 
@@ -82,7 +82,7 @@ SUMMARIES = frozenset({
     "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
     "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",
 })  # fmt: skip
-"""Words, in lower case, at the beginning of rows that spreadsheets add below the readings."""
+"""Words, in lower case, that mark a row of statistics in a spreadsheet, such as means."""
 
 
 def has_decimal_comma(cell: str) -> bool:
@@ -96,15 +96,15 @@ def with_decimal_point(cell: str) -> str:
 
 
 def is_spreadsheet_error(cell: str) -> bool:
-    """Whether a spreadsheet writes this where it has no value."""
+    """Whether a cell is a spreadsheet's error code, such as ``#NV``."""
     return cell.upper() in SPREADSHEET_ERRORS
 
 
 def is_summary(cell: str) -> bool:
-    """Whether a cell says that its row is computed from the others."""
+    """Whether a cell marks its row as statistics of the other rows."""
     return cell.lower().rstrip(".: ") in SUMMARIES
 
 
 def without_commas(cell: str) -> str:
-    """A number of a file that has decimal commas, with a decimal point and without points between thousands."""
+    """A number from a file with decimal commas, rewritten with a decimal point and without separators of thousands."""
     return cell.replace(".", "") if THOUSANDS_WITH_POINT.fullmatch(cell) else with_decimal_point(cell)

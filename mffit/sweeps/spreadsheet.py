@@ -13,7 +13,7 @@ from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_c
 
 
 def read_xlsx(path: Path) -> RawTable:
-    """Read an ``.xlsx`` file: headings, optionally a row of units, then numbers; of a formula, its last value.
+    """Read an ``.xlsx`` file: headings, optionally a row of units, then numbers; a formula counts as its last value.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def read_xlsx(path: Path) -> RawTable:
 
 
 def _with_points(rows: list[tuple[str | float, ...]]) -> list[tuple[str | float, ...]]:
-    """The rows with decimal points, if texts are numbers with decimal commas and not with commas between thousands."""
+    """The rows with decimal points in place of decimal commas; unchanged if all commas may separate thousands."""
     texts = {cell for row in rows for cell in row if isinstance(cell, str)}
     with_comma = {cell for cell in texts if has_decimal_comma(cell)}
     if all(map(THOUSANDS_WITH_COMMA.fullmatch, with_comma)):

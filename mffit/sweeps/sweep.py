@@ -16,7 +16,7 @@ class MeasuredRows(Brief):
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber (inclination angle) as read [rad]
-    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 if it was not measured: rolling freely
+    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 (free rolling) if not measured
     Fz: np.ndarray  #: load, positive [N]
     p: np.ndarray  #: inflation pressure, nominal if not measured [Pa]
     V: np.ndarray  #: speed, positive in both directions, nominal if not measured [m/s]
@@ -28,8 +28,8 @@ class MeasuredRows(Brief):
     RL: np.ndarray  #: loaded radius [m]
     omega: np.ndarray  #: wheel speed [rad/s], negative when the wheel rolls backwards
     T: np.ndarray  #: tyre temperature [degC]
-    t: np.ndarray  #: when a finished point was taken [s]
-    u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; so for every channel
+    t: np.ndarray  #: time at which a finished point was taken [s]
+    u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; likewise for the other channels
     u_Fy: np.ndarray
     u_Mx: np.ndarray
     u_My: np.ndarray
@@ -70,12 +70,12 @@ class Sweep(MeasuredRows):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ExcludedRows(Brief):
-    """Rows of one file that one entry of ``[fit] exclude`` leaves out."""
+    """Rows of a file that an entry of ``[fit] exclude`` leaves out."""
 
     file: str  #: name as in ``tyre.toml``
     line: np.ndarray  #: (n,) in the file, counted from 1
     why: str
-    sweeps: tuple[Sweep, ...]  #: the same rows as they would have been read; empty if they cannot be
+    sweeps: tuple[Sweep, ...]  #: sweeps of these rows; empty if they cannot be read
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -37,7 +37,7 @@ class Entry(NamedTuple):
 
 
 def read_tydex(path: Path) -> RawTable:
-    """Read a ``.tdx`` file; constants that no channel gives become columns of one value.
+    """Read a ``.tdx`` file; a constant becomes a column of equal values, unless a channel has its name.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _channels(lines: Numbered, path: Path) -> list[Entry]:
 
 
 def _data(lines: Numbered, count: int, path: Path) -> tuple[list[int], np.ndarray]:
-    """Line of every row and its numbers (n, count)."""
+    """Line numbers of the rows, and their values (n, count)."""
     if not lines:
         raise InputError(f"has no data; add {MARK}{DATA} with a row for each sample", file=path)
     values = [_numbers(line, count, path, number) for number, line in lines]
@@ -118,7 +118,7 @@ def _data(lines: Numbered, count: int, path: Path) -> tuple[list[int], np.ndarra
 
 
 def _entry(line: str) -> Entry:
-    """A row by its fixed columns, or by its words where the fixed columns make no sense."""
+    """A row read by its fixed columns, or by its words if the fixed columns hold no unit."""
     row = FixedRow.of(line)
     if " " not in row.name and is_unit(row.unit) and (row.unit or row.values):
         return Entry(row.name, row.unit, tuple(row.values.split()))

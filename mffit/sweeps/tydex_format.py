@@ -1,4 +1,4 @@
-"""TYDEX-Format, release 1.3, as text: names of sections and columns of a row, for reader and writer.
+"""Names of sections and columns of a row in TYDEX-Format, release 1.3, for reader and writer.
 
 A row of constants or channels has a name of 10 characters, a description of 30, a unit of 10, then values. A channel has three:
 a factor, an offset of the measured and an offset of the physical value; physical = factor (measured + offset 1) + offset 2.
@@ -12,17 +12,17 @@ RELEASE = "1.3"
 HEADER, COMMENTS, CONSTANTS, END = "HEADER", "COMMENTS", "CONSTANTS", "END"
 CHANNEL_SECTION, DATA = "MEASURCHANNELS", "MEASURDATA"
 MARK = "**"
-"""Before the name of a section."""
+"""Prefix of the name of a section."""
 REMARK = "!"
-"""Before a remark."""
+"""Prefix of a remark."""
 MISSING = "NOTAVAIL"
-"""In place of a number that was not measured."""
+"""Text for a number that was not measured."""
 NAME, DESCRIPTION, UNIT, VALUE = 10, 30, 10, 10
 """Widths of the columns."""
 
 
 class FixedRow(NamedTuple):
-    """A row of constants or channels, by its fixed columns."""
+    """A row of constants or channels, split at its fixed columns."""
 
     name: str
     description: str
@@ -31,7 +31,7 @@ class FixedRow(NamedTuple):
 
     @classmethod
     def of(cls, line: str) -> FixedRow:
-        """The row that a line holds if its columns are fixed."""
+        """The row in a line with fixed columns."""
         name, rest = line[:NAME], line[NAME:]
         description, rest = rest[:DESCRIPTION], rest[DESCRIPTION:]
         return cls(name.strip(), description.strip(), rest[:UNIT].strip(), rest[UNIT:].strip())

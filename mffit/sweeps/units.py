@@ -1,6 +1,6 @@
-"""From the unit that a file or a user names to the contract's unit; pint is imported only when a unit is named.
+"""Conversion from the unit that a file or a user names to the contract's unit.
 
-Laboratories have spellings of units that pint does not know; ``unit_spellings.csv`` translates them.
+pint is imported only when a unit is named. ``unit_spellings.csv`` translates laboratories' spellings that pint does not know.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MOMENT = re.compile(r"^((?:da|k|M|m)?N)[-.·* ]?(mm|cm|m)$")
 
 
 class UnknownUnitError(ValueError):
-    """The unit is unknown or measures something else."""
+    """The unit is unknown or has another dimension."""
 
 
 def converted(values: np.ndarray, unit: str, target: str) -> np.ndarray:
@@ -60,7 +60,7 @@ def converted(values: np.ndarray, unit: str, target: str) -> np.ndarray:
 
 @cache
 def factor(unit: str, house: str) -> float:
-    """One ``unit`` in the unit ``house``."""
+    """The factor from ``unit`` to ``house``."""
     return float(converted(np.ones(1), unit, house)[0])
 
 
@@ -81,10 +81,10 @@ def is_unit(text: str) -> bool:
 
 
 PARSER_FAILURES = (AttributeError, AssertionError, TypeError, ValueError, RecursionError)
-"""What pint's parser raises, besides its own errors, on a text that is not an expression of units."""
+"""Errors, other than pint's own, that pint's parser raises on a text that is not an expression of units."""
 TERM = r"(?:[^\W\d_]+|%|°[CF]?)(?:_[^\W\d_]+)*(?:(?:\*\*|\^)?-?\d(?!\d)|[²³])?"
 EXPRESSION = re.compile(rf"(?:1/)?{TERM}(?: ?[ */·] ?{TERM})*")
-"""Form of an expression of units; nothing else is given to pint's parser, because it also evaluates arithmetic."""
+"""Form of an expression of units; no other text goes to pint's parser, because it also evaluates arithmetic."""
 
 
 @cache
@@ -97,7 +97,7 @@ def spelt(unit: str) -> str:
 
 @cache
 def spellings() -> dict[str, str]:
-    """Pint's spelling by the spelling of laboratories, in lower case."""
+    """Pint's spelling of each unit, by laboratories' spelling in lower case."""
     text = resources.files(__package__).joinpath("unit_spellings.csv").read_text(encoding="utf-8")
     return {row["written"]: row["unit"] for row in csv.DictReader(text.splitlines())}
 

@@ -171,5 +171,5 @@ def clearly_above_zero(change: np.ndarray) -> bool:
 
 
 def beyond_chance(gain: float, numbers: int, candidates: int = 1) -> bool:
-    """Whether a gain in log likelihood from some ``numbers`` exceeds what the best of several useless candidates reaches."""
+    """Whether a gain in log likelihood from this many ``numbers`` is significant for the best of this many ``candidates``."""
     return bool(gammaincc(0.5 * numbers, max(gain, 0.0)) < PREDICTION_FALSE_ALARM / max(candidates, 1))

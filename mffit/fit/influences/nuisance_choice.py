@@ -215,7 +215,7 @@ def _of_runs(
         reason = "left-out halves of sweeps are not predicted clearly better with it"
         return Verdict(nuisance, False, reason, *gaps), {}
     without, beside = (joint.left_out(of.given, sweeps) for of in (alike, differ))
-    if np.mean(np.log(beside.squares / without.squares)) > 0.0:  # each run counts as much as any other
+    if np.mean(np.log(beside.squares / without.squares)) > 0.0:  # the logarithm gives every run equal weight
         reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
         return Verdict(nuisance, False, reason, without.gaps, beside.gaps), {}
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter

@@ -47,7 +47,7 @@ class Nuisance:
     def of_no_rig(self, problem: FitProblem) -> bool:
         """Whether a number is zero or has a sign that is physically impossible.
 
-        Never for temperature terms: those of the wrong sign are modelled, and a doubt is reported.
+        Always False for temperature terms: a term of the wrong sign is modelled, and a doubt is reported.
         """
         signs = {name: BY_NAME[name].known_sign for name in self.numbers}
         return self.key != TEMPERATURE and any(

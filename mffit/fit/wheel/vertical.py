@@ -171,8 +171,8 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     The loaded radius is fitted first, to every reading under Fx, Fy and camber, because DREFF, BREFF and FREFF act only relative
     to the stiffness. Then the rolling radius follows, so that an offset of one channel does not distort the other. Coefficients
     that are ``held`` or that need more levels of a setting keep their values. The uncertainties include unknown effects of speed
-    (if a single speed was run) and the errors of the first fit. Errors within a part of a sweep are correlated, so parts rather
-    than readings count as independent.
+    (if a single speed was run) and the errors of the first fit. Errors within a part of a sweep are correlated, so only different
+    parts are treated as independent.
     """
     loaded, rolling = _loaded(points), _rolling(points)
     turning = None if rolling is None else rolling.select(np.isfinite(rolling.effective))

@@ -1,4 +1,4 @@
-"""Keys of a build: the content of ``result.json`` and ``information.json``, and a line of ``mffit build --json``."""
+"""JSON keys of a build: ``result.json``, ``information.json``, and a line of ``mffit build --json``."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ keys(Outlier, "file line? sweep channel measured expected ratio")
 
 
 def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[str, Json]:
-    """The ``fit`` part of ``result.json``; ``over_noise`` is the misfit of each channel over its stated noise."""
+    """The ``fit`` part of ``result.json``; ``over_noise`` is the ratio of misfit to stated noise, by channel."""
     channels: dict[str, Json] = {
         name: {**document(row), "over_noise": over_noise.get(name)} for name, row in found.channels.items()
     }
@@ -60,12 +60,12 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
 
 
 def estimates(numbers: Estimates) -> dict[str, object]:
-    """Numbers and their standard errors."""
+    """JSON of numbers with their standard errors."""
     return {name: {"value": value, "stderr": u} for name, (value, u) in numbers.items()}
 
 
 def of_rig(numbers: Estimates) -> dict[str, object]:
-    """Numbers of the rig, and their units."""
+    """JSON of the rig's numbers with their standard errors and units."""
     return {n: {"value": value, "stderr": u, "unit": unit_of(n)} for n, (value, u) in numbers.items()}
 
 
@@ -154,7 +154,7 @@ keys(
 
 
 def _file(files: Files, use: str) -> dict[str, object]:
-    """Misfits of a written file; of that for turn slip off also what it lacks."""
+    """JSON of a written file: its misfits, and for the file without turn slip also the forces that it lacks."""
     file, out = files.by_use[use], dict[str, object](document(files.by_use[use]))
     if use in files.changed:
         out["coefficients"] = {name: file.tyre[name] for name in files.changed[use]}
@@ -180,7 +180,10 @@ keys(
 
 
 def residuals(remains: Remains, missed: Mapping[str, MissedAtReadings]) -> dict[str, Json]:
-    """What the fit leaves, and where the file misses each channel most; ``rms`` is ``of_file``, where that is proven."""
+    """The ``residuals`` part of ``result.json``.
+
+    Where model error at the readings is proven, ``rms`` is that of the written file, and ``most`` is the region of its maximum.
+    """
     found = document(remains)
     for name, one in missed.items():
         of_channel = found["missed"][name]  # type: ignore[call-overload, index]

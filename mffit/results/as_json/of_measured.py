@@ -1,6 +1,7 @@
-"""Keys of what is measured directly: the content of ``spin.json``, which is the ``spin`` part of ``result.json``.
+"""JSON keys of the direct measurement: ``spin.json``, and the ``spin`` part of ``result.json``.
 
-SI units, ISO signs, u with k = 1. ``spin.json`` has ``made`` and the judgement, which stand elsewhere in ``result.json``.
+SI units, ISO signs, standard uncertainties (k = 1). ``spin.json`` also has ``made`` and the judgement; ``result.json`` has
+these at its top level.
 """
 
 from __future__ import annotations

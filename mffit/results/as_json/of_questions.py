@@ -1,4 +1,4 @@
-"""Keys of the answers of the other commands: ``diagnosis.json``, ``plan.json``, ``compare.json``, ``fleet.json`` and the rest."""
+"""JSON keys of the other commands' results: ``diagnosis.json``, ``plan.json``, ``compare.json``, ``fleet.json`` and others."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ keys(Population, "* assumed")
 
 
 def _scatters(found: Fleet) -> dict[str, object]:
-    """Scatter of every number that at least two tyres have."""
+    """JSON of the scatter of every number that at least two tyres have."""
     names = {key: f"epsilon_gamma_{key}" for key in EPSILON} | {key: key for key in found.rows[0].numbers}
     return {name: scatter for key, name in names.items() if (scatter := found.scatter(key)) is not None}
 
