@@ -40,13 +40,13 @@ def test_no_module_needs_one_system_to_be_imported():
 
 @pytest.fixture
 def bare(tmp_path, monkeypatch):
-    """Windows, as far as Python shows it: neither owners nor POSIX's locks, modes of pipes and calls of the system."""
+    """Windows, as far as Python shows it: neither owners nor POSIX's locks and calls of the system."""
     locked: list[int] = []
     msvcrt = types.SimpleNamespace(LK_LOCK=1, locking=lambda handle, mode, size: locked.append(mode))
     monkeypatch.setitem(sys.modules, "fcntl", None)
     monkeypatch.setitem(sys.modules, "msvcrt", msvcrt)
     monkeypatch.setattr(sys, "platform", "win32")
-    for name in ("chown", "geteuid", "O_NONBLOCK", "kill", "listxattr"):
+    for name in ("chown", "geteuid", "kill", "listxattr"):
         monkeypatch.delattr(os, name, raising=False)
     monkeypatch.setattr(
         "shutil._copyxattr", lambda *given, **more: None
