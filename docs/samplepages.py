@@ -1,7 +1,8 @@
 """Sphinx extension: the report, the diagnosis and the page of curves of every sample, made with the site.
 
 ``sphinx-build`` builds each sample once, in as many processes as there are cores, and not again until the program or the sample
-changes. A diagnosis is of the true tyre of the sample on its faulty rig, so that it has something to find.
+changes; with ``-D sample_pages=NAME`` this sample only. A diagnosis is of the true tyre of the sample on its faulty rig, so that
+it has something to find.
 """
 
 from __future__ import annotations
@@ -50,11 +51,13 @@ def write_all(app: Any, exception: Exception | None) -> None:
     """The pages of all samples beside the site, once it is written."""
     if exception is not None or app.builder.format != "html":
         return
-    folders = [Path(app.outdir).resolve() / FOLDER / name for name in NAMES]
-    with ProcessPoolExecutor(min(len(NAMES), os.cpu_count() or 1)) as pool:
-        list(pool.map(write, NAMES, folders))
+    names = app.config.sample_pages
+    folders = [Path(app.outdir).resolve() / FOLDER / name for name in names]
+    with ProcessPoolExecutor(min(len(names), os.cpu_count() or 1)) as pool:
+        list(pool.map(write, names, folders))
 
 
 def setup(app: Any) -> dict[str, Any]:
+    app.add_config_value("sample_pages", list(NAMES), "")
     app.connect("build-finished", write_all)
     return {"parallel_read_safe": True}

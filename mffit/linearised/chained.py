@@ -25,22 +25,25 @@ class Memory(NamedTuple):
 
     def matrix(self, n: int) -> np.ndarray:
         """Correlation matrix (n, n) of the readings of a chain."""
-        out: np.ndarray = (1.0 - self.independent) * self.correlation ** _steps(n)
+        steps = np.arange(float(n))
+        out = _over_steps((1.0 - self.independent) * self.correlation**steps)
         np.fill_diagonal(out, 1.0)
         return out
 
     def slopes(self, n: int) -> np.ndarray:
         """Derivatives (2, n, n) of the correlation matrix by correlation and independent share."""
-        steps = _steps(n)
+        steps = np.arange(float(n))
         by_correlation = (1.0 - self.independent) * steps * self.correlation ** np.maximum(steps - 1.0, 0.0)
         by_share = -(self.correlation**steps)
-        np.fill_diagonal(by_share, 0.0)
-        return np.array([by_correlation, by_share])
+        by_share[:1] = 0.0
+        return np.array([_over_steps(by_correlation), _over_steps(by_share)])
 
 
-def _steps(n: int) -> np.ndarray:
-    places = np.arange(float(n))
-    return np.abs(places[:, None] - places)
+def _over_steps(values: np.ndarray) -> np.ndarray:
+    """Matrix (n, n) of the value (n,) at the number of steps between two readings."""
+    places = np.arange(len(values))
+    out: np.ndarray = values[np.abs(places[:, None] - places)]
+    return out
 
 
 def chains_of(chain: np.ndarray, turn: np.ndarray | None = None) -> list[np.ndarray]:

@@ -35,9 +35,8 @@ SAME_FAULTS = Machine(
 )
 
 
-def test_a_tyre_effect_becomes_a_coefficient_with_its_reason(stiffer_camber, tmp_path):
-    case, config, points = stiffer_camber
-    found = diagnose(points, case.given, config)
+def test_a_tyre_effect_becomes_a_coefficient_with_its_reason(stiffer_camber, camber, tmp_path):
+    case, found = stiffer_camber[0], camber
     value, error = found.effects[0].parameters["PKY6"]
     assert value == pytest.approx(float(case.true["PKY6"]), abs=5.0 * error)
     found.tyre.write(tmp_path / "after.tir")

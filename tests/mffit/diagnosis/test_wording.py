@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mffit.diagnosis import Diagnosis, diagnose, wording
+from mffit.diagnosis import wording
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.needs import MET
 from mffit.diagnosis.noise import Noise, Scatter
@@ -45,18 +45,6 @@ CHECK = Validation(
     Gap({"Fy": 41.0, "Mz": 2.2}, 5.1),
 )
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
-
-
-@pytest.fixture(scope="module")
-def nothing(right_model) -> Diagnosis:
-    case, config, points = right_model
-    return diagnose(points, case.given, config)
-
-
-@pytest.fixture(scope="module")
-def camber(stiffer_camber) -> Diagnosis:
-    case, config, points = stiffer_camber
-    return diagnose(points, case.given, config)
 
 
 def test_a_misfit_without_a_bump_has_no_place(nothing):

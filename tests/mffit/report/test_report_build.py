@@ -147,15 +147,11 @@ def test_a_flat_track_has_no_spin_and_no_parts(tmp_path):
     assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"overview", "fit_Fy", "fit_Mz", "residuals"}
 
 
-def test_without_moment_only_side_force_is_shown(tmp_path):
-    write_build(made_result(moment=False), tmp_path)
-    assert not [p for p in (tmp_path / "plots").iterdir() if "Mz" in p.stem]
-    assert "Misfit of Mz" not in read_page(tmp_path / "report.html").text
-
-
-def test_without_stated_noise_residuals_are_in_units_of_the_misfit(tmp_path):
-    write_build(made_result(u_Fy=np.nan, u_Mz=np.nan), tmp_path)
+def test_without_moment_and_stated_noise_the_side_force_is_shown_in_units_of_the_misfit(tmp_path):
+    write_build(made_result(moment=False, u_Fy=np.nan, u_Mz=np.nan), tmp_path)
     text = read_page(tmp_path / "report.html").text
+    assert not [p for p in (tmp_path / "plots").iterdir() if "Mz" in p.stem]
+    assert "Misfit of Mz" not in text
     assert "units of the channel's rms misfit" in text
     assert "not stated" in text
 
