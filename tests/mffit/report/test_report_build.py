@@ -238,10 +238,14 @@ def test_page_and_pictures_are_dark_in_dark_mode(browser):
 
 def test_the_colours_of_angles_differ_in_dark_mode(browser):
     colours = list(ramp(range(7)).values())
-    squares = "".join(f'<rect x="{20 * k}" width="20" height="20" fill="{c}"/>' for k, c in enumerate(colours))
+    squares = "".join(
+        f'<rect x="{20 * k}" width="20" height="20" fill="{c}"/>' for k, c in enumerate(colours)
+    )
     drawn = f'<svg xmlns="http://www.w3.org/2000/svg" width="140" height="20">{squares}</svg>'
     look(browser, dark=True)
-    added = "const box = document.createElement('div'); box.className = 'panels'; box.innerHTML = arguments[0];"
+    added = (
+        "const box = document.createElement('div'); box.className = 'panels'; box.innerHTML = arguments[0];"
+    )
     browser.execute_script(f"{added} document.querySelector('main').prepend(box); scrollTo(0, 0)", drawn)
     grey = brightness(browser.find_element("css selector", "main > .panels svg"))[10, 10::20]
     browser.execute_script("document.querySelector('main > .panels').remove()")
