@@ -292,7 +292,7 @@ class Session:
         return self._seen[1:]
 
     def _pages(self, config: Config | None) -> list[dict[str, Any]]:
-        """The pages of results: title, address if there is one, whether it is older than tyre.toml, and the files to take away."""
+        """The pages of results: title, address if there is one, whether it is older than tyre.toml, and files to save."""
         out, changed = out_of(self.file.path), _time(self.file.path)
         has_base = config is not None and config.tyre.base is not None
         return [
