@@ -292,7 +292,7 @@ class Session:
         return self._seen[1:]
 
     def _pages(self, config: Config | None) -> list[dict[str, Any]]:
-        """The pages of results: title, address if there is one, whether it is older than tyre.toml."""
+        """The pages of results: title, address if there is one, whether it is older than tyre.toml, and files to save."""
         out, changed = out_of(self.file.path), _time(self.file.path)
         has_base = config is not None and config.tyre.base is not None
         return [
@@ -301,6 +301,7 @@ class Session:
                 "title": title,
                 "href": f"out/{place}" if (out / place).is_file() else None,
                 "old": _time(out / place) < changed,
+                "files": sorted(path.name for path in out.glob("*.tir")) if kind == "build" else [],
             }
             for kind, (title, place) in PAGES.items()
             if kind != "compare" or has_base

@@ -187,6 +187,7 @@ function showLinks() {
       const link = Object.assign(document.createElement("a"), {href: page.href, target: "_blank", textContent: page.title});
       if (page.old) link.append(" (older than tyre.toml)");
       part.append(link);
+      for (const name of page.files) part.append(Object.assign(document.createElement("a"), {href: `${page.href.replace(/[^/]*$/, "")}${encodeURIComponent(name)}`, download: name, textContent: name}));
     }
     const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`, `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
     make.disabled = ended || !!live.run;

@@ -278,6 +278,7 @@ def test_only_results_are_served(client, session, tmp_path):
     (out / "plots").mkdir(parents=True)
     (out / "report.html").write_text("<p>the report</p>", encoding="utf-8")
     (out / "plots" / "Fy.png").write_bytes(b"png")
+    (out / "small.tir").write_text("[UNITS]\n", encoding="utf-8")
     (out / ".mffit.json").write_text("{}", encoding="utf-8")
     (tmp_path / "secret.html").write_text("secret", encoding="utf-8")
     (out / "link.html").symlink_to(tmp_path / "secret.html")
@@ -299,7 +300,9 @@ def test_only_results_are_served(client, session, tmp_path):
         assert client.get(f"{client.home}out/{name}").status_code == 404, name
     assert within(out, "../tyre.toml") is None
     state = client.get(f"{client.home}state").json()
-    assert [page["href"] for page in state["pages"] if page["run"] == "build"] == ["out/report.html"]
+    (report,) = [page for page in state["pages"] if page["run"] == "build"]
+    assert (report["href"], report["files"]) == ("out/report.html", ["small.tir"])
+    assert client.get(f"{client.home}out/small.tir").text == "[UNITS]\n"
 
 
 def until(true: Callable[[], bool], seconds: float = 600.0) -> None:
