@@ -66,7 +66,7 @@ def design(points: Points, side: str) -> Design:
     load = np.where(_straight_on(points), levels.NO_LEVEL, held)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_ways = bool(
-        np.any(points.direction < 0) or np.any(points.mount < 0) or _both_signs(np.sign(points.phi_t))
+        np.any(points.direction < 0) or np.any(points.mount < 0) or _differ(np.sign(points.phi_t))
     )
     cambered = np.abs(points.gamma) > UPRIGHT.rad
     slipping = np.abs(points.alpha) > STRAIGHT.rad
@@ -82,21 +82,21 @@ def design(points: Points, side: str) -> Design:
         "kappa": np.any(driven),
         "combined": np.any(driven & slipping),
         "side_force": np.any(driven & (slipping | cambered)),
-        "both_sides": _both_signs(towards[slipping]),
+        "both_sides": _differ(towards[slipping]),
         "curvature": curved,
     }
     return Design(
         run={word: int(count) for word, count in run.items()},
-        both_flanks=_both_signs((towards * points.direction * points.mount)[slipping]),
+        both_flanks=_differ((towards * points.direction * points.mount)[slipping]),
         measured=points.measured,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
     )
 
 
-def _both_signs(signs: np.ndarray) -> bool:
-    """Whether more than one of the signs (n,) -1, 0 and 1 occurs."""
-    return len(np.unique(signs)) > 1
+def _differ(values: np.ndarray) -> bool:
+    """Whether values (n,) differ."""
+    return len(np.unique(values)) > 1
 
 
 def side_run(points: Points) -> bool:
