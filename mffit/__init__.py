@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         show,
         spin,
         verify,
+        watch,
         write_tydex,
     )
 
@@ -53,6 +54,7 @@ __all__ = [
     "show",
     "spin",
     "verify",
+    "watch",
     "write_c",
     "write_fmu",
     "write_tydex",
