@@ -45,7 +45,7 @@ def watch(
     *,
     every: float = LOOK_EVERY,
     once: bool = False,
-    pause: Callable[[float], object] = time.sleep,
+    pause: Callable[[float], object] | None = None,
 ) -> Iterator[Campaign]:
     """What the files of a campaign say, at first and after every change.
 
@@ -55,7 +55,7 @@ def watch(
         taken in
     every : time from one look at the folder to the next [s]
     once : end when nothing is being written any more
-    pause : waits for a time [s]
+    pause : waits for a time [s]; default ``time.sleep``
 
     Yields
     ------
@@ -74,7 +74,7 @@ def watch(
             yield found
         if once and watched.is_quiet:
             return
-        pause(every)
+        (pause or time.sleep)(every)
 
 
 class _File(NamedTuple):
@@ -99,7 +99,9 @@ class Watch:
         self._arriving = ArrivingFiles()
         self._files: dict[Path, _File] = {}  #: that rest, those of tyre.toml first
         self._waiting: tuple[Path, ...] = ()  #: files that are being written
-        self._shown: object = None  #: what the last campaign was made of
+        self._shown: tuple[Config, str, dict[Path, _File]] | None = (
+            None  #: what the last campaign was made of
+        )
         self._states: dict[str, tuple[Arrival, Signature]] = {}
         self._said: set[str] = set()
         self._epsilon: Quantity | None = None
@@ -130,10 +132,14 @@ class Watch:
             else:
                 waiting.append(path)
         self._waiting = tuple(waiting)
-        now = self.config, self._lasting_problem, tuple(self._files.items())
+        shown = self._shown[2] if self._shown else {}
+        rewritten = {
+            path: shown[path] for path in waiting if path in shown
+        }  # is no news until it is complete
+        now = self.config, self._lasting_problem, rewritten | self._files
         if self._looks < 2 or now == self._shown:
             return None
-        self._shown = now
+        self._shown = self.config, self._lasting_problem, self._files
         return self._campaign()
 
     @property
@@ -313,4 +319,6 @@ def _alike(before: tuple[Arrival, Signature] | None, now: tuple[Arrival, Signatu
 
 def _as_toml(entry: SweepTable) -> str:
     """The [[sweep]] as it would stand in tyre.toml."""
-    return tomli_w.dumps({"sweep": [entry.model_dump(mode="json", exclude_defaults=True)]}).strip()
+    keys = entry.model_dump(mode="json", exclude_defaults=True)
+    columns = {"sweep": {"columns": keys.pop("columns")}} if "columns" in keys else {}
+    return f"[[sweep]]\n{tomli_w.dumps(keys)}{tomli_w.dumps(columns)}".strip()

@@ -33,7 +33,9 @@ def campaign_text(found: Campaign) -> str:
 
 def campaign_lines(found: Campaign) -> list[str]:
     """How far the campaign is, and what it says so far."""
-    lines = [found.headline + (f"; awaited: {some(list(found.awaited))}" if found.awaited else "")]
+    more = len(found.awaited) - NAMED_IN_SENTENCE
+    awaited = ", ".join(found.awaited[:NAMED_IN_SENTENCE]) + (f" and {more} more" if more > 0 else "")
+    lines = [found.headline + (f"; awaited: {awaited}" if awaited else "")]
     lines += [found.problem] if found.problem else []
     lines += [f"not to be trusted: {reason}" for reason in (found.measured.reasons if found.measured else ())]
     lines += _numbers(found)
@@ -54,22 +56,19 @@ def _numbers(found: Campaign) -> list[str]:
     """eps_gamma with its change; without it, the cornering stiffness."""
     epsilon, row = found.epsilon_gamma, found.measured.nominal if found.measured else None
     if epsilon is not None:
-        was = f" (before {stated(found.before)})" if found.before not in (None, epsilon) else ""
-        return [f"{DIRECT['epsilon_gamma'].ascii} {stated(epsilon)}{was}"]
-    rows = [row] if row else [*(found.measured.per_load if found.measured else ())]
-    known = [row for row in rows if row.C_alpha is not None]
-    quantity = DIRECT["C_alpha"]
-    return [
-        f"{quantity.ascii} {stated(row.C_alpha, quantity.unit_behind)} at {CONDITIONS['Fz_N'].of(row.load)}"
-        for row in known
-    ]
+        now, was = stated(epsilon), stated(found.before) if found.before else ""
+        return [f"{DIRECT['epsilon_gamma'].ascii} {now}{f' (before {was})' if was not in ('', now) else ''}"]
+    known = [one for one in (found.measured.per_load if found.measured else ()) if one.C_alpha is not None]
+    quantity, load = DIRECT["C_alpha"], CONDITIONS["Fz_N"]
+    at = [row] if row in known else known
+    each = (f"{stated(one.C_alpha, quantity.unit_behind)} at {load.of(one.load)}" for one in at)
+    return [f"{quantity.ascii} {', '.join(each)}"] if at else []
 
 
 def _alignment(found: Alignment) -> str:
-    """Forces at the zeros both ways, and the next correction."""
-    forces = "; ".join(
-        f"{CONDITIONS['Fz_N'].of(step.load)} forward {number(step.F_forward, 0)}, backward {number(step.F_backward, 0)} N"
-        for step in found.last
-    )
+    """Forces at zeros forwards less those backwards, and the next correction."""
+    load = CONDITIONS["Fz_N"]
+    gaps = (f"{number(step.F_forward - step.F_backward, 0)} N at {load.of(step.load)}" for step in found.last)
     done = "; aligned" if found.aligned else ""
-    return f"zeros at {forces}: next correction {with_u(found.correction_deg, found.u_deg)} deg{done}"
+    correction = with_u(found.correction_deg, found.u_deg)
+    return f"zeros forward less backward {', '.join(gaps)}; next correction {correction} deg{done}"

@@ -79,7 +79,7 @@ keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost
 
 keys(
     Campaign,
-    "headline changed taken awaited points ±epsilon_gamma before=before.value align=alignment next spin=measured warnings problem?",
+    "headline changed taken awaited points ±epsilon_gamma before=before.value alignment next spin=measured warnings problem?",
     next=lambda found: (
         found.next_run and {**document(found.next_run.step), "goal": found.next_run.goal.label}
     ),
