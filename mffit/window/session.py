@@ -281,8 +281,8 @@ class Session:
     def _there(self) -> dict[Path, int]:
         """Time of every recording beside tyre.toml [ns]."""
         found = {}
-        for path in files_of_folder(self.file.path.parent):
-            with contextlib.suppress(OSError):  # gone in between
+        with contextlib.suppress(OSError):  # gone in between
+            for path in files_of_folder(self.file.path.parent):
                 found[path] = path.stat().st_mtime_ns
         return found
 
