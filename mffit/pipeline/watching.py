@@ -31,7 +31,7 @@ from mffit.recordings.arriving import ArrivingFiles, Signature, ends_within_line
 from mffit.recordings.disc import files_of_folder
 from mffit.recordings.project_file import relative, sweeps_text
 from mffit.recordings.sniffed import rolls_backward
-from mffit.results.campaign import Arrival, Campaign
+from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.sweeps import formats
 from mffit.sweeps.loading import NUMBER
 from tir import Quantity
@@ -46,7 +46,7 @@ def watch(
     every: float = LOOK_EVERY,
     once: bool = False,
     pause: Callable[[float], object] | None = None,
-) -> Iterator[Campaign]:
+) -> Iterator[WatchedCampaign]:
     """What the files of a campaign say, at first and after every change.
 
     Parameters
@@ -59,7 +59,7 @@ def watch(
 
     Yields
     ------
-    Campaign
+    WatchedCampaign
         Points, eps_gamma, alignment and the most informative next run of the files that are complete.
 
     Raises
@@ -112,7 +112,7 @@ class Watch:
         return self._shown is not None and not self._waiting
 
     @formats.reading_once()
-    def look(self) -> Campaign | None:
+    def look(self) -> WatchedCampaign | None:
         """The campaign if something has changed since the look before, at first at the second look; None otherwise."""
         self._looks += 1
         self._reload()
@@ -201,7 +201,7 @@ class Watch:
         """The configuration of some sweeps."""
         return self.config.model_copy(update={"sweep": tuple(entries)})
 
-    def _campaign(self) -> Campaign:
+    def _campaign(self) -> WatchedCampaign:
         taken = {path: file for path, file in self._files.items() if not file.problem}
         refused = {path: file.problem for path, file in self._files.items() if file.problem}
         problem, reading, measured, alignment, planned = self._lasting_problem, None, None, None, None
@@ -226,7 +226,7 @@ class Watch:
                 problem = problem or str(error)
         before, self._epsilon = self._epsilon, measured.epsilon_gamma if measured else None
         given = measured.warnings if measured else reading.warnings if reading else ()
-        return Campaign(
+        return WatchedCampaign(
             changed=self._changed(reading, refused),
             taken=tuple(file.entry.file for file in taken.values()),
             awaited=self._awaited(),

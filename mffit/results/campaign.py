@@ -23,7 +23,7 @@ class Arrival:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Campaign(Brief):
+class WatchedCampaign(Brief):
     """A campaign after a change: what came in, and what all files say together."""
 
     changed: tuple[Arrival, ...]  #: files, since the campaign before

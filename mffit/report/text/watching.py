@@ -7,14 +7,14 @@ from mffit.measured import Alignment
 from mffit.planning import wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.text.layout import wrapped
-from mffit.results.campaign import Arrival, Campaign
+from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.rounding import ascii_only, number, stated, with_u
 from tir.errors import some
 
 INDENT = "  "
 
 
-def campaign_text(found: Campaign) -> str:
+def campaign_text(found: WatchedCampaign) -> str:
     """The block that ``mffit watch`` prints after a change."""
     taken = [one.file for one in found.changed if one.state == "taken"]
     many = [f"{some(taken)}: taken"] if len(taken) > NAMED_IN_SENTENCE else []
@@ -31,7 +31,7 @@ def campaign_text(found: Campaign) -> str:
     return ascii_only("\n".join(text))
 
 
-def campaign_lines(found: Campaign) -> list[str]:
+def campaign_lines(found: WatchedCampaign) -> list[str]:
     """How far the campaign is, and what it says so far."""
     more = len(found.awaited) - NAMED_IN_SENTENCE
     awaited = ", ".join(found.awaited[:NAMED_IN_SENTENCE]) + (f" and {more} more" if more > 0 else "")
@@ -52,7 +52,7 @@ def _arrival(one: Arrival) -> str:
     return f"{one.file}: {one.points} points" if one.state == "taken" else f"not taken: {one.why}"
 
 
-def _numbers(found: Campaign) -> list[str]:
+def _numbers(found: WatchedCampaign) -> list[str]:
     """eps_gamma with its change; without it, the cornering stiffness."""
     epsilon, row = found.epsilon_gamma, found.measured.nominal if found.measured else None
     if epsilon is not None:
