@@ -64,6 +64,7 @@ if TYPE_CHECKING:
         show,
         spin,
         verify,
+        watch,
         write_tydex,
     )
 
@@ -80,6 +81,7 @@ __all__ = [
     "show",
     "spin",
     "verify",
+    "watch",
     "write_c",
     "write_fmu",
     "write_matlab",

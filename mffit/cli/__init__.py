@@ -8,7 +8,7 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import click
 
-from mffit.cli import building, exporting, files, projects, questions
+from mffit.cli import building, exporting, files, projects, questions, watching
 from mffit.cli.console import PipeTolerant
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -21,6 +21,7 @@ COMMANDS = (
     questions.compare,
     questions.plan,
     questions.predict,
+    watching.watch,
     files.check,
     files.show,
     files.open_window,

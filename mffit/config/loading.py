@@ -16,11 +16,17 @@ WILD = frozenset("*?[")
 
 
 def with_globs_expanded(
-    content: Mapping[str, object], path: Path | None, folder: Path, lines: dict[str, int]
+    content: Mapping[str, object],
+    path: Path | None,
+    folder: Path,
+    lines: dict[str, int],
+    *,
+    awaiting: bool = False,
 ) -> tuple[Mapping[str, object], dict[str, int]]:
     """The content with one entry per file in place of every pattern, sorted by name, and the lines of its keys.
 
-    The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``.
+    The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``. With ``awaiting``, a pattern
+    that matches nothing yet stays as it is.
 
     Raises
     ------
@@ -36,7 +42,9 @@ def with_globs_expanded(
     found_lines = {key: line for key, line in lines.items() if not key.startswith("sweep.")}
     for index, entry in enumerate(sweeps):
         own = {key: line for key, line in lines.items() if f"{key}.".startswith(f"sweep.{index}.")}
-        names = matches(entry["file"], folder) if _is_pattern(entry, folder) else [None]
+        names: list[str | None] = [None]
+        if _is_pattern(entry, folder):
+            names = [*matches(entry["file"], folder)] or ([None] if awaiting else [])
         if not names:
             raise InputError(
                 f'no file in {folder.absolute()} matches "{entry["file"]}"; correct the pattern',
@@ -95,6 +103,7 @@ def load(
     *,
     folder: str | Path | None = None,
     coefficients: Iterable[str] = (),
+    awaiting: bool = False,
 ) -> Config:
     """Read and check a configuration.
 
@@ -103,6 +112,7 @@ def load(
     source : path of a ``tyre.toml``, its content as a mapping, or a Config, which is returned unchanged
     folder : where relative file names start; default the file's own, the current one for a mapping
     coefficients : ``NAME=VALUE``, each instead of the entry of [coefficients] of this name; not for a Config
+    awaiting : keep a pattern of [[sweep]] that matches no file yet
 
     Returns
     -------
@@ -122,7 +132,8 @@ def load(
         return checked(source, path=None, folder=Path(folder or "."), lines={})
     path = Path(source)
     content, lines = _tables(path)
-    return checked(content, path=path, folder=Path(folder or path.parent), lines=lines)
+    start = Path(folder or path.parent)
+    return checked(content, path=path, folder=start, lines=lines, awaiting=awaiting)
 
 
 def _tables(path: Path) -> tuple[dict[str, object], dict[str, int]]:
@@ -163,6 +174,7 @@ def checked(
     folder: Path,
     lines: dict[str, int],
     known: Keys | None = None,
+    awaiting: bool = False,
 ) -> Config:
     """The configuration that a mapping holds.
 
@@ -173,13 +185,14 @@ def checked(
     folder : where relative file names start
     lines : line of every key in the file
     known : keys to suggest for an unknown one; those of ``tyre.toml`` by default
+    awaiting : as in :func:`load`
 
     Raises
     ------
     InputError
         As :func:`load`.
     """
-    content, lines = with_globs_expanded(content, path, folder, lines)
+    content, lines = with_globs_expanded(content, path, folder, lines, awaiting=awaiting)
     config = validated(Config, content, path=path, lines=lines, known=known or known_keys(Config))
     config._path, config._folder, config._lines = path, folder, lines
     return config

@@ -1,6 +1,7 @@
 """Fit of an MF-6.2 tyre, with standard errors, to points and direct measurements."""
 
 from mffit.fit.agreement import Agreement
+from mffit.fit.begin import begin, sketch
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.drawn import ensemble
 from mffit.fit.fitted import with_free_epsilon
@@ -16,12 +17,14 @@ __all__ = [
     "Coefficient",
     "FitResult",
     "Posterior",
+    "begin",
     "ensemble",
     "file_names",
     "fit",
     "fitted_use",
     "name_at_temperature",
     "plain_use",
+    "sketch",
     "straight_cornering_stiffness",
     "with_free_epsilon",
     "zeros_listed",

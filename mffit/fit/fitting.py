@@ -14,8 +14,7 @@ from mffit.config import Config, axis_signs
 from mffit.config.loading import as_declared
 from mffit.fit import agreement
 from mffit.fit.bands import bands
-from mffit.fit.borrowed.sister import sister_of
-from mffit.fit.by_hand import hand_of
+from mffit.fit.begin import begin
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
 from mffit.fit.fitted import left_by, with_errors_around, with_errors_of
@@ -23,15 +22,12 @@ from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
 from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
-from mffit.fit.known import known_before_fit
-from mffit.fit.plan import FitPlan, fit_plan
+from mffit.fit.plan import FitPlan
 from mffit.fit.polish import refitted
-from mffit.fit.priors import of_fleet
-from mffit.fit.problem import FitProblem, fit_problem
+from mffit.fit.problem import FitProblem
 from mffit.fit.result import FitResult
-from mffit.fit.rig.zeros import epsilon_gamma_of_model, turning_zeros
-from mffit.fit.start import starting_values
-from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
+from mffit.fit.rig.zeros import epsilon_gamma_of_model
+from mffit.fit.wheel.vertical import vertical_sentence
 from mffit.fit.wording import (
     explanations,
     nuisance_sentences,
@@ -81,23 +77,7 @@ def fit(
         If there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
-    fleet = of_fleet(config)
-    hand = hand_of(config, base)
-    sister = sister_of(config, base, points)
-    known = known_before_fit(config, points, measured, base, fleet, hand)
-    settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
-    radii = vertical_coefficients(known.values, points, settled)
-    known = known.having({**{name: q.value for name, q in radii.found.items()}, **radii.switched}, "fitted")
-    known = known.having({n: known.values[n] for n in radii.found if n in radii.regularised}, "regularised")
-    rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
-    turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
-    start = {
-        **starting_values(known.values, points, measured, hand.held),
-        **(turning.start if turning else {}),
-    }
-    plan = fit_plan(config, points, measured, known, start, fleet, turning)
-    start = hand.starting(start)
-    problem = fit_problem(config, points, measured, known.values, plan.channels)
+    hand, sister, known, radii, turning, start, plan, problem = begin(config, points, measured, base)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
     full = with_errors_of(full, left_by_formula)

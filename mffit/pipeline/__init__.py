@@ -11,6 +11,7 @@ from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
 from mffit.pipeline.showing import show
 from mffit.pipeline.verifying import verify
+from mffit.pipeline.watching import watch
 from mffit.prediction import predict
 
 __all__ = [
@@ -27,5 +28,6 @@ __all__ = [
     "show",
     "spin",
     "verify",
+    "watch",
     "write_tydex",
 ]

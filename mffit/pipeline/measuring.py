@@ -25,6 +25,7 @@ from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_measurement, said
 from mffit.points import Points
+from mffit.points.loading import Reading
 from mffit.quantities import SIDEWAYS
 from mffit.results import as_json
 from mffit.rig import Simulation
@@ -38,19 +39,27 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     Writes ``spin.json`` if ``out`` is given.
     """
     config = configuration.load(config)
-    reading = read_points(config)
-    _, measured = measure(config, reading.points, read_base(config))
-    trust = judged_measurement(config, reading.points, measured)
-    measured = replace(
-        measured,
-        warnings=(*said(trust), *reading.warnings, *measured.warnings),
-        reasons=trust.reasons,
-        made=made(input_hashes(config)),
-    )
+    measured = replace(spin_of(config, read_points(config)), made=made(input_hashes(config)))
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
             as_json.write(folder / "spin.json", measured)
     return measured
+
+
+def spin_of(config: Config, reading: Reading) -> Measured:
+    """:func:`spin` of points that were read."""
+    _, measured = measure(config, reading.points, read_base(config))
+    trust = judged_measurement(config, reading.points, measured)
+    warnings = (*said(trust), *reading.warnings, *measured.warnings)
+    return replace(measured, warnings=warnings, reasons=trust.reasons)
+
+
+def alignment_of(config: Config, points: Points) -> Alignment | None:
+    """:func:`align` of the points of a project; None on a flat track or without zeros both ways."""
+    try:
+        return _aligned(config, points) if config.rig.on_disc else None
+    except InputError:
+        return None
 
 
 def align(
@@ -75,11 +84,16 @@ def align(
     source = Path(source)
     if source.suffix == ".toml":
         config = configuration.load(source)
-        points, _ = ingestion.load(config)
-        points, stiffness = direct.at_the_axis(config, points, decomposition.split(points))
-        return direct.align(points, axes=config.rig.axes, measured=stiffness, resolution_deg=resolution_deg)
+        return _aligned(config, ingestion.load(config)[0], resolution_deg)
     points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
     return direct.align(points, axes=axes or "iso", resolution_deg=resolution_deg)
+
+
+def _aligned(
+    config: Config, points: Points, resolution_deg: float = direct.constants.AXIS_RESOLUTION
+) -> Alignment:
+    points, stiffness = direct.at_the_axis(config, points, decomposition.split(points))
+    return direct.align(points, axes=config.rig.axes, measured=stiffness, resolution_deg=resolution_deg)
 
 
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:

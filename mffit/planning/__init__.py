@@ -2,7 +2,7 @@
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal
-from mffit.planning.plan import Identified, Plan, PlanStep, plan
+from mffit.planning.plan import Identified, NextRun, Plan, PlanStep, next_run, plan
 from mffit.planning.runs import PlannedRun, candidates
 
 __all__ = [
@@ -11,11 +11,13 @@ __all__ = [
     "Addition",
     "Goal",
     "Identified",
+    "NextRun",
     "Plan",
     "PlanStep",
     "PlannedRun",
     "addition_named",
     "candidates",
+    "next_run",
     "plan",
     "read_goal",
 ]

@@ -45,6 +45,14 @@ class PlanStep:
 
 
 @dataclass(frozen=True, slots=True)
+class NextRun:
+    """The run that lowers the uncertainty of a goal most."""
+
+    goal: Goal
+    step: PlanStep
+
+
+@dataclass(frozen=True, slots=True)
 class Plan(Brief):
     """The answer of ``mffit plan``."""
 
@@ -109,6 +117,12 @@ def plan(
         ),
         trials=tuple(trials),
     )
+
+
+def next_run(config: Config, points: Points, goal: Goal, u: U) -> NextRun | None:
+    """The first run of a plan by the uncertainties ``u``; None if no run lowers that of the goal enough."""
+    chosen = _chosen(u, candidates(config, points), 1, silent)
+    return NextRun(goal, PlanStep(chosen[0], u([]), u(chosen[:1]))) if chosen else None
 
 
 def _identified(found: FitResult, measured: Measured) -> Identified:

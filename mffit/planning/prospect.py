@@ -41,6 +41,45 @@ Direct = Callable[[Points], DirectU | None]
 """Applies the direct method to points; None if it fails."""
 
 
+class DirectProspect:
+    """The direct method applied to the present points and the predicted readings of further runs; cached."""
+
+    def __init__(
+        self,
+        points: Points,
+        nominal: float,
+        predicted: Callable[[PlannedRun], Points],
+        direct: Direct,
+        outliers: Sequence[int] = (),
+    ) -> None:
+        self._nominal = nominal  #: load [N] at which eps_gamma is read
+        self._pressure = float(np.median(points.p[main_pressure(points)]))
+        self._near = points.select(self._decides(points) & ~np.isin(np.arange(len(points)), outliers))
+        self._predicted, self._direct = predicted, direct
+        self._known: dict[tuple[str, ...], DirectU | None] = {}
+
+    def __call__(self, runs: Sequence[PlannedRun]) -> DirectU | None:
+        """What a build with these runs would state; None where the method fails."""
+        relevant = [r for r in runs if np.any(self._decides(r.points))]
+        key = _key(relevant)
+        if key not in self._known:
+            new = [self._predicted(run) for run in relevant]
+            self._known[key] = self._direct(concatenate([self._near, *new]))
+        return self._known[key]
+
+    def u(self, runs: Sequence[PlannedRun]) -> float:
+        """The stated uncertainty; infinite where the method fails."""
+        found = self(runs)
+        return math.inf if found is None else found.stated
+
+    def _decides(self, points: Points) -> np.ndarray:
+        """Mask (n,) of the points from which the direct method determines eps_gamma at the nominal load."""
+        near = np.abs(np.log(points.Fz / self._nominal)) < levels.LOAD.tolerance
+        main = np.abs(points.p - self._pressure) < levels.PRESSURE.tolerance
+        deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
+        return deciding
+
+
 class Prospect:
     """Uncertainties that a build of a longer programme would state, linearised at the present solution.
 
@@ -75,11 +114,13 @@ class Prospect:
             self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
         self._base = _information(self.problem.free(self.names).linear(self._at).slope)
         self._of_run: dict[str, np.ndarray] = {}
-        self._nominal = measured.nominal.load if measured.nominal else config.tyre.nominal_load
-        self._pressure = float(np.median(points.p[main_pressure(points)]))
-        outliers = np.isin(np.arange(len(points)), [o.row for o in found.outliers])
-        self._near = points.select(self._decides_epsilon(points) & ~outliers)
-        self._directly, self._known_directly = direct, dict[tuple[str, ...], DirectU | None]()
+        self._direct = DirectProspect(
+            points,
+            nominal_load(config, measured),
+            self._with_readings,
+            direct,
+            [outlier.row for outlier in found.outliers],
+        )
 
     def posterior(
         self,
@@ -132,7 +173,7 @@ class Prospect:
 
     def direct(self, runs: Sequence[PlannedRun]) -> float | None:
         """u(eps_gamma) that a build would state for the direct method."""
-        found = self._direct(runs)
+        found = self._direct(runs) if self.config.rig.on_disc else None
         return None if found is None else found.stated
 
     def as_built(self, runs: Sequence[PlannedRun]) -> Posterior:
@@ -140,30 +181,12 @@ class Prospect:
         by_hand = PECP1 in self.hand.held
         if self.config.spin.pecp1 == "model" and self.config.rig.on_disc and not by_hand:
             return self._with_free_epsilon(runs)
-        direct = None if by_hand else self._direct(runs)
+        direct = None if by_hand or not self.config.rig.on_disc else self._direct(runs)
         return self.posterior(runs, held={PECP1: 0.0 if direct is None else direct.held})
 
     def _with_free_epsilon(self, runs: Sequence[PlannedRun]) -> Posterior:
         prior = self.hand.priors.get(PECP1)
         return self.posterior(runs, free={PECP1: math.inf if prior is None else prior.spread})
-
-    def _direct(self, runs: Sequence[PlannedRun]) -> DirectU | None:
-        """The direct method applied to the present points and the predicted readings of new ones; cached."""
-        if not self.config.rig.on_disc:
-            return None
-        relevant = [r for r in runs if np.any(self._decides_epsilon(r.points))]
-        key = _key(relevant)
-        if key not in self._known_directly:
-            new = [self._with_readings(run) for run in relevant]
-            self._known_directly[key] = self._directly(concatenate([self._near, *new]))
-        return self._known_directly[key]
-
-    def _decides_epsilon(self, points: Points) -> np.ndarray:
-        """Mask (n,) of the points from which the direct method determines eps_gamma at the nominal load."""
-        near = np.abs(np.log(points.Fz / self._nominal)) < levels.LOAD.tolerance
-        main = np.abs(points.p - self._pressure) < levels.PRESSURE.tolerance
-        deciding: np.ndarray = near & main & (points.mount > 0) & ~points.continuous
-        return deciding
 
     def _channels_of(self, run: PlannedRun) -> tuple[str, ...]:
         """Channels that a run measures: those of the programme and those of the addition."""
@@ -265,6 +288,11 @@ class _Curves(NamedTuple):
         covariance = posterior.covariance[np.ix_(rows, rows)]
         spread = [rms(spread_through(slopes[:, columns], covariance)) for slopes in self.slopes]
         return COVERAGE_FACTOR_95 * rms(np.array(spread))
+
+
+def nominal_load(config: Config, measured: Measured) -> float:
+    """Load [N] at which eps_gamma is read."""
+    return measured.nominal.load if measured.nominal else config.tyre.nominal_load
 
 
 def _key(runs: Sequence[PlannedRun]) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import math
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
-from mffit.planning.plan import Identified, Plan
+from mffit.planning.plan import Identified, NextRun, Plan
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.rounding import decimals_of
@@ -36,17 +36,23 @@ def headline(plan: Plan) -> str:
     return f"{runs} with {plan.points} points: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
 
 
-def measure(plan: Plan) -> str:
+def measure(plan: Plan | NextRun) -> str:
     """The kind of uncertainty, for headings: u, or a 95 % band."""
     return "95 % band" if plan.goal.kind in (BANDS, FILE) else "u"
 
 
-def shown(plan: Plan, u: float) -> str:
+def shown(plan: Plan | NextRun, u: float) -> str:
     """An uncertainty of the goal with three digits and its unit."""
     if not math.isfinite(u):
         return "not measured"
     unit = "" if plan.goal.unit in ("", "-") else f" {plan.goal.unit}"
     return f"{u:.{decimals_of(u, 3)}f}{unit}"
+
+
+def next_sentence(found: NextRun) -> str:
+    """The most informative run, and the uncertainty that it would reach."""
+    run, step = found.step.run, found.step
+    return f"{title(run)}, {run.cost} points: {found.goal.label} from {shown(found, step.before)} to {shown(found, step.after)}"
 
 
 ESTIMATES = {

@@ -46,3 +46,10 @@ ZERO_OF_A_DISC = Real(
     "of a belt by 0.2 deg, a disc of 1.3 m radius by 1 to 2 deg.",
 )
 NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
+
+LOOKS_OF_PATIENCE = Count(
+    10,
+    "-",
+    "Looks at a folder, usually one a second, for which a file that ends within a line, cannot be read or has grown before is "
+    "taken for one that is still being written: programs at a rig write their buffers every few seconds.",
+)

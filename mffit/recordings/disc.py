@@ -60,6 +60,6 @@ def _both_ways(points: Points, path: Path) -> bool:
 
 
 def files_of_folder(folder: Path) -> Sequence[Path]:
-    """The recordings in a folder, sorted by name."""
-    inside = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
+    """The recordings in a folder, sorted by name; those that begin with . or ~$ are what programs put beside an open file."""
+    inside = (p for p in folder.iterdir() if not p.name.startswith((".", "~$")) and p.is_file())
     return sorted(path for path in inside if path.name.lower().endswith(formats.ENDINGS))

@@ -48,6 +48,7 @@ RUNS = ("fit", *PAGES)
 def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | None:
     """Run it in this process; returns what the page shows of a fit or a build."""
     from mffit import config, pipeline, viewer
+    from mffit.report import text
 
     out = out_of(path)
     match kind:
@@ -63,6 +64,10 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
             if base is None:
                 raise InputError("names no base file to compare with; add base under [tyre]", file=path)
             pipeline.compare(path.parent / base, out, out=out / "comparison", progress=progress)
+        case "watch":
+            *_, last = pipeline.watch(path, once=True)
+            unlisted = [one.file for one in last.changed if one.sweep]
+            return {"lines": text.campaign_lines(last), "unlisted": unlisted}
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import hashlib
 import threading
@@ -17,6 +18,7 @@ from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
 from mffit.output import ChangedMeanwhile, finish_save, save_over
+from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
 from mffit.sweeps.loading import check_excluded
 from mffit.window import constants
@@ -195,6 +197,9 @@ class Session:
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None
+        self._news: dict[str, Any] | None = None  #: what new recordings say, for the page
+        self._reading: Run | None = None  #: by which they are read
+        self._recordings = self._there()  #: when they were read
         self._lock = threading.Lock()
 
     def state(self) -> dict[str, Any]:
@@ -203,6 +208,7 @@ class Session:
             self._collect()
             digest = self.file.digest
             problem, config = self._read(digest)
+            self._look_for_recordings()
             return {
                 "project": digest_of(bytes(self.file.path)),
                 "digest": digest,
@@ -219,6 +225,7 @@ class Session:
                 if self.last is None
                 else {"state": self.last.state, "sentence": self.last.sentence},
                 "pages": self._pages(config),
+                "news": self._news,
             }
 
     def edit(self, name: str, seen: str, arguments: dict[str, Any]) -> None:
@@ -266,9 +273,26 @@ class Session:
     def stop(self) -> None:
         """End the run that is under way."""
         with self._lock:
-            run = self._run
-        if run is not None:
-            run.stop()
+            runs = self._run, self._reading
+        for run in runs:
+            if run is not None:
+                run.stop()
+
+    def _there(self) -> dict[Path, int]:
+        """Time of every recording beside tyre.toml [ns]."""
+        found = {}
+        with contextlib.suppress(OSError):  # gone in between
+            for path in files_of_folder(self.file.path.parent):
+                found[path] = path.stat().st_mtime_ns
+        return found
+
+    def _look_for_recordings(self) -> None:
+        """Have new recordings read in a process of its own, which waits until they are complete."""
+        there, reading = self._there(), self._reading
+        if reading is not None and reading.outcome is not None:
+            self._news, self._reading = reading.outcome.data, None
+        elif reading is None and there != self._recordings:
+            self._recordings, self._reading = there, Run("watch", self.file.path, "")
 
     def _collect(self) -> None:
         """Take the outcome of a run that has ended."""
@@ -280,6 +304,7 @@ class Session:
         if run.outcome.data is not None:
             self.data = run.outcome.data | {"before": _before(self.data)}
             self.fits += 1
+            self._news = None
             self._fitted = run.digest
 
     def _read(self, digest: str) -> tuple[str, Config | None]:

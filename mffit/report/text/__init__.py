@@ -10,12 +10,15 @@ from mffit.report.text.plan import plan_summary
 from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary
 from mffit.report.text.verification import verification_summary
+from mffit.report.text.watching import campaign_lines, campaign_text
 
 __all__ = [
     "alignment_table",
     "budget_table",
     "build_explained",
     "build_summary",
+    "campaign_lines",
+    "campaign_text",
     "comparison_table",
     "conversion_summary",
     "diagnosis_summary",

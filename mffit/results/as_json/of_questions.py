@@ -26,6 +26,7 @@ from mffit.recordings.sniffed import SniffedRecording
 from mffit.recordings.summary import BadRun
 from mffit.recordings.unstated import Guess
 from mffit.results.as_json.of_build import estimates, of_rig
+from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.results.values import document, keys
 from mffit.results.verification import Verification
 
@@ -75,6 +76,15 @@ keys(
 keys(Goal, "kind name label unit")
 keys(PlanStep, "**run u_before=before u_after=after")
 keys(PlannedRun, "name kind=addition.id title reason=addition.reason points=cost", title=planned.title)
+
+keys(
+    WatchedCampaign,
+    "headline changed taken awaited points ±epsilon_gamma before=before.value alignment next spin=measured warnings problem?",
+    next=lambda found: (
+        found.next_run and {**document(found.next_run.step), "goal": found.next_run.goal.label}
+    ),
+)
+keys(Arrival, "file state points why? sweep?")
 
 keys(Comparison, "first second headline numbers coefficients curves sweeps notes", headline=compared.headline)
 keys(Difference, "* change u_change=u in_u=z")

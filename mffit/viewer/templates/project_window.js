@@ -166,7 +166,17 @@ async function bring() {
   setLive(live);
 }
 const WORDS = {fit: "Refit", build: "Build", diagnose: "Diagnosis", plan: "Plan", compare: "Comparison"};
+// What recordings that came in since the window was opened say by the direct method, before any fit.
+function showNews() {
+  const box = byId("news"), news = live.news;
+  box.hidden = !news;
+  if (!news) return box.replaceChildren();
+  box.textContent = `New recordings: ${news.lines.join("; ")}. `;
+  if (news.unlisted.length) box.append(Object.assign(element("a", "", `Add ${news.unlisted.join(", ")} to tyre.toml`), {href: "add"}));
+  else box.append("Refit takes them in.");
+}
 function showStatus() {
+  showNews();
   byId("refit").disabled = ended || !!live.run;
   byId("refit").classList.toggle("main", !live.is_fitted && !live.run);
   byId("stop").hidden = !live.run;

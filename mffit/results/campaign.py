@@ -1,0 +1,51 @@
+"""The record of a campaign that is being run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from mffit.brief import Brief
+from mffit.measured import Alignment, Measured
+from mffit.planning import NextRun
+from tir import Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """What became of a file."""
+
+    file: str  #: as in [[sweep]]
+    state: Literal["taken", "refused", "gone"]
+    points: int = 0
+    why: str = ""  #: why it is refused
+    sweep: str = ""  #: the [[sweep]] with which it is read, if ``tyre.toml`` has none
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class WatchedCampaign(Brief):
+    """A campaign after a change: what came in, and what all files say together."""
+
+    changed: tuple[Arrival, ...]  #: files, since the campaign before
+    taken: tuple[str, ...]  #: files that count
+    awaited: tuple[str, ...]  #: files that ``tyre.toml`` lists and that are missing or still being written
+    points: int  #: of all files that count
+    measured: Measured | None  #: as by ``mffit spin``; None without points that it can use
+    before: Quantity | None  #: eps_gamma before the change
+    alignment: Alignment | None  #: as by ``mffit align``; None without zeros both ways
+    next_run: (
+        NextRun | None
+    )  #: that lowers the uncertainty most; None if no run does, or if it is not known yet
+    warnings: tuple[str, ...]  #: that were not given before
+    problem: str  #: why ``tyre.toml`` or all files together cannot be used; empty if they can
+
+    @property
+    def epsilon_gamma(self) -> Quantity | None:
+        """The camber reduction factor by the direct method; None if it is not measured yet."""
+        return self.measured.epsilon_gamma if self.measured else None
+
+    @property
+    def headline(self) -> str:
+        """How far the campaign is."""
+        there = len(self.taken)
+        return f"{there} of {there + len(self.awaited)} files, {self.points} points"
