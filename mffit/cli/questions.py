@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, told, voiced
 from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
 from mffit.errors import InputError, readable
 
@@ -181,7 +181,8 @@ def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     from mffit.prediction import write_table
     from mffit.report import text
 
-    found = pipeline.predict(folder, conditions)
+    with told(voice):
+        found = pipeline.predict(folder, conditions)
     write_table(found, out, conditions)
     voice.say(text.prediction_summary(found, out))
     voice.give({"written": [str(out)], "conditions": len(found)})
