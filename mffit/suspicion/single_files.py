@@ -48,7 +48,9 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 )
 def repeated_rows(part: Points, config: Config) -> Iterator[Finding]:
     """Rows with the readings of another row of the file, if they are half of it."""
-    readings = np.column_stack([part.alpha, part.gamma, part.Fz, part.Fy, np.nan_to_num(part.Mz), part.direction])
+    readings = np.column_stack(
+        [part.alpha, part.gamma, part.Fz, part.Fy, np.nan_to_num(part.Mz), part.direction]
+    )
     first = np.unique(readings, axis=0, return_index=True)[1]
     copies = np.setdiff1d(np.arange(len(part)), first)
     if len(part) >= constants.FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:

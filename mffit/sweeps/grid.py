@@ -37,9 +37,7 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
     """The error about a row whose number of cells differs from that of the headings."""
     remedy = "complete or remove this row"
     if count > width:
-        remedy = (
-            "remove the cells too many, or the row, or write decimal points if decimal commas split the numbers"
-        )
+        remedy = "remove the cells too many, or the row, or write decimal points if decimal commas split the numbers"
     return InputError(f"has {count} cells under {width} headings; {remedy}", file=path, line=line)
 
 
