@@ -7,6 +7,7 @@ import json
 import os
 import re
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
@@ -79,6 +80,17 @@ class Voice:
     def progress(self) -> AbstractContextManager[Progress]:
         """As :func:`progress`; nothing with ``--quiet``."""
         return nullcontext(silent) if self.quiet else progress()
+
+
+@contextmanager
+def told(voice: Voice) -> Iterator[None]:
+    """Warnings about the tyre, said as those of every command."""
+    from tir import TirWarning
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", TirWarning)
+        yield
+    voice.warn(str(one.message) for one in caught)
 
 
 def voiced(command: Callable[..., Any]) -> Callable[..., Any]:

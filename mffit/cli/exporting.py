@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, told, voiced
 from mffit.cli.options import code_options, out_option, tir_file, transient, turn_slip_option, tyre_toml
 from mffit.errors import InputError
 
@@ -26,17 +23,6 @@ def _folder(out: Path, ending: str, *, named: bool = True) -> Path:
             key=f"--out {out}",
         )
     return out
-
-
-@contextmanager
-def _told(voice: Voice) -> Iterator[None]:
-    """Warnings about the tyre, said as those of every command."""
-    from tir import TirWarning
-
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", TirWarning)
-        yield
-    voice.warn(str(one.message) for one in caught)
 
 
 def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | None, **more: object) -> None:
@@ -79,7 +65,7 @@ def c(
     """
     from mffit.export import write_c
 
-    with _told(voice):
+    with told(voice):
         written = write_c(
             file,
             _folder(out, ".c"),
@@ -125,7 +111,7 @@ def fmu(
     """
     from mffit.export import write_fmu
 
-    with _told(voice):
+    with told(voice):
         written = write_fmu(
             file,
             _folder(out, ".fmu"),
@@ -151,7 +137,7 @@ def matlab(
     """
     from mffit.export import write_matlab
 
-    with _told(voice):
+    with told(voice):
         written = write_matlab(file, _folder(out, ".m"), name=name, turn_slip=turn_slip, limits=limits)
     _report(voice, written, file, turn_slip)
 
@@ -234,7 +220,7 @@ def table(
     from mffit.export import write_table
 
     ending = {"csv": ".csv", "mat": ".mat", "carsim": ".par"}[form]
-    with _told(voice), voice.progress() as progress:
+    with told(voice), voice.progress() as progress:
         made = write_table(
             file,
             _folder(out, ending, named=False),

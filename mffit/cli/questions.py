@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, told, voiced
 from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
-from mffit.errors import InputError
+from mffit.errors import InputError, readable
 
 
 @click.command()
@@ -54,8 +54,11 @@ def align(
     from mffit import pipeline
     from mffit.report import text
 
-    if source.suffix != ".toml" and (axes is None or path_centre is None):
-        raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
+    if source.suffix != ".toml":
+        with readable(source):
+            source.open("rb").close()
+        if axes is None or path_centre is None:
+            raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
     finest = {} if resolution is None else {"resolution_deg": resolution}
     alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
     voice.say(text.alignment_table(alignment))
@@ -178,7 +181,8 @@ def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     from mffit.prediction import write_table
     from mffit.report import text
 
-    found = pipeline.predict(folder, conditions)
+    with told(voice):
+        found = pipeline.predict(folder, conditions)
     write_table(found, out, conditions)
     voice.say(text.prediction_summary(found, out))
     voice.give({"written": [str(out)], "conditions": len(found)})

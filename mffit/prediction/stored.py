@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
+import warnings
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -16,11 +18,15 @@ from mffit.errors import InputError
 from mffit.linearised.components import Components
 from mffit.linearised.inputs import Input
 from mffit.linearised.smooth import SmoothFunctions
+from mffit.points import Points
+from mffit.points.points import of_si
 from mffit.prediction.conditions import checked, read_conditions
 from mffit.prediction.predictor import MissedChannel, Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import BY_NAME as ERROR_OF
-from tir import Tyre
+from tir import TirWarning, Tyre
+from tir.envelope import RANGES
+from tir.errors import counted
 from tir.parameters import BY_NAME
 
 FILE = "prediction.json"
@@ -99,11 +105,30 @@ def predict(folder: str | Path, conditions: str | Path | pd.DataFrame) -> pd.Dat
     ------
     InputError
         The folder is not that of a build, or the table lacks a column, or has a value that is not a number or is impossible.
+
+    Warns
+    -----
+    TirWarning
+        A condition is outside the ranges of the property file.
     """
     known, tyre, fitted = load(Path(folder))
-    if isinstance(conditions, pd.DataFrame):
-        return known.predict(tyre, fitted, checked(conditions))
-    return known.predict(tyre, fitted, read_conditions(Path(conditions)))
+    table = checked(conditions) if isinstance(conditions, pd.DataFrame) else read_conditions(Path(conditions))
+    for sentence in _beyond_ranges(known.points(tyre, table), tyre):
+        warnings.warn(sentence, TirWarning, stacklevel=2)
+    return known.predict(tyre, fitted, table)
+
+
+def _beyond_ranges(points: Points, tyre: Tyre) -> Iterator[str]:
+    """A sentence for each condition that leaves the range of the property file: force and uncertainty are extrapolated there."""
+    for name, keys in zip(("Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "kappa"), RANGES, strict=True):
+        low, high = (tyre[key] * of_si(name) for key in keys)
+        values, slack = points.condition(name), 1e-6 * (high - low)
+        rows = np.flatnonzero((values < low - slack) | (values > high + slack))
+        if len(rows):
+            yield (
+                f"{name} is outside the range of the property file, {low:.4g} to {high:.4g}, in {len(rows)} of "
+                f"{counted(len(points), 'condition')}, first in row {rows[0] + 1}: no reading supports force or uncertainty there"
+            )
 
 
 def _predictor(content: dict[str, Any]) -> Predictor:

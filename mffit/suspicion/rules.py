@@ -42,6 +42,7 @@ SAMPLES = tuple(
 RULES: tuple[Rule, ...] = (
     *SAMPLES,
     all_files.copied_sweep,
+    single_files.repeated_rows,
     other_tyre.two_tyres,
     other_tyre.other_radius,
     all_files.nominal_load_of_others,

@@ -43,6 +43,21 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 
 
 @rule_of_files(
+    id="repeated-rows",
+    sentence="holds {count} rows a second time, with the same readings; remove the copies, as they would count as more readings",
+)
+def repeated_rows(part: Points, config: Config) -> Iterator[Finding]:
+    """Rows with the readings of another row of the file, if they are half of it."""
+    readings = np.column_stack(
+        [part.alpha, part.gamma, part.Fz, part.Fy, np.nan_to_num(part.Mz), part.direction]
+    )
+    first = np.unique(readings, axis=0, return_index=True)[1]
+    copies = np.setdiff1d(np.arange(len(part)), first)
+    if len(part) >= constants.FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:
+        yield Finding({"count": len(copies)}, line=int(part.line[copies[0]]) or None)
+
+
+@rule_of_files(
     id="lone-load",
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
 )

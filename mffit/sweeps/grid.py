@@ -37,7 +37,7 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
     """The error about a row whose number of cells differs from that of the headings."""
     remedy = "complete or remove this row"
     if count > width:
-        remedy = "remove the cells too many, or the decimal comma that splits a number, or the row"
+        remedy = "remove the cells too many, or the row, or write decimal points if decimal commas split the numbers"
     return InputError(f"has {count} cells under {width} headings; {remedy}", file=path, line=line)
 
 
@@ -59,6 +59,9 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
     found = _trimmed(rows[at])
     headings = tuple(str(cell) for cell in found)
     if all(is_number(cell) for cell in found):
+        above = [_width(row) for row in rows[:at] if not any(is_number(cell) for cell in row if cell != "")]
+        if above and max(above) > 1:  # headings, and rows with more cells than headings
+            raise ragged(len(found), max(above), path, lines[at])
         sentence = "has numbers instead of headings; add a first line of headings"
         raise InputError(sentence, file=path, line=lines[at])
     units, used = _units(rows, at, len(headings))

@@ -206,6 +206,14 @@ def test_align_refuses_in_the_same_way(project, capsys):
     assert ":5: column Fz_N" in err
 
 
+@pytest.mark.parametrize("options", [(), ("--axes", "iso", "--path-centre", "left")])
+def test_align_says_that_a_mistyped_file_is_missing_before_it_asks_for_axes(project, capsys, options):
+    project.write()
+    code, err = run(capsys, "align", project.folder / "tyre.tml", *options)
+    assert code == 2
+    assert err == f"mffit: {project.folder / 'tyre.tml'}: there is no such file; correct its name\n"
+
+
 def test_a_csv_file_needs_the_axes_option(project, capsys):
     project.write()
     code, err = run(capsys, "align", project.folder / SWEEP)

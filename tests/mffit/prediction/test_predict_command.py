@@ -123,11 +123,26 @@ def test_the_index_of_a_table_stays(foreign: Built):
 
 
 def test_an_empty_cell_of_an_optional_column_is_nominal(foreign: Built, here):
-    partly = written(GOOD.assign(p_kPa=[np.nan, 150.0, np.nan], kappa=["", "0", ""]))
+    partly = written(GOOD.assign(p_kPa=[np.nan, 180.0, np.nan], kappa=["", "0", ""]))
     found = mffit.predict(foreign.folder, partly)
-    plain = mffit.predict(foreign.folder, GOOD.assign(p_kPa=[200.0, 150.0, 200.0]))
+    plain = mffit.predict(foreign.folder, GOOD.assign(p_kPa=[200.0, 180.0, 200.0]))
     assert found.Fy_N.equals(plain.Fy_N)
     assert np.isnan(found.p_kPa[0])
+
+
+def test_conditions_outside_the_ranges_of_the_file_are_said(foreign: Built, here, capsys):
+    """A load in kN, or a tyre pressed harder than any that was measured, gives no number without a word."""
+    written(GOOD.assign(Fz_N=[900.0, 2.0, 30000.0], alpha_deg=[1.0, 1.0, -45.0]))
+    assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == 0
+    said = capsys.readouterr().err
+    assert "Fz_N is outside the range of the property file" in said
+    assert "in 2 of 3 conditions, first in row 2" in said
+    assert "alpha_deg is outside" in said
+    assert "in 1 of 3 conditions, first in row 3" in said
+    assert "gamma_deg" not in said
+    written(GOOD)
+    assert run(foreign.folder, "conditions.csv", "--out", "found.csv") == 0
+    assert "outside" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("ending", [".csv", ".csv.gz", ".txt", ".xlsx", ".parquet", ".mat"])

@@ -160,6 +160,16 @@ def test_four_equal_rows_in_any_order_are_a_copy_and_three_are_not():
     assert found("copied-sweep", sweeps(SOUND, SOUND.replace(Fy=changed(FORCE, [2], 300.0)))) == 0
 
 
+def test_a_file_pasted_into_itself_is_named_and_a_repeated_condition_is_not():
+    """Twice the same readings would halve the variance of everything; a condition run again has readings of its own."""
+    twice = np.tile(np.arange(len(SOUND)), 2)
+    assert found("repeated-rows", SOUND.select(twice)) == 1
+    assert found("repeated-rows", SOUND.select(twice[:-1])) == 0
+    again = SOUND.select(twice)
+    again = again.replace(Fy=again.Fy + np.where(np.arange(len(again)) < len(SOUND), 0.0, 0.01))
+    assert found("repeated-rows", again) == 0
+
+
 @pytest.mark.parametrize(("load", "cases"), [(1400.0, 1), (1450.0, 0), (2000.0, 0)])
 def test_a_nominal_load_above_all_measured_ones_is_pointed_out(load, cases):
     """The mean of a level of load decides, not one reading above it."""
@@ -275,6 +285,7 @@ def sentence(rule: str, points: Points) -> str:
         ),
         ("hot-tread", tyre(T=166.0), "T_degC is 166 degC in the middle in"),
         ("copied-sweep", sweeps(SOUND, SOUND), "holds exactly the readings of s0"),
+        ("repeated-rows", SOUND.select(np.tile(np.arange(len(SOUND)), 2)), "holds 7 rows a second time"),
     ],
 )
 def test_a_refusal_says_its_numbers(rule, points, facts):

@@ -148,6 +148,11 @@ WHOLE = {
     ),
     "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
     "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
+    "decimal commas between commas": (
+        b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,0,0,1500,0,-300,0\n1,0,0,0,1500,0,-500,0\n",
+        2,
+        "has 8 cells under 4 headings; remove the cells too many, or the row, or write decimal points",
+    ),
     "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "numbers instead of headings"),
     "missing column": (b"alpha_deg,gamma_deg,Fz_N,FY\n0,0,1500,-300\n", 1, 'column = "FY"'),
     "kilonewtons": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1.5,-300\n", 2, "kN"),
