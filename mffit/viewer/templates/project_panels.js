@@ -4,12 +4,6 @@ const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];  // places o
 let theme = {}, palette = [], inks = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
 const scratch = document.createElement("canvas");
 
-function defaultPanels() {
-  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name), others = project.points.measured.filter(name => !fitted.includes(name));
-  const levels = name => facet(name).labels.length;
-  const over = name => !channels.includes(name) ? "Fz" : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
-  return [...fitted, ...others].map(y => ({x: over(y), y})).concat(fitted.map(y => ({x: over(y), y: RESIDUAL + y})));
-}
 function readTheme() {
   const style = getComputedStyle(document.documentElement), of = name => style.getPropertyValue(`--${name}`).trim();
   theme = Object.fromEntries(["paper", "ink", "muted", "grid", "line", "accent"].map(name => [name, of(name)]));
