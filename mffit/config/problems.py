@@ -140,7 +140,8 @@ def _sentence(detail: ErrorDetails, key: str, lines: dict[str, int]) -> str:
     if kind == "float_type" and isinstance(given, int) and not isinstance(given, bool):
         return TOO_MANY_DIGITS
     if kind in KINDS:
-        return f"{_quoted(given)} is not {KINDS[kind]}; write one"
+        point = ", with a decimal point" if kind == "float_type" and "," in str(given) else ""
+        return f"{_quoted(given)} is not {KINDS[kind]}; write one{point}"
     message = detail["msg"]
     return f"{message[:1].lower()}{message[1:]}; correct it"
 

@@ -118,6 +118,11 @@ class Diagnosis(Brief):
         return tuple(found for found in self.effects if found.repaired)
 
     @property
+    def is_corrected(self) -> bool:
+        """Whether the model after is another than the given one."""
+        return bool(self.repaired or self.coefficients)
+
+    @property
     def suspected(self) -> tuple[AcceptedEffect, ...]:
         """The effects that are named but not repaired."""
         return tuple(found for found in self.effects if not found.repaired)

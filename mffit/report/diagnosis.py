@@ -15,9 +15,9 @@ from tir.parameters import BY_NAME
 DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
     Picture(
         name="curves",
-        title="The worst and the typical sweep: measured, simulated as given and with what was found",
+        title="The worst and the typical sweep: measured and simulated",
         shows="The sweeps with the largest and with the median misfit of the simulation, in units of the noise. Dashed lines are "
-        "the simulation as given, blue lines include the effects below, errors of the rig among them.",
+        "the simulation as given.",
         draw=gap.curves_before_after,
     ),
     Picture(
@@ -30,10 +30,10 @@ DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
     ),
     Picture(
         name="gap_maps",
-        title="Maps of the residuals over sideslip and camber before and after, a row per load and pressure",
-        shows="Measured minus simulated in units of each point's noise, all on one scale. Frames in the maps before mark the "
-        "regions of the list below. Noise alone is pale and without order, and so should be the maps afterwards. A small dot "
-        "marks a point that was run backwards. Maps of the driven and braked wheel are over slip and sideslip.",
+        title="Maps of the residuals over sideslip and camber, a row per load and pressure",
+        shows="Measured minus simulated in units of each point's noise, all on one scale. Frames mark the regions of the list "
+        "below. Noise alone is pale and without order. A small dot marks a point that was run backwards. Maps of the driven "
+        "and braked wheel are over slip and sideslip.",
         draw=gap.residuals_before_after,
     ),
 )

@@ -16,6 +16,7 @@ from mffit.report.catalogue import Picture
 from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.text.many import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
+from tir.errors import listed
 
 if TYPE_CHECKING:
     from tir import Quantity
@@ -94,6 +95,27 @@ FLEET: tuple[Picture[Fleet], ...] = (
 """Every picture of the page."""
 
 
+def headline(found: Fleet) -> str:
+    """A sentence: in which numbers the tyres differ, and in which they agree within their uncertainty."""
+    best = [key for key in EPSILON if found.scatter(key) is not None][
+        -1:
+    ]  # the estimates are listed from the worst to the best
+    words = {
+        **dict.fromkeys(best, DIRECT["epsilon_gamma"].word),
+        **{key: q.word for key, q in COMPARED.items()},
+    }
+    scatters = {word: s for key, word in words.items() if (s := found.scatter(key)) is not None}
+    apart = [word for word, s in scatters.items() if s.beyond > 0.0]
+    alike = [word for word in scatters if word not in apart]
+    parts = [
+        f"The tyres scatter by more than their uncertainty in {listed(apart)}" if apart else "",
+        f"{'they' if apart else 'The tyres'} agree within their uncertainty in {listed(alike)}"
+        if alike
+        else "",
+    ]
+    return "; ".join(filter(None, parts)) + "." if scatters else "No number is known of two tyres."
+
+
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
     """Write ``plots/*.png`` and ``fleet.html``.
 
@@ -110,6 +132,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         FLEET,
         found,
         fleet=found,
+        headline=headline(found),
         epsilon=DIRECT["epsilon_gamma"],
         estimates=estimates,
         compared=COMPARED,

@@ -225,7 +225,7 @@ class Session:
                 if self.last is None
                 else {"state": self.last.state, "sentence": self.last.sentence},
                 "pages": self._pages(config),
-                "news": self._news,
+                "news": self._unlisted_news(config),
             }
 
     def edit(self, name: str, seen: str, arguments: dict[str, Any]) -> None:
@@ -304,8 +304,16 @@ class Session:
         if run.outcome.data is not None:
             self.data = run.outcome.data | {"before": _before(self.data)}
             self.fits += 1
-            self._news = None
+            news = self._unlisted_news(self._seen[2])
+            self._news = news if news and news["unlisted"] else None  # the fit lacks those
             self._fitted = run.digest
+
+    def _unlisted_news(self, config: Config | None) -> dict[str, Any] | None:
+        """What new recordings say, ``unlisted`` those that tyre.toml still lacks."""
+        if self._news is None or config is None:
+            return self._news
+        known = {sweep.file for sweep in config.sweep}
+        return {**self._news, "unlisted": [name for name in self._news["unlisted"] if name not in known]}
 
     def _read(self, digest: str) -> tuple[str, Config | None]:
         """The configuration, or what is wrong with it; read anew only if the file has changed."""

@@ -98,7 +98,7 @@ def figure_of(sheet: Sheet) -> Figure:
     for row, panels in enumerate(sheet.rows):
         for column, panel in enumerate(panels):
             lines = "\n".join(_words_of(panel.y, width)).split("\n")
-            left = max(style.LEFT, style.LETTER * max(map(len, lines)) + 6.0)
+            left = max(style.LEFT, style.LETTER * max(map(len, lines)) + NUMBER_OFF + 3.0)
             wide, high = width - left - style.RIGHT, height - style.BOTTOM - style.TOP
             axes = added(width * column + left, whole - above - height * (row + 1) + style.BOTTOM, wide, high)
             title = textwrap.shorten(panel.title, longest, placeholder="…")

@@ -94,7 +94,10 @@ def curves_before_after(diagnosis: Diagnosis) -> Sheet:
         for channel in channels
     ]
     key = {"measured": MEASURED, **{name: look for name, (_, look) in lines.items()}}
-    return Sheet(rows=in_rows(panels, columns=4), height=1.9, key=key)
+    remark = (
+        "Blue lines include the effects below, errors of the rig among them." if diagnosis.repaired else ""
+    )
+    return Sheet(rows=in_rows(panels, columns=4), height=1.9, key=key, remark=remark)
 
 
 def _worst_and_typical(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> dict[str, Curve]:
@@ -152,7 +155,8 @@ def residuals_before_after(diagnosis: Diagnosis) -> Sheet:
                     maps.append(residual_map(points, values, condition, title, shown, over=over))
             rows.append(maps)
     scale = ColourScale(limit=colour_limit(channels), label="measured − simulated [noise of a point]")
-    return Sheet(rows=rows, height=1.40, scale=scale)
+    remark = "The maps after should be pale, too." if diagnosis.repaired else ""
+    return Sheet(rows=rows, height=1.40, scale=scale, remark=remark)
 
 
 def framed(diagnosis: Diagnosis, channel: str) -> list[Region]:

@@ -23,6 +23,8 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
         ("held out, before", diagnosis.validation.gap_before),
         ("held out, after", diagnosis.validation.gap_after),
     )
+    if not diagnosis.is_corrected:
+        gaps = (("all points", diagnosis.gap_before), ("held out", diagnosis.validation.gap_before))
     if diagnosis.terms:
         gaps = (*gaps, ("held out, corrected file alone", diagnosis.validation.gap_file))
     noise = diagnosis.noise
@@ -68,7 +70,7 @@ def models_written(diagnosis: Diagnosis) -> str:
     """Names of the property files of a diagnosis, with what they are."""
     if diagnosis.with_terms is not None:
         return f"{diagnosis.model_after} (the model as given), {diagnosis.model_with_terms}"
-    if not (diagnosis.repaired or diagnosis.coefficients):
+    if not diagnosis.is_corrected:
         return f"{diagnosis.model_after} (the model as given)"
     return diagnosis.model_after
 

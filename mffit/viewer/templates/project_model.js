@@ -20,7 +20,7 @@ let misfits = {}, fitMisfits = {};  // by channel, of the present values and of 
 let left = new Uint8Array(0);  // 1 where a point is left out
 let visible = new Uint8Array(0);
 let trial = {};  // coefficients that differ from the fit
-let curveGroups = {};
+let curveGroups = {}, swept = null;
 let computed = "", serial = 0;  // for which values the model was computed at the points, and a number for them
 let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
 
@@ -53,6 +53,7 @@ function take(data, bytes, over = null) {
   channels = data.channels.map(channel => channel.name);
   const points = data.points, n = points.count;
   columns = {count: n, shift: {}, read: {}, u: {}, of: {}, unused: {}, band: {}, missed: {}, half: {}};
+  swept = null;
   const set = found => {
     for (const [name, column] of Object.entries(found)) {
       const [kind, own] = name.split(".");
@@ -188,6 +189,41 @@ function filter() {
   version++;
 }
 
+// ---- axes
+const SWEPT = ["alpha", "gamma", "kappa"];
+// By sweep, in how many parts of the range of all points an angle or slip lies; 0 where it is held.
+function spread(name) {
+  const X = columns[name], of = columns.of.sweep, many = facet("sweep").labels.length, ends = floats(2 * many, k => k % 2 ? -Infinity : Infinity);
+  for (let i = 0; i < columns.count; i++) {
+    const k = 2 * of[i];
+    if (X[i] < ends[k]) ends[k] = X[i];
+    if (X[i] > ends[k + 1]) ends[k + 1] = X[i];
+  }
+  const low = Math.min(...ends), least = NARROWEST * (Math.max(...ends) - low), parts = Array.from({length: many}, () => new Set());
+  for (let i = 0; i < columns.count; i++) parts[of[i]].add(Math.floor((X[i] - low) / least));
+  return parts.map((set, k) => ends[2 * k + 1] - ends[2 * k] > least && facet(name).labels.length > 1 ? set.size : 0);
+}
+// By sweep, what it varies most, of a grid the first; "" if it holds everything.
+function sweptOver() {
+  if (swept) return swept;
+  const all = SWEPT.map(spread);
+  return swept = all[0].map((_, k) => {
+    const most = Math.max(...all.map(of => of[k]));
+    return most ? SWEPT[all.findIndex(of => of[k] === most)] : "";
+  });
+}
+// By sweep, whether it would be vertical lines over x: others vary x, and this one varies something else.
+const upright = x => sweptOver().includes(x) ? sweptOver().map(name => name !== "" && name !== x) : [];
+// What is drawn at first: each channel over what varies it, and then over what other sweeps vary; and the residuals.
+function defaultPanels() {
+  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name), others = project.points.measured.filter(name => !fitted.includes(name));
+  const levels = name => facet(name).labels.length;
+  const over = name => !channels.includes(name) ? "Fz" : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
+  const further = name => SWEPT.filter(x => name !== "Fx" && over(name) !== "Fz" && over(name) !== x && sweptOver().includes(x));
+  const all = names => [...names.map(y => ({x: over(y), y})), ...names.flatMap(y => further(y).map(x => ({x, y})))];
+  return [...all(fitted), ...all(others), ...all(fitted).map(({x, y}) => ({x, y: RESIDUAL + y}))];
+}
+
 // ---- curves
 // Points of one curve over x: the same levels of everything else; with the median of their conditions.
 function groupsOver(x) {
@@ -295,9 +331,10 @@ function placed(panel) {
 function places(panel) {
   const residual = panel.y.startsWith(RESIDUAL), y = residual ? panel.y.slice(RESIDUAL.length) : panel.y, n = columns.count;
   const source = name => (state.reading === "read" && columns.read[name]) || columns[name];
-  const parameter = channels.includes(y) && !residual ? parameterOf(panel.x, y) : null, over = parameter ? groupsOver(parameter) : [];
+  const parameter = channels.includes(y) && !residual ? parameterOf(panel.x, y) : null, elsewhere = upright(panel.x), of = columns.of.sweep;
+  const over = parameter ? groupsOver(parameter).filter(group => group.members.some(i => !elsewhere[of[i]])) : [];
   const sx = quantity(panel.x).si, sy = quantity(y).si, X = source(panel.x), Y = source(y);
-  const px = floats(n, i => X[i] / sx), py = residual ? new Float64Array(n) : floats(n, i => Y[i] / sy);
+  const px = floats(n, i => elsewhere[of[i]] ? NaN : X[i] / sx), py = residual ? new Float64Array(n) : floats(n, i => Y[i] / sy);
   const steps = Math.max(FEWEST_STEPS, Math.min(STEPS, Math.floor(STEPS_OF_A_PICTURE / over.length)));
   if (state.reading === "curve") {
     for (const group of over) {

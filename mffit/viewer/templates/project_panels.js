@@ -1,15 +1,9 @@
 // Pictures: any quantity over any other. Points are set as pixels of one image, because a picture has up to a million of them.
-const NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22, LETTER = 6.6, LINE = 13, RATIO_OF_PAPER = 3;
+const NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 18, BOTTOM = 22, LETTER = 6.6, LINE = 13, RATIO_OF_PAPER = 3;
 const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];  // places of a label along its curve, the best first
 let theme = {}, palette = [], inks = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
 const scratch = document.createElement("canvas");
 
-function defaultPanels() {
-  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name), others = project.points.measured.filter(name => !fitted.includes(name));
-  const levels = name => facet(name).labels.length;
-  const over = name => !channels.includes(name) ? "Fz" : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
-  return [...fitted, ...others].map(y => ({x: over(y), y})).concat(fitted.map(y => ({x: over(y), y: RESIDUAL + y})));
-}
 function readTheme() {
   const style = getComputedStyle(document.documentElement), of = name => style.getPropertyValue(`--${name}`).trim();
   theme = Object.fromEntries(["paper", "ink", "muted", "grid", "line", "accent"].map(name => [name, of(name)]));
@@ -101,7 +95,7 @@ function paint(panel, pen, width, height, ratio) {
   }
   const {drawn, of} = panel.count;
   if (drawn < of) said.push(`drawn ${drawn} of ${of}`);
-  over(pen, said.join("; "), width - RIGHT - 2, TOP + 9, theme.muted);
+  over(pen, said.join("; "), width - RIGHT - 2, TOP - 7, theme.muted);
 }
 function over(pen, text, x, y, colour) {  // readable over curves
   Object.assign(pen, {fillStyle: colour, strokeStyle: theme.paper, lineWidth: 4, lineJoin: "round", textAlign: "right"});
@@ -236,14 +230,14 @@ function typicalOf(lines) {
 }
 // The level of each colour beside its curve, where there is room.
 function labels(pen, typical, {X, Y, start, width, height}) {
-  const words = facet(state.colour).labels, taken = [[width - 230, TOP - 4, width, TOP + LINE]];
+  const words = facet(state.colour).labels, taken = [];
   if (words.length < 2) return;
   for (const [level, {now}] of typical) {
     const long = LETTER * words[level].length, last = now.length / 2 - 1;
     for (const share of LABELS_AT) {
       const k = 2 * Math.round(share * last), x = Math.min(width - RIGHT - 2, Math.max(start + long + 4, X(now[k]) + (share < .5 ? long : 0))), y = Y(now[k + 1]) - 5;
       const own = [x - long, y - LINE + 2, x, y + 2];
-      if (!(y > TOP + LINE && y < height - BOTTOM) || taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
+      if (!(y > TOP + LINE - 2 && y < height - BOTTOM) || taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
       taken.push(own);
       over(pen, words[level], x, y, palette[level]);
       break;

@@ -252,6 +252,13 @@ def test_a_loaded_configuration_is_returned_unchanged(tmp_path):
         ),
         (
             "nominal_load = 1500",
+            'nominal_load = "1500,5"',
+            "tyre.nominal_load",
+            4,
+            '"1500,5" is not a number; write one, with a decimal point',
+        ),
+        (
+            "nominal_load = 1500",
             "nominal_load = false",
             "tyre.nominal_load",
             4,

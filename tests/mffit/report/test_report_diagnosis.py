@@ -170,6 +170,8 @@ def test_a_complete_simulation_is_reported_as_such(clean, tmp_path):
     assert clean.effects == ()
     assert "no effect of the library explains more than chance would" in page.text
     assert "→" not in page.text
+    assert "after, all points" not in page.text
+    assert "Blue lines" not in page.text
 
 
 def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):

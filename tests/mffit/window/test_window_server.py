@@ -336,6 +336,11 @@ def test_a_run_on_a_wrong_project_ends_with_its_sentence(tyre_toml):
     assert "gone.csv" in outcome.sentence
 
 
+def test_a_new_recording_is_news_until_tyre_toml_lists_it(session):
+    session._news = {"lines": ["2 new"], "unlisted": ["new.csv", "sideslip_900.csv"]}
+    assert session.state()["news"] == {"lines": ["2 new"], "unlisted": ["new.csv"]}
+
+
 def test_an_unknown_run_is_refused(client):
     assert "not something to run" in post(client, "run/rm").json()["error"]
 
