@@ -139,10 +139,7 @@ def _record(temporary: Path, out: Path, entries: Mapping[str, OutputEntry]) -> N
 def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
     """Raise before any work if an output folder, or a file, cannot be written; nothing is left behind.
 
-    Raises
-    ------
-    InputError
-        A file is in the place of a folder, or a folder in that of the file, or nothing can be written there.
+    Raises InputError if a file is in the place of a folder, or a folder in that of the file, or nothing can be written there.
     """
     if is_file and out.is_dir():
         raise InputError("is a folder, but the output is a file; name a file with --out", file=out)
@@ -162,10 +159,7 @@ def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
 def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
     """Raise before the work, if the names of the files are known, what :func:`output_folder` would raise after it.
 
-    Raises
-    ------
-    InputError
-        ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
+    Raises InputError if ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
     """
     refuse_unusable(out)
     if out.is_dir():
@@ -316,10 +310,7 @@ def must_be_new(folder: Path, names: Iterable[str]) -> None:
 def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
     """Paths of new files of a folder, written with the given contents.
 
-    Raises
-    ------
-    InputError
-        One of the files is there already, or the folder cannot be written to.
+    Raises InputError if one of the files is there already, or the folder cannot be written to.
     """
     must_be_new(folder, contents)
     is_new = not folder.exists()

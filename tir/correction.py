@@ -151,10 +151,7 @@ def interpolated(nodes: Sequence[np.ndarray], missed: np.ndarray, at: np.ndarray
 def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
     """The table of a file with these values.
 
-    Raises
-    ------
-    TirError
-        The table cannot be read, is not as a build writes it, or belongs to another file.
+    Raises TirError if the table cannot be read, is not as a build writes it, or belongs to another file.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")

@@ -302,13 +302,7 @@ def fittyps_text() -> str:
 
 
 def target_of(name: str) -> Target:
-    """The program of this name.
-
-    Raises
-    ------
-    TirError
-        If the name is unknown, or the program cannot use an MF 6.2 tyre.
-    """
+    """The program of this name. Raises TirError if the name is unknown, or the program cannot use an MF 6.2 tyre."""
     target = known_target(name)
     if target.refusal:
         raise TirError(f"no file can be written for {name}: it {target.refusal}")

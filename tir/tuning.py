@@ -44,13 +44,7 @@ def tunables(tyre: TyreRecord) -> tuple[Tunable, ...]:
 
 
 def chosen(tyre: TyreRecord, names: Iterable[str]) -> tuple[Tunable, ...]:
-    """The named ones.
-
-    Raises
-    ------
-    TirError
-        If a name cannot be turned.
-    """
+    """The named ones. Raises TirError if a name cannot be turned."""
     known = {one.name: one for one in tunables(tyre)}
     for name in names:
         if name not in known:

@@ -215,10 +215,7 @@ def check_coefficients(
 def of_command_line(words: Iterable[str]) -> dict[str, object]:
     """The entries that ``--set NAME=VALUE`` gives, as ``[coefficients]`` has them.
 
-    Raises
-    ------
-    InputError
-        A word is not ``NAME=VALUE`` or the entry is not possible.
+    Raises InputError if a word is not ``NAME=VALUE`` or the entry is not possible.
     """
     out: dict[str, object] = {}
     for word in words:

@@ -28,10 +28,7 @@ class LineListError(ValueError):
 def line_ranges(text: str) -> tuple[LineRange, ...]:
     """Ranges of a list such as "39-44, 60", sorted; ranges that touch or overlap are joined.
 
-    Raises
-    ------
-    LineListError
-        The text is not such a list.
+    Raises LineListError if the text is not such a list.
     """
     found = []
     for item in text.split(","):

@@ -28,10 +28,7 @@ def with_globs_expanded(
     The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``. With ``awaiting``, a pattern
     that matches nothing yet stays as it is.
 
-    Raises
-    ------
-    InputError
-        A pattern matches nothing.
+    Raises InputError if a pattern matches nothing.
     """
     sweeps = content.get("sweep")
     if isinstance(sweeps, Mapping):

@@ -140,10 +140,7 @@ def sniff(
 def files_of(path: str | Path) -> list[Path]:
     """The file of this name, or the files that match this pattern, sorted by name.
 
-    Raises
-    ------
-    InputError
-        No file matches, the name is that of a folder, or there is no such file.
+    Raises InputError if no file matches, the name is that of a folder, or there is no such file.
     """
     if is_pattern(str(path), Path()):
         found = matches(str(path), Path())

@@ -73,10 +73,7 @@ def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
 
     Driven and braked points are not judged if there are free-rolling ones, nor, on a disc, the samples of moving sweeps.
 
-    Raises
-    ------
-    InputError
-        The points contradict every tyre or the declaration, or lack points that a disc needs.
+    Raises InputError if the points contradict every tyre or the declaration, or lack points that a disc needs.
     """
     judged = points.select(~points.continuous) if config.rig.on_disc else points
     if np.any(judged.free_rolling) and not np.all(judged.free_rolling):

@@ -324,10 +324,7 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
 def _in_range(source: _Source, values: np.ndarray) -> _Read:
     """The values, checked against the plausible range; rare spikes of a recording become NaN.
 
-    Raises
-    ------
-    InputError
-        More values are outside the range than spikes explain.
+    Raises InputError if more values are outside the range than spikes explain.
     """
     channel = source.channel
     outside = _outside(values, channel)

@@ -174,10 +174,7 @@ def _apart(
 def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
     """Check that the ranges of ``[fit] exclude`` for a file begin and end at lines (n,) with readings.
 
-    Raises
-    ------
-    InputError
-        A range begins or ends at another line.
+    Raises InputError if a range begins or ends at another line.
     """
     for index, one in enumerate(config.fit.exclude):
         ends = (end for pair in one.ranges for end in pair) if one.file == file else ()

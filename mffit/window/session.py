@@ -77,13 +77,7 @@ class ProjectFile:
         return found
 
     def config(self) -> Config:
-        """The configuration as it is on the disk.
-
-        Raises
-        ------
-        InputError
-            The file cannot be read or is wrong.
-        """
+        """The configuration as it is on the disk. Raises InputError if the file cannot be read or is wrong."""
         return self._checked(self._bytes())
 
     def tables(self) -> dict[str, object]:
@@ -131,10 +125,7 @@ class ProjectFile:
     def undo(self) -> None:
         """Take back the last change that the window saved.
 
-        Raises
-        ------
-        InputError
-            There is none, or the file was changed elsewhere since.
+        Raises InputError if there is none, or the file was changed elsewhere since.
         """
         try:
             step = self.steps.pop()
@@ -231,10 +222,7 @@ class Session:
     def edit(self, name: str, seen: str, arguments: dict[str, Any]) -> None:
         """Carry out one of the changes of :data:`mffit.window.edits.EDITS` and save it.
 
-        Raises
-        ------
-        InputError
-            The change is unknown or not possible; nothing is written.
+        Raises InputError if the change is unknown or not possible; nothing is written.
         """
         if name not in EDITS:
             raise InputError(f'"{name}" is not a change of tyre.toml')
@@ -254,13 +242,7 @@ class Session:
             self.file.undo()
 
     def run(self, kind: str) -> None:
-        """Start a run.
-
-        Raises
-        ------
-        InputError
-            It is unknown, or another one is under way.
-        """
+        """Start a run. Raises InputError if it is unknown, or another one is under way."""
         if kind not in RUNS:
             raise InputError(f'"{kind}" is not something to run')
         with self._lock:
