@@ -135,12 +135,7 @@ class MachineTable(Table):
         return self.path_radius if self.path is None else path_radius(**self.path.model_dump())
 
     def u(self, name: str) -> float:
-        """Standard uncertainty of a rig error in the unit of its key; 0 if it is not declared.
-
-        Parameters
-        ----------
-        name : of the rig error, such as "F0_N"
-        """
+        """Standard uncertainty of a rig error, such as "F0_N", in the unit of its key; 0 if it is not declared."""
         declared = BY_NAME[name].declared
         given = None if declared is None else getattr(self, declared.key)
         if given is None and self.path is not None:

@@ -147,12 +147,7 @@ def relaxation(
 ) -> tuple[Relaxation, ...]:
     """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 
-    Parameters
-    ----------
-    steps : samples of the runs of steps, one sweep each, by the stepped setting
-    simulation : the fitted tyre on its rig
-    posterior : posterior of the fit
-    held : coefficients held by hand
+    ``steps`` are samples of the runs of steps, one sweep each, by the stepped setting; ``held`` are coefficients held by hand.
     """
     return tuple(
         _of_direction(one, steps.get(one.setting), simulation, posterior, held) for one in DIRECTIONS

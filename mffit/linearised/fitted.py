@@ -228,15 +228,9 @@ def linearised(
 ) -> LinearisedFit:
     """The linear model of a simulation's residuals at the points.
 
-    Parameters
-    ----------
-    points : (n,)
-    simulation : the fitted tyre on its rig
-    sigma : by channel, uncertainty (n,) that the fit used; inf where a reading has no weight
-    numbers : numbers of the fit, each with a prior
-    only : channels of the result; all fitted channels if None
-    without : indices of points that the fit did not use; they do not enter the estimation of the components
-    near : linear model of a similar fit to these points; its components are the starting values of the search
+    ``sigma`` (n,) is the uncertainty that the fit used, by channel, inf where a reading has no weight. ``only`` are the
+    channels of the result, all fitted ones if None. Points ``without`` do not enter the estimation of the components; those of
+    ``near``, a linear model of a similar fit, are the starting values.
     """
     readings = simulation.readings(points, sigma)
     sight = _Sight(

@@ -54,13 +54,8 @@ def means(
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
-    Parameters
-    ----------
-    sweep : samples (n,) of a recording
-    phi_t : turn slip of the path [1/m]
-    stretches : plateaus and sweeps to average
-    labels : name of the sweep of each stretch
-    faulty : mask (n,) of samples to leave out
+    ``phi_t`` is the turn slip of the path [1/m]; ``labels`` name the sweep of each stretch; samples of the mask ``faulty`` (n,)
+    are left out.
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:

@@ -38,15 +38,7 @@ def read_conditions(path: Path) -> pd.DataFrame:
 def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
     """The table with numbers in the columns that a prediction uses; required columns are finite.
 
-    Parameters
-    ----------
-    table : conditions (n,)
-    raw : the file of the table, which may state units
-
-    Raises
-    ------
-    InputError
-        As :func:`read_conditions`.
+    ``raw`` is the file of the table, which may state units. Raises as :func:`read_conditions`.
     """
     file, line = (None, None) if raw is None else (raw.path, raw.heading_line)
     missing = [name for name in REQUIRED if name not in table]

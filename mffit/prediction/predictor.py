@@ -48,14 +48,9 @@ class MissedChannel:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
-        coefficients count in the variance.
-
-        Parameters
-        ----------
-        settings : (n, d) conditions
-        slopes : (n, k) derivatives of the force by coefficients and calibrations
-        path : (n,) correlation of the model error with that on the measured path
-        of_tyre : (k,) mask of the coefficients among the k numbers
+        coefficients count in the variance. ``slopes`` (n, k) are derivatives of the force at the conditions ``settings`` (n,
+        d), ``path`` (n,) is the correlation of the model error with that on the measured path, ``of_tyre`` (k,) the mask of the
+        coefficients.
         """
         likeness, functions = self._functions(settings, path)
         of_functions, of_numbers = np.split(self.root, [len(self.missed)])
@@ -233,14 +228,9 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
 def predictor(
     points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
 ) -> Predictor:
-    """The predictor of a build.
+    """The predictor of a build, from the linear model of its residuals and the fitted rig errors.
 
-    Parameters
-    ----------
-    points : points of the build
-    left : linear model of the fitted model's residuals
-    rig : fitted rig errors
-    known : rig errors to take as exactly known, to find how much they widen the bands
+    Rig errors ``known`` are taken as exact, to find how much they widen the bands.
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():

@@ -241,15 +241,11 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
 
 
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The axes under which the points behave like a tyre, and contradictions under the declared axes.
+    """The axes under which the points behave like a tyre, and contradictions under the ``declared`` axes, under which they were
+    read.
 
-    The declared axes come first. If axes that a file format prescribes are among them, only these are returned.
-
-    Parameters
-    ----------
-    points : read under ``declared``
-    declared : axes
-    load_falls : whether the load is reported as a negative force; axes with positive load are then skipped
+    The declared axes come first. If axes that a file format prescribes are among them, only these are returned. If the load is
+    reported as a negative force (``load_falls``), axes with positive load are skipped.
     """
     agreeing = []
     for axes in (declared, *(axes for axes in FLIPPED if axes != declared)):

@@ -123,13 +123,7 @@ AMERICAN = frozenset(
 def choices(
     found: Mapping[str, FoundChannel], radius: float | None
 ) -> tuple[dict[str, Choice], dict[str, str], list[str]]:
-    """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units.
-
-    Parameters
-    ----------
-    found : columns of numbers by channel
-    radius : unloaded [m]; None if it is not known
-    """
+    """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units."""
     chosen: dict[str, Choice] = {}
     for kind in KINDS:
         for group in _groups(kind, found):

@@ -36,17 +36,9 @@ NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def load(config: Config) -> Sweeps:
-    """Read every file of ``[[sweep]]``.
+    """The sweeps of every file of ``[[sweep]]``, in its order, in ISO-W, contact frame, SI; with warnings as sentences.
 
-    Returns
-    -------
-    Sweeps
-        In the order of the configuration, ISO-W, contact frame, SI; with warnings as sentences.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
+    Raises InputError if a file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
     """
     found: list[Sweep] = []
     excluded: list[ExcludedRows] = []

@@ -101,15 +101,7 @@ class Truth:
 def direct_truth(
     tyre: Tyre, load: float, speed: float, pressure: float, phi_t: float, R: float
 ) -> DirectTruth:
-    """True values of the direct method's quantities at one load.
-
-    Parameters
-    ----------
-    tyre : the tyre on the rig
-    load, speed, pressure : load [N], speed [m/s], pressure [Pa]
-    phi_t : turn slip of the path [1/m]; 0 on a flat track
-    R : true radius of the path [m]
-    """
+    """True values of the direct method's quantities at one load; SI, ``phi_t`` is 0 on a flat track, R the true path radius."""
 
     def Fy(alpha: float = 0.0, gamma: float = 0.0, curvature: float = 0.0, turn_slip: bool = True) -> float:
         out = tyre(load, alpha, gamma, 0.0, curvature, speed, pressure, turn_slip=turn_slip)

@@ -85,17 +85,11 @@ class ProjectFile:
         return tables_of(self._bytes(), self.path, TYRE_TOML)[0]
 
     def edit(self, change: Callable[[str], str], seen: str) -> None:
-        """Write the changed text, if the file is still the one that was seen and the new one is a right ``tyre.toml``.
+        """Write the changed text, if the file is still the one that was ``seen`` (its digest) and the new one is a right
+        ``tyre.toml``.
 
-        Parameters
-        ----------
-        change : old text -> new text
-        seen : digest of the content that the change is meant for
-
-        Raises
-        ------
-        InputError
-            The file was changed by another program or another window, or the new content would be refused; nothing is written.
+        Raises InputError if the file was changed by another program or window, or the new content would be refused; nothing is
+        written.
         """
         before = self._bytes()
         try:

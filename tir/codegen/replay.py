@@ -163,19 +163,8 @@ def _run(operations: tuple[tuple[Any, ...], ...], at: list[Any]) -> list[Any]:
 def replay(
     switches: Switches, outputs: tuple[str, ...], wrt: tuple[str, ...] = (), still: tuple[str, ...] = ()
 ) -> Replay:
-    """The program for some forces or states and their derivatives.
-
-    Parameters
-    ----------
-    switches : options of the model
-    outputs : fields of Forces and State
-    wrt : parameters and inputs to differentiate by
-    still : inputs that are zero
-
-    Returns
-    -------
-    Replay
-        of the outputs, and then for each output its derivatives by ``wrt``
+    """The program for some fields of Forces and State, and then for each of them its derivatives by ``wrt``; inputs ``still``
+    are zero.
     """
     with _ONE_AT_A_TIME:
         found, known = _on_symbols(switches, still)
