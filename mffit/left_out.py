@@ -46,11 +46,7 @@ class Predicted:
 
 
 def left_out_errors(
-    slopes: np.ndarray,
-    residual: np.ndarray,
-    information: np.ndarray,
-    gradient: np.ndarray,
-    group: np.ndarray,
+    slopes: np.ndarray, residual: np.ndarray, information: np.ndarray, gradient: np.ndarray, group: np.ndarray
 ) -> np.ndarray:
     """Errors (m,) of the points when each group is predicted from all others, with all numbers re-estimated.
 

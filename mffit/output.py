@@ -42,11 +42,7 @@ class OutputEntry(NamedTuple):
 
 @contextmanager
 def output_folder(
-    out: Path,
-    *,
-    by: str = "mffit",
-    protected: Iterable[Path] = (),
-    outdated: Collection[str] = (),
+    out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), outdated: Collection[str] = ()
 ) -> Iterator[Path]:
     """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
 
@@ -193,10 +189,7 @@ def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:
 
 
 def _refuse(
-    out: Path,
-    written: Mapping[str, str],
-    recorded: Mapping[str, OutputEntry],
-    protected: Iterable[Path],
+    out: Path, written: Mapping[str, str], recorded: Mapping[str, OutputEntry], protected: Iterable[Path]
 ) -> None:
     """Raise if a file of ``written`` would replace one that must stay."""
     inputs = [path for path in protected if path.exists()]

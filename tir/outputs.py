@@ -13,12 +13,7 @@ from tir.errors import TirError
 
 
 def outputs_of(
-    names: tuple[str, ...],
-    p: Any,
-    inputs: Mapping[str, Any],
-    *,
-    turn_slip: bool = False,
-    star: bool = False,
+    names: tuple[str, ...], p: Any, inputs: Mapping[str, Any], *, turn_slip: bool = False, star: bool = False
 ) -> list[Any]:
     """Forces or states by name, equal to those of :func:`tir.evaluate.evaluate`; not for complex numbers.
 

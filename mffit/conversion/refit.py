@@ -87,11 +87,7 @@ def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     return {key: E for key, E in largest.items() if E > 1.0}
 
 
-FREE: Mapping[str, Sequence[str]] = {
-    "Fx": (),
-    "Fy": CAMBER_FORCE,
-    "Mz": CAMBER_MOMENT,
-}
+FREE: Mapping[str, Sequence[str]] = {"Fx": (), "Fy": CAMBER_FORCE, "Mz": CAMBER_MOMENT}
 """By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae, so that the
 upright wheel keeps its forces."""
 UNBOUNDED = (-np.inf, np.inf)

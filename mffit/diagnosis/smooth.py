@@ -76,12 +76,7 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.nda
     inputs, at = [], []
     for name, x in conditions.items():
         lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
-        steps = {
-            "alpha": divisions,
-            "gamma": divisions,
-            "t": 2,
-            "Fz": 2,
-        }
+        steps = {"alpha": divisions, "gamma": divisions, "t": 2, "Fz": 2}
         distinct = len(np.unique(np.round((x[np.isfinite(x)] - lower) / (upper - lower), 2))) - 1
         inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps.get(name, 1), distinct), 1)))
         at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper)))

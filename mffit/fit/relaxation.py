@@ -140,10 +140,7 @@ class Relaxation:
 
 
 def relaxation(
-    steps: Mapping[str, Points],
-    simulation: Simulation,
-    posterior: Posterior,
-    held: Collection[str] = (),
+    steps: Mapping[str, Points], simulation: Simulation, posterior: Posterior, held: Collection[str] = ()
 ) -> tuple[Relaxation, ...]:
     """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 

@@ -154,8 +154,7 @@ class LinearisedChannel:
         """Log evidence if the model error is only a constant."""
         constant = SmoothFunctions.over(())
         model = replace(
-            self.alone,
-            common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]]),
+            self.alone, common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]])
         )
         found = _found(model, constant, self.unit, self.declared)
         return _evidence(model, found, constant, self.declared)

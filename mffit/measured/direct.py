@@ -24,13 +24,7 @@ from mffit.measured.axis import (
 )
 from mffit.measured.calibration import Factors, calibration, powers_of_load
 from mffit.measured.drift import shares_of_sweeps
-from mffit.measured.epsilon import (
-    corrected,
-    epsilon_from_moments,
-    factor,
-    load_dependence,
-    stiffer_in_camber,
-)
+from mffit.measured.epsilon import corrected, epsilon_from_moments, factor, load_dependence, stiffer_in_camber
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import Drift, LoadResult, Measured, SetupScatter, SideslipZeros
@@ -106,11 +100,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     measured, troubles = _assembled(evidence, rows, skew)
     warnings += [*troubles, *warnings_of_setups(points, measured.nominal, scatter, config)]
     return replace(
-        measured,
-        warnings=tuple(warnings),
-        setup_scatter=scatter,
-        sideslip_zeros=zeros,
-        drift=drift,
+        measured, warnings=tuple(warnings), setup_scatter=scatter, sideslip_zeros=zeros, drift=drift
     )
 
 

@@ -9,12 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.constants import (
-    CAMBER_OF_SLOPES,
-    COVERAGE_FACTOR_95,
-    LARGEST_CAMBER_REDUCTION,
-    USUAL_U_MOMENT,
-)
+from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, LARGEST_CAMBER_REDUCTION, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence

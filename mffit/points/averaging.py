@@ -22,11 +22,7 @@ AVERAGED_CHANNELS = (
     *(f"u_{name}" for name in CHANNELS),
 )
 
-AVERAGED_RANGE = {
-    "alpha": STRAIGHT.rad,
-    "gamma": STRAIGHT.rad,
-    "kappa": float(constants.SLIP),
-}
+AVERAGED_RANGE = {"alpha": STRAIGHT.rad, "gamma": STRAIGHT.rad, "kappa": float(constants.SLIP)}
 """Largest change of each swept setting within one average along a sweep."""
 
 

@@ -172,10 +172,7 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
     content["sweep"] = [_sweep_entry(sweep) for sweep in plan.tables.sweep]
     radii = [
         written_down(
-            row,
-            _direct(plan, machine, row.load_N).r_e_m,
-            machine.faults["path_radius_m"],
-            generator,
+            row, _direct(plan, machine, row.load_N).r_e_m, machine.faults["path_radius_m"], generator
         )
         for row in plan.tables.rolling_radius
     ]

@@ -112,7 +112,7 @@ SCALES: dict[str, tuple[str, Formula]] = {
 }
 """Factors on scaling factors of the tyre."""
 ADDED: dict[str, tuple[str, Formula]] = {
-    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m))),
+    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m)))
 }
 """Terms added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {

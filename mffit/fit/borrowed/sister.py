@@ -164,10 +164,7 @@ class _Scaled(NamedTuple):
 
 
 def _scaled(
-    values: Mapping[str, Any],
-    theirs: Mapping[str, float],
-    sister: Sister,
-    by: Sequence[str] = (),
+    values: Mapping[str, Any], theirs: Mapping[str, float], sister: Sister, by: Sequence[str] = ()
 ) -> _Scaled:
     """The sister's coefficients ``theirs``, scaled to the tyre with these ``values``.
 

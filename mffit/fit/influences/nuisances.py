@@ -170,11 +170,7 @@ NUISANCES = (
         rival="hysteresis",
     ),
     Nuisance(
-        id="warm-up",
-        name="warm-up at the start",
-        key="warm_up",
-        numbers=("warm_up",),
-        lacking=_distances,
+        id="warm-up", name="warm-up at the start", key="warm_up", numbers=("warm_up",), lacking=_distances
     ),
     Nuisance(
         id="wear",

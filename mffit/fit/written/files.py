@@ -53,12 +53,7 @@ class Files:
 
 
 def make_files(
-    config: Config,
-    known: Known,
-    points: Points,
-    base: Tyre | None,
-    *,
-    only: str | None = None,
+    config: Config, known: Known, points: Points, base: Tyre | None, *, only: str | None = None
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one; ``only`` limits them to one use."""
     disc = config.rig.on_disc
