@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -133,11 +133,15 @@ def _measured(
     random: np.random.Generator,
 ) -> Grid:
     """The grid of these nodes, with its error at random conditions, in the middle of cells and all over the worst cells."""
-    nodes = list(axes.values())
-    values = function(**dict(zip(axes, np.meshgrid(*nodes, indexing="ij", sparse=True), strict=True)), **held)
+    nodes, n = list(axes.values()), int(constants.TABLE_CONDITIONS)
+    shape = (n, len(nodes))
+
+    def exact(at: Iterable[np.ndarray]) -> Any:
+        return function(**dict(zip(axes, at, strict=True)), **held)
+
+    values = exact(np.meshgrid(*nodes, indexing="ij", sparse=True))
     values = _rounded(np.broadcast_to(values, [len(x) for x in nodes]), largest)
     largest = max(largest, float(np.abs(values).max()))
-    n = int(constants.TABLE_CONDITIONS)
 
     def within(cells: np.ndarray, part: Any) -> np.ndarray:
         """Conditions (k, axes) in cells given by their lowest nodes (k, axes)."""
@@ -146,23 +150,14 @@ def _measured(
         )
 
     def missed(at: np.ndarray) -> np.ndarray:
-        exact = function(**dict(zip(axes, at.T, strict=True)), **held)
-        return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact) / largest)
+        return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact(at.T)) / largest)
 
-    shape = (n, len(nodes))
-    cells = random.integers(0, [len(x) - 1 for x in nodes], shape)
-    at = np.concatenate(
-        [
-            random.uniform([x[0] for x in nodes], [x[-1] for x in nodes], shape),
-            within(cells, np.full(shape, 0.5)),
-        ]
-    )
+    middle = within(random.integers(0, [len(x) - 1 for x in nodes], shape), np.full(shape, 0.5))
+    at = np.concatenate([random.uniform(*np.array([(x[0], x[-1]) for x in nodes]).T, shape), middle])
     first = missed(at)
     worst = at[np.argsort(-first)[: int(constants.TABLE_WORST_CELLS)]]
-    cells = np.stack(
-        [np.clip(np.searchsorted(x, q) - 1, 0, len(x) - 2) for x, q in zip(nodes, worst.T, strict=True)],
-        axis=1,
-    )
+    lowest = (np.searchsorted(x, q) - 1 for x, q in zip(nodes, worst.T, strict=True))
+    cells = np.clip(np.stack([*lowest], axis=1), 0, [len(x) - 2 for x in nodes])
     again = missed(within(cells[np.arange(n) % len(cells)], random.uniform(size=shape)))
     return Grid(axes, values, largest, float(max(first.max(), again.max())), len(first) + len(again), held)
 

@@ -36,8 +36,18 @@ class Campaign:
 
 
 def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
-    """The campaign of the true tyre on the virtual rig. The same plan, tyre and seed (default the plan's) give the same
-    numbers.
+    """The campaign of a tyre on the virtual rig.
+
+    Parameters
+    ----------
+    plan : the sweeps and the rig errors
+    tyre : the true tyre
+    seed : seed of the noise and the drawn rig errors; default the plan's
+
+    Returns
+    -------
+    Campaign
+        The same plan, tyre and seed give the same numbers.
     """
     seed = plan.tables.seed if seed is None else seed
     if seed < 0:
