@@ -45,9 +45,8 @@ class Linear:
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
-    limits: (
-        np.ndarray
-    )  #: (l,) residuals of physical limits: positive where a limit is violated, without cost otherwise
+    limits: np.ndarray
+    """(l,) residuals of physical limits: positive where a limit is violated, without cost otherwise."""
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
 
 
@@ -86,9 +85,8 @@ def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
 class LeastSquaresProblem:
     """Residuals as functions of the numbers (k,)."""
 
-    residual: Callable[
-        [np.ndarray], tuple[np.ndarray, np.ndarray]
-    ]  #: residuals of data (m,) and limits (l,), as in :class:`Linear`
+    residual: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    """Residuals of data (m,) and limits (l,), as in :class:`Linear`."""
     linear: Callable[[np.ndarray], Linear]  #: residuals with derivatives
 
 

@@ -107,9 +107,8 @@ class ExcludeTable(Table):
     """One entry of ``[fit] exclude``."""
 
     file: str  #: as in [[sweep]]
-    lines: Annotated[
-        str, BeforeValidator(_as_text), AfterValidator(_checked_lines)
-    ]  #: "39-44, 60", counted from 1
+    lines: Annotated[str, BeforeValidator(_as_text), AfterValidator(_checked_lines)]
+    """For example "39-44, 60"; counted from 1."""
     why: Annotated[str, AfterValidator(_reason)]
 
     @property

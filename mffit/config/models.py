@@ -99,9 +99,8 @@ def _u_field(declared: Declared) -> tuple[object, float | None]:
 class MachineTable(Table):
     """[rig] without the keys ``u_...`` of the rig errors: the machine and its axes."""
 
-    name: str | None = (
-        None  #: builds of one rig and set-up are recognised by this name and those of the set-ups
-    )
+    name: str | None = None
+    """Builds of one rig and set-up are recognised by this name and those of the set-ups."""
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
         Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(str(name), name))
@@ -249,9 +248,8 @@ class SisterTable(Table):
     """[sister]: the base file is that of a sister tyre, whose longitudinal force is scaled by the measured side force."""
 
     Fx: Literal["scaled"]
-    u_friction: stated.Share = float(
-        constants.SISTER_FRICTION_SCATTER
-    )  #: of longitudinal over lateral friction
+    u_friction: stated.Share = float(constants.SISTER_FRICTION_SCATTER)
+    """Of longitudinal over lateral friction."""
     u_stiffness: stated.Share = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
 
 
@@ -305,9 +303,8 @@ class SweepTable(Table):
     """[[sweep]]: one file."""
 
     file: str
-    direction: Literal["forward", "backward"] | None = (
-        None  #: None: the file's column if it has one, else forward
-    )
+    direction: Literal["forward", "backward"] | None = None
+    """None: the file's column if it has one, else forward."""
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: None: that of [rig]
     path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]

@@ -25,9 +25,8 @@ class CurvatureFactor(NamedTuple):
 
     channel: str  #: the force or moment that it bends
     names: tuple[str, ...]  #: its coefficients without those of camber
-    at_loads: Callable[
-        [SimpleNamespace, normalise.Inputs, float], list[Any]
-    ]  #: E before limits, to the largest sideslip
+    at_loads: Callable[[SimpleNamespace, normalise.Inputs, float], list[Any]]
+    """E before limits, to the largest sideslip."""
 
 
 FACTORS = (

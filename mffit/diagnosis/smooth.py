@@ -27,9 +27,8 @@ AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 class Smooth:
     """The smooth structure that fits a residual best."""
 
-    amplitude: dict[
-        str, float
-    ]  #: by channel, rms over the rms of the readings; 0 or no entry without structure
+    amplitude: dict[str, float]
+    """By channel, rms over the rms of the readings; 0 or no entry without structure."""
     gain: float  #: gain of log evidence
 
     @property

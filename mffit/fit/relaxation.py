@@ -46,9 +46,8 @@ class Direction:
     sigma: str  #: tir's name of the relaxation length
     K: str  #: tir's name of the slip stiffness
     slip_stiffness: Callable[[Any, Any], Any]  #: of coefficients and inputs of the upright wheel
-    names: tuple[
-        str, str, str, str
-    ]  #: carcass stiffness, its linear and quadratic terms over load, and its linear term over pressure
+    names: tuple[str, str, str, str]
+    """Carcass stiffness, its linear and quadratic terms over load, and its linear term over pressure."""
     zero: str  #: rig error that shifts the setting
     unit: float  #: unit of the zero, in units of the setting
     stage: str  #: word for the row of the coverage matrix

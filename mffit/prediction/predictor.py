@@ -91,9 +91,8 @@ class Predictor:
     path: float  #: path curvature of most readings [1/m], the default of predictions; 0 on a flat track
     names: tuple[str, ...]  #: (k,) names of the uncertain coefficients and of the rig's calibrations
     channels: Mapping[str, MissedChannel]
-    zeros: Mapping[
-        str, float
-    ]  #: fitted zeros of the rig, each the largest of all set-ups; they are part of a reading
+    zeros: Mapping[str, float]
+    """Fitted zeros of the rig, each the largest of all set-ups; they are part of a reading."""
     beside: Mapping[str, float]  #: effects of the tyre for which a property file has no coefficient
 
     @property

@@ -77,9 +77,8 @@ class Sniffed:
     axes: tuple[str, ...]  #: axes that agree with physics, those of ``reading`` first; empty if none agrees
     wrong: tuple[str, ...]  #: contradictions with physics under the axes tried first
     reading: Reading  #: points and stretches under the likeliest axes
-    conditions: dict[
-        str, tuple[Level, ...]
-    ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
+    conditions: dict[str, tuple[Level, ...]]
+    """Levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]."""
 
     of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad

@@ -40,9 +40,8 @@ class Guess(NamedTuple):
     upper: float = np.nan
     why: str = ""  #: reason for the unit, if neither the file nor the heading states it
     scale: float = 1.0  #: -1 if the file has the opposite sign
-    against: str | None = (
-        None  #: reference radius of longitudinal slip; None for other channels, or if unknown
-    )
+    against: str | None = None
+    """Reference radius of longitudinal slip; None for other channels, or if unknown."""
 
     @property
     def unit_of_readings(self) -> str:

@@ -92,9 +92,8 @@ class FinishedFit(JudgedMeasurement):
     free: int = 0  #: number of free coefficients
     left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences
-    stranger: str = (
-        ""  #: why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model
-    )
+    stranger: str = ""
+    """Why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model."""
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
         """Misfit over the stated noise at the used readings, or at those of them in the mask ``rows`` (n,)."""

@@ -69,9 +69,8 @@ class Truth:
     faults: Faults  #: rig errors in the first set-up
     faults_of_sweeps: dict[str, dict[str, float]]  #: additional errors of single sweeps, by file
     faults_of_setups: dict[str, dict[str, float]]  #: zeros of every set-up, if there are several
-    coefficients: dict[
-        str, float
-    ]  #: of the tyre's side force, aligning moment and turn slip; of all channels that were measured
+    coefficients: dict[str, float]
+    """Of the tyre's side force, aligning moment and turn slip; of all channels that were measured."""
     seed: int
     driven: tuple[DrivenTruth, ...] = ()  #: per load, if Fx, Mx, a radius or the wheel speed was measured
     drive: Mapping[str, Any] = field(default_factory=dict)  #: the table [drive], if the rig reports slip

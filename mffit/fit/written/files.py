@@ -31,9 +31,8 @@ class Files:
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
     weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.written.road.weights`
     camber_limit: float | None = None  #: largest camber of the file for turn slip off [rad]
-    wide_limit: float | None = (
-        None  #: requested camber limit beyond the files' camber range, hence without effect [rad]
-    )
+    wide_limit: float | None = None
+    """Requested camber limit beyond the files' camber range, hence without effect [rad]."""
     sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
     untested: Mapping[str, str] = field(default_factory=dict)
     """By quantity that the sweeps do not vary, the origin of its written range, in words."""
