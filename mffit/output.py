@@ -46,28 +46,19 @@ def output_folder(
 ) -> Iterator[Path]:
     """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
 
-    Parameters
-    ----------
-    out : folder to write to; created if necessary
-    by : the command that writes; only files of the same command are ever removed
-    protected : files that the run reads
-    outdated : names of files that would be mistaken for this run's output if an earlier run left them
+    ``by`` is the command that writes; only files of the same command are ever removed. ``protected`` are files that the run
+    reads, ``outdated`` names of files that would be mistaken for this run's output if an earlier run left them.
 
-    Raises
-    ------
-    InputError
-        ``out`` cannot be written to, or a file there may not be replaced; ``out`` is then unchanged.
-
-    Notes
-    -----
     A file in ``out`` is replaced only if an earlier run wrote it and it is unchanged since (by the record), or if the new
     content is the same. A file that the run reads is never replaced by other content. Files that the run does not write stay.
     In folders within ``out`` (``plots``), files that an earlier run of the same command wrote, and this one does not, are
     removed if they are unchanged.
 
-    An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine
-    and process; the next run to the same place removes it. If the run was killed while its finished files were moving, the
-    record knows the old and the new files, and the next run may replace both.
+    An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine and
+    process; the next run to the same place removes it. If the run was killed while its finished files were moving, the record
+    knows the old and the new files, and the next run may replace both.
+
+    Raises InputError if ``out`` cannot be written to, or a file there may not be replaced; ``out`` is then unchanged.
     """
     temporary = _temporary_folder(out)
     try:

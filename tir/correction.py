@@ -66,18 +66,10 @@ class Correction:
     path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
 
     def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
-        """The forces with what the formula misses.
+        """The forces of the formula with what it misses, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
-        Parameters
-        ----------
-        forces : of the formula
-        inputs : of the call, in the order of ``INPUTS``
-        limits : whether the inputs are held to the file's ranges; then the miss does not fade outside of the grid
-
-        Raises
-        ------
-        TirError
-            If an input is not a real number.
+        With ``limits`` the inputs are held to the file's ranges; then the miss does not fade outside of the grid. Raises
+        TirError if an input is not a real number.
         """
         kinds = {x.dtype.kind for x in map(np.asarray, inputs)}
         if not kinds <= set("fiub"):

@@ -34,14 +34,9 @@ class Grid(NamedTuple):
 def grid_of(function: Function, ranges: Ranges, goal: float) -> Grid:
     """The smallest grid found on which multilinear interpolation misses the function by less than the goal.
 
-    Parameters
-    ----------
-    function : of the conditions by name, which broadcast
-    ranges : lowest and highest value of each condition
-    goal : largest error over the largest absolute value; with too many nodes (``TABLE_NODES``) the grid may miss it
+    ``function`` takes the conditions by name, which broadcast, within ``ranges``. ``goal`` is the largest error over the
+    largest absolute value; with too many nodes (``TABLE_NODES``) the grid may miss it.
 
-    Notes
-    -----
     The error of multilinear interpolation is at most the sum of those along each axis, and the nodes needed along an axis grow
     with the inverse root of its error: the product of the numbers of nodes is smallest if all axes have the same error. So
     every axis gets the same share of the goal, and the longest steps that keep it at all places that were looked at. The share

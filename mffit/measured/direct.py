@@ -52,24 +52,11 @@ class _AtLoad:
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
-    """Stiffnesses, turn-slip force and eps_gamma at every load.
+    """Stiffnesses, turn-slip force and eps_gamma at every load, from points with the angles as read; stiffnesses only on a flat
+    track.
 
-    Parameters
-    ----------
-    config : the rig, its uncertainties and the method for C_gamma
-    points : points with the angles as read
-    parts : odd and even parts of the points
-    base : property file that supplies the shape of Re over load for loads at which r_e was not measured
-
-    Returns
-    -------
-    Measured
-        On a flat track it has stiffnesses only.
-
-    Raises
-    ------
-    InputError
-        If the turn-slip force points towards the centre of the disc.
+    ``base`` is the property file that supplies the shape of Re over load for loads at which r_e was not measured. Raises
+    InputError if the turn-slip force points towards the centre of the disc.
     """
     evidence = evidence_of(config, points, parts, base)
     warnings = [*parts.unpaired]

@@ -103,20 +103,12 @@ class Predictor:
     def predict(
         self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
     ) -> pd.DataFrame:
-        """The conditions with the forces of the file and the best estimates, all with standard uncertainties.
+        """The conditions with the forces of the file and the best estimates, all with standard uncertainties; ISO-W axes.
 
-        Parameters
-        ----------
-        tyre : the plain file of the build
-        fitted : the file of the fitted model; on a disc it differs from a plain file for turn slip off
-        conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; other columns of a sweep and ``phi_t_per_m`` are
-            optional. ISO-W axes.
-        channels : channels to predict; all fitted ones if None
-
-        Returns
-        -------
-        DataFrame
-            The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
+        ``tyre`` is the plain file of the build, ``fitted`` that of the fitted model; on a disc it differs from a plain file for
+        turn slip off. Of the conditions, ``alpha_deg``, ``gamma_deg`` and ``Fz_N`` are required, other columns of a sweep and
+        ``phi_t_per_m`` optional. Each channel, here Fy, gets ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``,
+        ``u_Fy_run_N``.
         """
         points = self.points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
