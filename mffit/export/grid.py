@@ -148,7 +148,8 @@ def _measured(
         return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact(at.T)) / largest)
 
     middle = within(random.integers(0, [len(x) - 1 for x in nodes], shape), np.full(shape, 0.5))
-    at = np.concatenate([random.uniform(*np.array([(x[0], x[-1]) for x in nodes]).T, shape), middle])
+    anywhere = random.uniform([x[0] for x in nodes], [x[-1] for x in nodes], shape)
+    at = np.concatenate([anywhere, middle])
     first = missed(at)
     worst = at[np.argsort(-first)[: int(constants.TABLE_WORST_CELLS)]]
     lowest = (np.searchsorted(x, q) - 1 for x, q in zip(nodes, worst.T, strict=True))
