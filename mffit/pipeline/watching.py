@@ -19,7 +19,7 @@ from mffit.errors import InputError
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_names, read_base, read_points
 from mffit.pipeline.intake import STRETCHES
-from mffit.pipeline.measuring import alignment_of, measure, spin_of
+from mffit.pipeline.measuring import alignment_of, epsilon_gamma, spin_of
 from mffit.planning import NextRun, next_run, read_goal
 from mffit.planning.goals import EPSILON, FILE
 from mffit.planning.plan import U
@@ -266,10 +266,7 @@ def next_of(config: Config, points: Points, measured: Measured) -> NextRun | Non
     goal = read_goal(EPSILON if on_disc else FILE, on_disc=on_disc)
 
     def direct(points: Points) -> DirectU | None:
-        try:
-            found = measure(config, points, base)[1].epsilon_gamma
-        except InputError:
-            return None
+        found = epsilon_gamma(config, points, base)
         return None if found is None else DirectU(found.u, found.u)
 
     try:
