@@ -66,10 +66,7 @@ def readable(
 ) -> Iterator[None]:
     """Within this block, an operating system error while reading ``path`` becomes an :class:`InputError`.
 
-    Parameters
-    ----------
-    path : the file that is read
-    missing, folder : sentences for a file that does not exist, and for a folder of this name
+    ``missing`` and ``folder`` are its sentences for a file that does not exist, and for a folder of this name.
     """
     try:
         yield

@@ -16,21 +16,10 @@ OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", 
 
 
 def init_project(folder: str | Path) -> list[Path]:
-    """Write a project to start from; existing files are never touched.
+    """Write a project to start from to a new or existing folder; returns the paths, ``tyre.toml`` first.
 
-    Parameters
-    ----------
-    folder : created if need be
-
-    Returns
-    -------
-    list of Path
-        The files written, ``tyre.toml`` first.
-
-    Raises
-    ------
-    InputError
-        One of the files is there already, or the folder cannot be written to.
+    Existing files are never touched. Raises InputError if one of the files is there already, or the folder cannot be written
+    to.
     """
     folder = Path(folder)
     template = resources.files("mffit.config").joinpath("template.toml").read_text(encoding="utf-8")
@@ -40,23 +29,7 @@ def init_project(folder: str | Path) -> list[Path]:
 
 
 def copy_sample(name: str, folder: str | Path) -> list[Path]:
-    """Copy a sample that comes with the package; existing files are never touched.
-
-    Parameters
-    ----------
-    name : one of :func:`sample_names`
-    folder : created if need be
-
-    Returns
-    -------
-    list of Path
-        The files written, ``tyre.toml`` first.
-
-    Raises
-    ------
-    InputError
-        There is no such sample, one of the files is there already, or the folder cannot be written to.
-    """
+    """Copy a sample that comes with the package, as :func:`init_project`; raises InputError also if there is no such sample."""
     if name not in sample_names():
         raise InputError(f"there is no sample {name!r}; choose one of {', '.join(sample_names())}")
     files = [entry for entry in _samples().joinpath(name).iterdir() if entry.is_file()]

@@ -45,9 +45,8 @@ class Linear:
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
-    limits: (
-        np.ndarray
-    )  #: (l,) residuals of physical limits: positive where a limit is violated, without cost otherwise
+    limits: np.ndarray
+    """(l,) residuals of physical limits: positive where a limit is violated, without cost otherwise."""
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
 
 
@@ -86,9 +85,8 @@ def _products(data: np.ndarray, slope: np.ndarray) -> np.ndarray:
 class LeastSquaresProblem:
     """Residuals as functions of the numbers (k,)."""
 
-    residual: Callable[
-        [np.ndarray], tuple[np.ndarray, np.ndarray]
-    ]  #: residuals of data (m,) and limits (l,), as in :class:`Linear`
+    residual: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    """Residuals of data (m,) and limits (l,), as in :class:`Linear`."""
     linear: Callable[[np.ndarray], Linear]  #: residuals with derivatives
 
 
@@ -190,16 +188,10 @@ def solve(
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
 
-    If residuals are large, their second derivatives matter. These are estimated from the gradients of successive steps, and every
-    step is tried with and without them (Dennis, Gay and Welsch 1981).
-
-    Parameters
-    ----------
-    problem : residuals and exact derivatives
-    numbers : the free numbers
-    max_steps : largest number of accepted steps
-    tolerance : the search ends if an undamped step would reduce the sum of squares by less than this share (Bates and Watts
-        1981); a damped step is no criterion, because its decrease is small whenever the damping is large
+    If residuals are large, their second derivatives matter. These are estimated from the gradients of successive steps, and
+    every step is tried with and without them (Dennis, Gay and Welsch 1981). The search ends after ``max_steps`` accepted steps,
+    or if an undamped step would reduce the sum of squares by less than the share ``tolerance`` (Bates and Watts 1981); a damped
+    step is no criterion, because its decrease is small whenever the damping is large.
     """
     objective = Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)

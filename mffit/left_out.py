@@ -46,21 +46,13 @@ class Predicted:
 
 
 def left_out_errors(
-    slopes: np.ndarray,
-    residual: np.ndarray,
-    information: np.ndarray,
-    gradient: np.ndarray,
-    group: np.ndarray,
+    slopes: np.ndarray, residual: np.ndarray, information: np.ndarray, gradient: np.ndarray, group: np.ndarray
 ) -> np.ndarray:
     """Errors (m,) of the points when each group is predicted from all others, with all numbers re-estimated.
 
-    Parameters
-    ----------
-    slopes : (m, k) derivatives of the residuals by the numbers
-    residual : (m,) model less measured in units of the noise
-    information : (k, k) of data and priors
-    gradient : (k,) half the derivative of the sum of squares of data and priors; zero at its minimum
-    group : (m,) index of the group of each row, from 0
+    ``slopes`` (m, k) are derivatives of the ``residual`` (m,), model less measured in units of the noise. ``information`` (k,
+    k) and ``gradient`` (k,), half the derivative of the sum of squares, are of data and priors. ``group`` (m,) is the index of
+    each row's.
     """
     error = np.empty_like(residual)
     for k in range(int(group.max(initial=-1)) + 1):

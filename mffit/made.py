@@ -40,9 +40,8 @@ class Made:
     version: str
     source: str  #: of the program's own files, see :func:`source`
     method: int = METHOD
-    libraries: Mapping[str, str] = field(
-        default_factory=dict
-    )  #: version of Python and of what computes figures
+    libraries: Mapping[str, str] = field(default_factory=dict)
+    """Version of Python and of what computes figures."""
     inputs: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of every file read, in 64 hexadecimal digits, by the name that the configuration gives."""
 

@@ -42,36 +42,23 @@ class OutputEntry(NamedTuple):
 
 @contextmanager
 def output_folder(
-    out: Path,
-    *,
-    by: str = "mffit",
-    protected: Iterable[Path] = (),
-    outdated: Collection[str] = (),
+    out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), outdated: Collection[str] = ()
 ) -> Iterator[Path]:
     """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
 
-    Parameters
-    ----------
-    out : folder to write to; created if necessary
-    by : the command that writes; only files of the same command are ever removed
-    protected : files that the run reads
-    outdated : names of files that would be mistaken for this run's output if an earlier run left them
+    ``by`` is the command that writes; only files of the same command are ever removed. ``protected`` are files that the run
+    reads, ``outdated`` names of files that would be mistaken for this run's output if an earlier run left them.
 
-    Raises
-    ------
-    InputError
-        ``out`` cannot be written to, or a file there may not be replaced; ``out`` is then unchanged.
-
-    Notes
-    -----
     A file in ``out`` is replaced only if an earlier run wrote it and it is unchanged since (by the record), or if the new
     content is the same. A file that the run reads is never replaced by other content. Files that the run does not write stay.
     In folders within ``out`` (``plots``), files that an earlier run of the same command wrote, and this one does not, are
     removed if they are unchanged.
 
-    An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine
-    and process; the next run to the same place removes it. If the run was killed while its finished files were moving, the
-    record knows the old and the new files, and the next run may replace both.
+    An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine and
+    process; the next run to the same place removes it. If the run was killed while its finished files were moving, the record
+    knows the old and the new files, and the next run may replace both.
+
+    Raises InputError if ``out`` cannot be written to, or a file there may not be replaced; ``out`` is then unchanged.
     """
     temporary = _temporary_folder(out)
     try:
@@ -139,10 +126,7 @@ def _record(temporary: Path, out: Path, entries: Mapping[str, OutputEntry]) -> N
 def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
     """Raise before any work if an output folder, or a file, cannot be written; nothing is left behind.
 
-    Raises
-    ------
-    InputError
-        A file is in the place of a folder, or a folder in that of the file, or nothing can be written there.
+    Raises InputError if a file is in the place of a folder, or a folder in that of the file, or nothing can be written there.
     """
     if is_file and out.is_dir():
         raise InputError("is a folder, but the output is a file; name a file with --out", file=out)
@@ -162,10 +146,7 @@ def refuse_unusable(out: Path, *, is_file: bool = False) -> None:
 def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
     """Raise before the work, if the names of the files are known, what :func:`output_folder` would raise after it.
 
-    Raises
-    ------
-    InputError
-        ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
+    Raises InputError if ``out`` cannot be written to, or has a file of one of the names that may not be replaced.
     """
     refuse_unusable(out)
     if out.is_dir():
@@ -199,10 +180,7 @@ def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:
 
 
 def _refuse(
-    out: Path,
-    written: Mapping[str, str],
-    recorded: Mapping[str, OutputEntry],
-    protected: Iterable[Path],
+    out: Path, written: Mapping[str, str], recorded: Mapping[str, OutputEntry], protected: Iterable[Path]
 ) -> None:
     """Raise if a file of ``written`` would replace one that must stay."""
     inputs = [path for path in protected if path.exists()]
@@ -316,10 +294,7 @@ def must_be_new(folder: Path, names: Iterable[str]) -> None:
 def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
     """Paths of new files of a folder, written with the given contents.
 
-    Raises
-    ------
-    InputError
-        One of the files is there already, or the folder cannot be written to.
+    Raises InputError if one of the files is there already, or the folder cannot be written to.
     """
     must_be_new(folder, contents)
     is_new = not folder.exists()

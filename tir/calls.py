@@ -41,12 +41,7 @@ ROWS = itemgetter(*range(len(FORCES)))
 """The rows of an array, in half the time of unpacking it."""
 
 
-def compile_kernels(
-    *,
-    turn_slip: bool | None = None,
-    star: bool = False,
-    limits: bool = False,
-) -> None:
+def compile_kernels(*, turn_slip: bool | None = None, star: bool = False, limits: bool = False) -> None:
     """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
     Without this, that happens by itself after some thousand scalar calls or some hundred thousand conditions; before, arrays use

@@ -299,8 +299,7 @@ def _old_keys(tyre: Tyre) -> Iterator[Problem]:
     old = [key for key in old if key in KEYS_OF_52]
     if old:
         yield _warning(
-            old[0],
-            f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?",
+            old[0], f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?"
         )
 
 

@@ -37,13 +37,7 @@ class Real(_Judged, float):
 
     @property
     def rad(self) -> float:
-        """The value in radians of a constant in degrees.
-
-        Raises
-        ------
-        ValueError
-            The unit is not "deg".
-        """
+        """The value in radians of a constant in degrees. Raises ValueError if the unit is not "deg"."""
         if self.unit != "deg":
             raise ValueError(f"{self!r} is in {self.unit}, not in degrees")
         return math.radians(self)

@@ -35,9 +35,7 @@ def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     if version not in target.fittyps:
         known = ", ".join(map(str, target.fittyps))
         yield Problem(
-            "error",
-            f"FITTYP {version} is not supported, only {known}: {_remedy(target)}",
-            "FITTYP",
+            "error", f"FITTYP {version} is not supported, only {known}: {_remedy(target)}", "FITTYP"
         )
     if target.complete and tyre.document is not None:
         missing = {r.name for r in TABLE if r.files in REGULAR} - {*tyre.present, *target.without}

@@ -66,18 +66,10 @@ class Correction:
     path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
 
     def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
-        """The forces with what the formula misses.
+        """The forces of the formula with what it misses, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
-        Parameters
-        ----------
-        forces : of the formula
-        inputs : of the call, in the order of ``INPUTS``
-        limits : whether the inputs are held to the file's ranges; then the miss does not fade outside of the grid
-
-        Raises
-        ------
-        TirError
-            If an input is not a real number.
+        With ``limits`` the inputs are held to the file's ranges; then the miss does not fade outside of the grid. Raises
+        TirError if an input is not a real number.
         """
         kinds = {x.dtype.kind for x in map(np.asarray, inputs)}
         if not kinds <= set("fiub"):
@@ -151,10 +143,7 @@ def interpolated(nodes: Sequence[np.ndarray], missed: np.ndarray, at: np.ndarray
 def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
     """The table of a file with these values.
 
-    Raises
-    ------
-    TirError
-        The table cannot be read, is not as a build writes it, or belongs to another file.
+    Raises TirError if the table cannot be read, is not as a build writes it, or belongs to another file.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")

@@ -95,27 +95,16 @@ def plain(x: Any) -> Any:
 
 
 def traced(values: Mapping[str, Any]) -> dict[str, Traced]:
-    """The numbers to differentiate by, on a new tape.
-
-    Parameters
-    ----------
-    values : floats, scalar or (n,) each; not integers
-    """
+    """The numbers (floats, scalar or (n,) each; not integers) to differentiate by, on a new tape."""
     tape: list[Traced] = []
     return {name: Traced(value, tape) for name, value in values.items()}
 
 
 def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
-    """Derivative of every element of an output with respect to each traced number.
+    """Derivative of an output, scalar or (n,), by k traced numbers: (k,) or (n, k); an array (n,) has one element per
+    condition.
 
-    Parameters
-    ----------
-    output : scalar or (n,), computed from traced numbers
-    wrt : k of them; an array (n,) has one element per condition
-
-    Returns
-    -------
-    (n, k) array, or (k,) for a scalar output; the n derivatives by one number are next to each other in memory
+    The n derivatives by one number are next to each other in memory.
     """
     rows = np.zeros((len(wrt), *np.shape(plain(output))))
     out = np.moveaxis(rows, 0, -1)

@@ -144,10 +144,7 @@ def folded(line: str) -> list[str]:
 def read_document(path: str | Path) -> Document:
     """The document read from a file in any usual encoding and with any line ends.
 
-    Raises
-    ------
-    TirError
-        If the file is missing, empty, or not text.
+    Raises TirError if the file is missing, empty, or not text.
     """
     path = Path(path)
     try:

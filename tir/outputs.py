@@ -13,32 +13,15 @@ from tir.errors import TirError
 
 
 def outputs_of(
-    names: tuple[str, ...],
-    p: Any,
-    inputs: Mapping[str, Any],
-    *,
-    turn_slip: bool = False,
-    star: bool = False,
+    names: tuple[str, ...], p: Any, inputs: Mapping[str, Any], *, turn_slip: bool = False, star: bool = False
 ) -> list[Any]:
     """Forces or states by name, equal to those of :func:`tir.evaluate.evaluate`; not for complex numbers.
 
-    Parameters
-    ----------
-    names : fields of :class:`tir.equations.forces.Forces` and ``State``, e.g. ``("Fy", "Mz")``
-    p : object with the file's parameter names as attributes: floats, arrays (n,) or :class:`~tir.derivatives.Traced`
-    inputs : some of :data:`~tir.codegen.program.INPUTS`, SI and radians, scalar or (n,), real or traced; missing
-        slips and angles are 0, Vx is LONGVL and pressure INFLPRES
-    turn_slip, star : as for ``evaluate``
+    ``p`` has the file's parameter names as attributes: floats, arrays (n,) or :class:`~tir.derivatives.Traced`. ``inputs`` are
+    some of :data:`~tir.codegen.program.INPUTS`, SI and radians, scalar or (n,), real or traced; missing slips and angles are 0,
+    Vx is LONGVL and pressure INFLPRES. Each result has the broadcast shape, or is Traced if it depends on a traced number.
 
-    Returns
-    -------
-    list
-        One for each name: of the broadcast shape, or Traced if it depends on a traced number.
-
-    Raises
-    ------
-    TirError
-        If a value by which the equations divide is 0, a name is unknown, or the load is missing.
+    Raises TirError if a value by which the equations divide is 0, a name is unknown, or the load is missing.
     """
     _known(names, Forces._fields + State._fields, "output")
     _known(inputs, INPUTS, "input")

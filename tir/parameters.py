@@ -39,15 +39,13 @@ class Parameter:
     most: float | None
     divisor: bool  #: the equations divide by it, so that it cannot be 0
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
-    channel: (
-        str  #: force or moment that must be measured to identify it; "" if it is not a coefficient of one
-    )
+    channel: str
+    """Force or moment that must be measured to identify it; "" if it is not a coefficient of one."""
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     side_spread: float | None  #: the same for sideslip to one side only, where no data show it
-    tyres_spread: (
-        float | None
-    )  #: size that two thirds of published tyres have at most, of those that have it at all
+    tyres_spread: float | None
+    """Size that two thirds of published tyres have at most, of those that have it at all."""
     tyres: int  #: of how many
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones

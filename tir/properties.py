@@ -114,10 +114,7 @@ def add_given(
 ) -> frozenset[str]:
     """Add given values of keys that a file lacks; returns their names. A value that the file has itself stays, with a problem.
 
-    Raises
-    ------
-    TirError
-        If a name is unknown, or a value is no finite number where one is needed.
+    Raises TirError if a name is unknown, or a value is no finite number where one is needed.
     """
     added = TyreRecord.from_values(given).present - values.keys()
     for name, value in given.items():

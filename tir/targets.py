@@ -47,13 +47,14 @@ class Target:
     verified: str = ""  #: what that rests on, if it is not the program's source
 
 
+def _if_turn_slip(then: str) -> TargetRule:
+    sentence = f"USE_MODE asks for turn slip, {then}"
+    return TargetRule("USE_MODE", lambda tyre: asks_for_turn_slip(tyre.values), sentence)
+
+
 KNOWN = ("source read", "documentation", "assumed")
 OF_SIMSCAPE = (
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, which is an option of the block: switch it on there, or use the file for turn slip off",
-    ),
+    _if_turn_slip("which is an option of the block: switch it on there, or use the file for turn slip off"),
     TargetRule(
         "MC_CONTOUR_A",
         lambda p: p["MC_CONTOUR_A"] > 0.0,
@@ -74,11 +75,9 @@ OF_MBSIM = (
         "it multiplies the nominal load by LFZO again at every evaluation, so the forces drift: write 1",
         "error",
     ),
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, with which its Mz is NaN where the spin is zero, and its trail acts on the force of spin "
-        "too: use the file for turn slip off, or expect another Mz on curves",
+    _if_turn_slip(
+        "with which its Mz is NaN where the spin is zero, and its trail acts on the force of spin "
+        "too: use the file for turn slip off, or expect another Mz on curves"
     ),
     TargetRule(
         "QDRP2",
@@ -87,19 +86,13 @@ OF_MBSIM = (
     ),
 )
 OF_MFEVAL = (
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, with which it reverses camber thrust: use the file for turn slip off, and a mode of mfeval "
-        "that ends in 1",
+    _if_turn_slip(
+        "with which it reverses camber thrust: use the file for turn slip off, and a mode of mfeval "
+        "that ends in 1"
     ),
 )
 OF_TYREDYN = (
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, with which it reverses camber thrust and gives NaN in Mz: use the file for turn slip off",
-    ),
+    _if_turn_slip("with which it reverses camber thrust and gives NaN in Mz: use the file for turn slip off"),
 )
 OF_TEASIT = (
     TargetRule(
@@ -126,13 +119,7 @@ OF_CHRONO = (
         "USE_MODE {value:g} is none of 1 to 4, with which alone it computes Fx and Fy: the tyre would have no grip at all",
     ),
 )
-OF_ANSYS = (
-    TargetRule(
-        "USE_MODE",
-        lambda p: asks_for_turn_slip(p.values),
-        "USE_MODE asks for turn slip, for which PROPERTY_FILE_FORMAT has to be 'SWIFT'",
-    ),
-)
+OF_ANSYS = (_if_turn_slip("for which PROPERTY_FILE_FORMAT has to be 'SWIFT'"),)
 ASSUMED = "no public manual was found that names its keys, so this is the file for MF-Tyre/MF-Swift itself"
 HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ...] = (
     ("carsim", "CarSim and BikeSim", {}, (), ASSUMED),
@@ -302,13 +289,7 @@ def fittyps_text() -> str:
 
 
 def target_of(name: str) -> Target:
-    """The program of this name.
-
-    Raises
-    ------
-    TirError
-        If the name is unknown, or the program cannot use an MF 6.2 tyre.
-    """
+    """The program of this name. Raises TirError if the name is unknown, or the program cannot use an MF 6.2 tyre."""
     target = known_target(name)
     if target.refusal:
         raise TirError(f"no file can be written for {name}: it {target.refusal}")

@@ -44,13 +44,7 @@ def tunables(tyre: TyreRecord) -> tuple[Tunable, ...]:
 
 
 def chosen(tyre: TyreRecord, names: Iterable[str]) -> tuple[Tunable, ...]:
-    """The named ones.
-
-    Raises
-    ------
-    TirError
-        If a name cannot be turned.
-    """
+    """The named ones. Raises TirError if a name cannot be turned."""
     known = {one.name: one for one in tunables(tyre)}
     for name in names:
         if name not in known:
@@ -61,12 +55,7 @@ def chosen(tyre: TyreRecord, names: Iterable[str]) -> tuple[Tunable, ...]:
 def trace_tuned(
     tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...], names: Iterable[str] | None = None
 ) -> Program:
-    """The program of a tyre, in which the tunables are symbols and every other value is a number.
-
-    Parameters
-    ----------
-    names : of the tunables; default all
-    """
+    """The program of a tyre, in which the named tunables (default all) are symbols and every other value is a number."""
     free = {one.name for one in tunables(tyre)} if names is None else set(names)
 
     def warmed(p: dict[str, Any], graph: Graph) -> None:

@@ -63,13 +63,10 @@ PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {
 
 
 def factor(unit: str, words: Mapping[str, str]) -> float:
-    """The factor from a number in the file's units to the unit of the table.
+    """The factor from a number in the file's units to a unit of the table, e.g. "N/m".
 
-    Parameters
-    ----------
-    unit : unit of the table, e.g. "N/m"
-    words : the file's word per kind, e.g. {"LENGTH": "mm"}; a missing kind is SI, and a pressure without its own
-        word is the file's force per area
+    ``words`` has the file's word per kind, e.g. {"LENGTH": "mm"}; a missing kind is SI, and a pressure without its own word is
+    the file's force per area.
     """
     if unit == "Pa" and "PRESSURE" in words:
         return PRESSURE[words["PRESSURE"].lower()]

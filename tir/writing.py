@@ -26,13 +26,7 @@ from tir.units import SI, factor
 
 
 def render(tyre: TyreRecord, target: Target) -> str:
-    """The complete file as text; the comment of a key marks a default.
-
-    Raises
-    ------
-    TirError
-        If a value is not finite.
-    """
+    """The complete file as text; the comment of a key marks a default. Raises TirError if a value is not finite."""
     lines = [
         "[MDI_HEADER]",
         entry("FILE_TYPE", "'tir'"),
@@ -84,13 +78,7 @@ def entry(key: str, value: str, comment: str = "") -> str:
 
 
 def value_text(row: Parameter, value: Any) -> str:
-    """The value as text in SI; it reads back as the same value.
-
-    Raises
-    ------
-    TirError
-        If a number is not finite.
-    """
+    """The value as text in SI; it reads back as the same value. Raises TirError if a number is not finite."""
     if row.kind == "text":
         text = comment_text(str(value))
         if "'" not in text:
@@ -126,10 +114,7 @@ def comment_text(text: str) -> str:
 def merged(tyre: TyreRecord, document: Document) -> Document:
     """The document with the values, origins, measured quantities and provenance of the tyre.
 
-    Raises
-    ------
-    TirError
-        If a changed value is not finite.
+    Raises TirError if a changed value is not finite.
     """
     lines: dict[str, FileLine] = {}
     for line in document.entries:

@@ -106,13 +106,7 @@ def convert(
 
 
 @click.command("open")
-@click.argument(
-    "paths",
-    type=PATH,
-    nargs=-1,
-    required=True,
-    metavar="tyre.toml|FOLDER|FILE.tir...",
-)
+@click.argument("paths", type=PATH, nargs=-1, required=True, metavar="tyre.toml|FOLDER|FILE.tir...")
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, help="Port on this machine [default: a free one]."
 )

@@ -68,11 +68,7 @@ def align(
 
 @click.command()
 @tyre_toml
-@click.option(
-    "--model",
-    type=PATH,
-    help="The simulation's .tir [default: that of the last build].",
-)
+@click.option("--model", type=PATH, help="The simulation's .tir [default: that of the last build].")
 @out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
 @click.option(
     "--repair-all", is_flag=True, help="Correct the model for uncertain effects too (confidence below 50 %)."

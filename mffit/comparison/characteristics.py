@@ -48,17 +48,11 @@ def characteristics(
 ) -> dict[str, Quantity]:
     """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
 
-    Parameters
-    ----------
-    tyre : the file
-    load : load [N]
-    turn_slip : whether the simulation computes spin; without it there is no turn-slip stiffness
-    pressure : pressure [Pa]; default the file's
-    reach : largest sideslip of the search for peaks [rad]; default the file's ALPMAX
-    slip_reach : largest longitudinal slip of the search for the peak of Fx; default the file's KPUMAX, at most 0.3
-    known : covariance of coefficients; without it, or if a number depends on none of them, its uncertainty is 0
-    predictor : its covariance is used for the numbers of its channels, see :data:`DECIDED_BY`; it includes the exchange between
-        coefficients and model error, which leaves the force unchanged
+    ``turn_slip``: whether the simulation computes spin; without it there is no turn-slip stiffness. The default of ``pressure``
+    is the file's, that of ``reach``, the largest sideslip of the search for peaks, its ALPMAX, that of ``slip_reach`` its
+    KPUMAX, at most 0.3. Without ``known``, or if a number depends on none of its coefficients, the number's uncertainty is 0.
+    The covariance of ``predictor`` is used for the numbers of its channels, see :data:`DECIDED_BY`; it includes the exchange
+    between coefficients and model error, which leaves the force unchanged.
     """
     every = {}
     if predictor is not None:

@@ -36,16 +36,9 @@ DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
 def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
-    """The comparison of two files.
+    """The comparison of two files, with covariance and build if known; effects of errors of a common rig cancel.
 
-    Parameters
-    ----------
-    first, second : the two files, with covariance and build if known; effects of errors of a common rig cancel in the differences
-
-    Returns
-    -------
-    Comparison
-        Within the ranges of both files, on a straight path, at the nominal pressure of the first.
+    It covers the ranges of both files, on a straight path, at the nominal pressure of the first.
     """
     tyres = (first.tyre, second.tyre)
     lower, upper = max(float(t["FZMIN"]) for t in tyres), min(float(t["FZMAX"]) for t in tyres)
@@ -190,16 +183,10 @@ def against_points(
     simulated: Sequence[LoadResult],
     name: str,
 ) -> Comparison:
-    """The comparison of a file with measured points.
+    """The comparison of a file, the first side, with measured points, the second side, of this ``name``.
 
-    Parameters
-    ----------
-    subject : the file, the first side
-    simulation : the file on the declared rig
-    points : the data, the second side
-    measured : results of the direct method for the points
-    simulated : results of the direct method for simulated readings of the file
-    name : name of the data
+    ``simulation`` is the file on the declared rig; ``measured`` and ``simulated`` are results of the direct method for the
+    points and for simulated readings of the file.
     """
     return Comparison(
         first=subject.name,

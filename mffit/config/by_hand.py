@@ -187,14 +187,8 @@ def _number(given: object, row: Parameter, key: str = "") -> float:
 def check_coefficients(
     entries: Mapping[str, CoefficientByHand], *, symmetric: bool, has_base: bool, direct: bool
 ) -> None:
-    """Refuse entries that another key of the file forbids.
-
-    Parameters
-    ----------
-    entries : of [coefficients]
-    symmetric : whether the tyre is declared symmetric
-    has_base : whether a base file is named
-    direct : whether PECP1 and PECP2 come from the direct method
+    """Refuse entries of [coefficients] that another key of the file forbids; ``direct``: PECP1 and PECP2 come from the direct
+    method.
     """
     for name, entry in entries.items():
         key = f"coefficients.{name}"
@@ -215,10 +209,7 @@ def check_coefficients(
 def of_command_line(words: Iterable[str]) -> dict[str, object]:
     """The entries that ``--set NAME=VALUE`` gives, as ``[coefficients]`` has them.
 
-    Raises
-    ------
-    InputError
-        A word is not ``NAME=VALUE`` or the entry is not possible.
+    Raises InputError if a word is not ``NAME=VALUE`` or the entry is not possible.
     """
     out: dict[str, object] = {}
     for word in words:

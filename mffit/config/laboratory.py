@@ -28,9 +28,8 @@ class InstrumentTable(Table):
     calibrated: date | None = None
     due: date | None = None  #: of the next calibration
     channel: Literal[*CALIBRATED] | None = None  # type: ignore[valid-type] #: that it reads
-    expanded_uncertainty: PositiveFloat | None = (
-        None  #: U of the certificate, over the reading unless ``at`` is given
-    )
+    expanded_uncertainty: PositiveFloat | None = None
+    """U of the certificate, over the reading unless ``at`` is given."""
     at: PositiveFloat | None = None  #: reading at which U holds, in the unit of U
     k: PositiveFloat | None = None  #: coverage factor of U; 2 unless given
 

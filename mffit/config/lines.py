@@ -28,10 +28,7 @@ class LineListError(ValueError):
 def line_ranges(text: str) -> tuple[LineRange, ...]:
     """Ranges of a list such as "39-44, 60", sorted; ranges that touch or overlap are joined.
 
-    Raises
-    ------
-    LineListError
-        The text is not such a list.
+    Raises LineListError if the text is not such a list.
     """
     found = []
     for item in text.split(","):
@@ -110,9 +107,8 @@ class ExcludeTable(Table):
     """One entry of ``[fit] exclude``."""
 
     file: str  #: as in [[sweep]]
-    lines: Annotated[
-        str, BeforeValidator(_as_text), AfterValidator(_checked_lines)
-    ]  #: "39-44, 60", counted from 1
+    lines: Annotated[str, BeforeValidator(_as_text), AfterValidator(_checked_lines)]
+    """For example "39-44, 60"; counted from 1."""
     why: Annotated[str, AfterValidator(_reason)]
 
     @property

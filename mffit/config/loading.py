@@ -28,10 +28,7 @@ def with_globs_expanded(
     The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``. With ``awaiting``, a pattern
     that matches nothing yet stays as it is.
 
-    Raises
-    ------
-    InputError
-        A pattern matches nothing.
+    Raises InputError if a pattern matches nothing.
     """
     sweeps = content.get("sweep")
     if isinstance(sweeps, Mapping):
@@ -176,21 +173,10 @@ def checked(
     known: Keys | None = None,
     awaiting: bool = False,
 ) -> Config:
-    """The configuration that a mapping holds.
+    """The configuration that a mapping holds; arguments and errors as in :func:`load`.
 
-    Parameters
-    ----------
-    content : tables and keys of a ``tyre.toml``
-    path : the file it came from; None for a mapping
-    folder : where relative file names start
-    lines : line of every key in the file
-    known : keys to suggest for an unknown one; those of ``tyre.toml`` by default
-    awaiting : as in :func:`load`
-
-    Raises
-    ------
-    InputError
-        As :func:`load`.
+    ``path`` is the file it came from, None for a mapping; ``lines`` has the line of every key in it; ``known`` are keys to
+    suggest for an unknown one, those of ``tyre.toml`` by default.
     """
     content, lines = with_globs_expanded(content, path, folder, lines, awaiting=awaiting)
     config = validated(Config, content, path=path, lines=lines, known=known or known_keys(Config))

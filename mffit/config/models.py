@@ -10,14 +10,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    PrivateAttr,
-    create_model,
-    model_validator,
-)
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, create_model, model_validator
 from uncertainties import ufloat
 
 from mffit.brief import Brief
@@ -106,9 +99,8 @@ def _u_field(declared: Declared) -> tuple[object, float | None]:
 class MachineTable(Table):
     """[rig] without the keys ``u_...`` of the rig errors: the machine and its axes."""
 
-    name: str | None = (
-        None  #: builds of one rig and set-up are recognised by this name and those of the set-ups
-    )
+    name: str | None = None
+    """Builds of one rig and set-up are recognised by this name and those of the set-ups."""
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
         Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(str(name), name))
@@ -135,12 +127,7 @@ class MachineTable(Table):
         return self.path_radius if self.path is None else path_radius(**self.path.model_dump())
 
     def u(self, name: str) -> float:
-        """Standard uncertainty of a rig error in the unit of its key; 0 if it is not declared.
-
-        Parameters
-        ----------
-        name : of the rig error, such as "F0_N"
-        """
+        """Standard uncertainty of a rig error, such as "F0_N", in the unit of its key; 0 if it is not declared."""
         declared = BY_NAME[name].declared
         given = None if declared is None else getattr(self, declared.key)
         if given is None and self.path is not None:
@@ -261,9 +248,8 @@ class SisterTable(Table):
     """[sister]: the base file is that of a sister tyre, whose longitudinal force is scaled by the measured side force."""
 
     Fx: Literal["scaled"]
-    u_friction: stated.Share = float(
-        constants.SISTER_FRICTION_SCATTER
-    )  #: of longitudinal over lateral friction
+    u_friction: stated.Share = float(constants.SISTER_FRICTION_SCATTER)
+    """Of longitudinal over lateral friction."""
     u_stiffness: stated.Share = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
 
 
@@ -317,9 +303,8 @@ class SweepTable(Table):
     """[[sweep]]: one file."""
 
     file: str
-    direction: Literal["forward", "backward"] | None = (
-        None  #: None: the file's column if it has one, else forward
-    )
+    direction: Literal["forward", "backward"] | None = None
+    """None: the file's column if it has one, else forward."""
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: None: that of [rig]
     path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]

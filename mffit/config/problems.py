@@ -55,20 +55,10 @@ def validated(
     lines: dict[str, int],
     known: Keys,
 ) -> Model:
-    """The content as a model.
+    """The content of a file as a model; ``path`` is None for a mapping.
 
-    Parameters
-    ----------
-    model : of the whole file
-    content : its tables
-    path : the file, None for a mapping
-    lines : line of every key, see :func:`lines_of_keys`
-    known : keys of every table of the file, see :func:`known_keys`
-
-    Raises
-    ------
-    InputError
-        The problem to solve first, with the keys of all others.
+    ``lines`` are as by :func:`lines_of_keys`, ``known`` as by :func:`known_keys`. Raises InputError with the problem to solve
+    first and the keys of all others.
     """
     try:
         return model.model_validate(dict(content))
@@ -183,12 +173,8 @@ def _split(key: str, known: Keys) -> tuple[str, str]:
 
 
 def known_keys(*models: type[BaseModel]) -> dict[str, tuple[str, ...]]:
-    """The keys of every table of a file.
-
-    Parameters
-    ----------
-    models : of the file's tables; where two have a table of one name, the first counts. At the top of the file the keys of
-        all count.
+    """The keys of every table of a file. Where two models have a table of one name, the first counts; at the top of the file
+    all.
     """
     known: dict[str, tuple[str, ...]] = {}
 

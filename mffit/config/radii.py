@@ -35,10 +35,7 @@ def wheel_turn(row: Any) -> float:
 def effective_radius(row: Any, R: Any) -> Any:
     """Free-rolling radius r_e = 2 pi R / turn of the wheel [m], (18); infinite if the wheel did not turn.
 
-    Parameters
-    ----------
-    row : a measured ``[rolling_radius]`` table
-    R : path radius [m]
+    ``row`` is a measured ``[rolling_radius]`` table, R the path radius [m].
     """
     turn = wheel_turn(row)
     return 2.0 * math.pi * R / turn if turn > 0.0 else math.inf

@@ -10,18 +10,10 @@ from mffit.config.models import Config
 
 
 def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
-    """Every key with its value, including defaults; keys without a value are left out.
+    """Every key with its value as plain TOML types, including defaults; keys without a value are left out.
 
-    Parameters
-    ----------
-    config : the configuration as run
-    folder : where the result will be written as ``resolved.toml``
-
-    Returns
-    -------
-    dict
-        Plain TOML types. If ``folder`` is inside the configuration's own folder, relative file names become relative to
-        ``folder``, so that both folders can be moved together; otherwise they become absolute.
+    If ``folder``, where the result will be written, is inside the configuration's own folder, relative file names become
+    relative to ``folder``, so that both folders can be moved together; otherwise they become absolute.
     """
     content = config.model_dump(exclude_none=True)
     content["rolling_radius"] = list(content["rolling_radius"])

@@ -19,12 +19,8 @@ def axis_signs(config: Config) -> dict[str, float]:
 
 
 def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
-    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, 0 on a straight path.
-
-    Parameters
-    ----------
-    rig : the rig with its usual path
-    sweep : a sweep, which may have a path of its own; None for the usual path
+    """Turn slip phi_t of the usual path, or of that of a sweep [1/m]: -1/R with the centre to the left, 1/R to the right, 0
+    straight.
     """
     radius, centre = rig.radius, rig.path_centre
     if radius is None:
@@ -67,10 +63,7 @@ class Declaration(NamedTuple):
 def declared_rig(rig: RigTable, C_alpha: float) -> dict[str, Declaration]:
     """Declared rig errors by name, without those that are exactly known.
 
-    Parameters
-    ----------
-    rig : the table ``[rig]``
-    C_alpha : cornering stiffness [N/rad], which turns a side force into the angle that causes it
+    ``C_alpha`` is the cornering stiffness [N/rad], which turns a side force into the angle that causes it.
     """
     found = {}
     for error, declared in DECLARED:

@@ -119,10 +119,7 @@ class TomlKind(NamedTuple):
 def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, object], dict[str, int]]:
     """Content of a TOML file, and the line of every key (see :func:`lines_of_keys`).
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not UTF-8 text or not valid TOML, or is evidently a file of another kind.
+    Raises InputError if the file cannot be read, is not UTF-8 text or not valid TOML, or is evidently a file of another kind.
     """
     return tables_of(_bytes(path, kind), path, kind)
 

@@ -160,10 +160,7 @@ def misfits(new: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarra
 def write(found: Conversion | OldConversion, out: str | Path) -> None:
     """Write the converted file; a file that is not a converted one is left alone.
 
-    Raises
-    ------
-    InputError
-        If the path is the old file, another file or a folder, or if it cannot be written.
+    Raises InputError if the path is the old file, another file or a folder, or if it cannot be written.
     """
     out = Path(out)
     if out.is_dir():

@@ -58,12 +58,7 @@ def in_terms_of_62(values: Mapping[str, Any]) -> SimpleNamespace:
 def forces(p: SimpleNamespace, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kappa: Any = 0.0) -> OldForces:
     """MF 5.2 in steady state at the pressure of the file (ISO-W, SI, radians), the curvature factors held to 1 as it demands.
 
-    Parameters
-    ----------
-    p : from :func:`in_terms_of_62`
-    Fz : load [N], > 0, scalar or (n,) as the others
-    alpha, gamma : sideslip and camber [rad]
-    kappa : longitudinal slip [-]
+    ``p`` is from :func:`in_terms_of_62`; loads are > 0, scalar or (n,) as the other inputs.
     """
     q = normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, p.INFLPRES, False, limits=True)
     K_xk, K_ya = (

@@ -65,18 +65,9 @@ def is_old(path: str | Path) -> bool:
 def read_old(
     path: str | Path, given: Mapping[str, float] = MappingProxyType({}), fittyp: int | None = None
 ) -> OldFile:
-    """An MF 5.2 or PAC2002 file.
+    """An MF 5.2 or PAC2002 file; arguments as in :func:`mffit.conversion.convert.convert`.
 
-    Parameters
-    ----------
-    path : the file
-    given : values [SI] of keys that the file lacks
-    fittyp : 5, 6 or 21: the version, whatever the file says
-
-    Raises
-    ------
-    TirError
-        If the file is of another version, or lacks what every force needs.
+    Raises TirError if the file is of another version, or lacks what every force needs.
     """
     document = read_document(path)
     kind = _kind(document, fittyp)

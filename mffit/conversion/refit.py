@@ -25,9 +25,8 @@ class CurvatureFactor(NamedTuple):
 
     channel: str  #: the force or moment that it bends
     names: tuple[str, ...]  #: its coefficients without those of camber
-    at_loads: Callable[
-        [SimpleNamespace, normalise.Inputs, float], list[Any]
-    ]  #: E before limits, to the largest sideslip
+    at_loads: Callable[[SimpleNamespace, normalise.Inputs, float], list[Any]]
+    """E before limits, to the largest sideslip."""
 
 
 FACTORS = (
@@ -87,11 +86,7 @@ def held(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     return {key: E for key, E in largest.items() if E > 1.0}
 
 
-FREE: Mapping[str, Sequence[str]] = {
-    "Fx": (),
-    "Fy": CAMBER_FORCE,
-    "Mz": CAMBER_MOMENT,
-}
+FREE: Mapping[str, Sequence[str]] = {"Fx": (), "Fy": CAMBER_FORCE, "Mz": CAMBER_MOMENT}
 """By channel, what is fitted in every file: the coefficients of camber. All others mean the same in both formulae, so that the
 upright wheel keeps its forces."""
 UNBOUNDED = (-np.inf, np.inf)

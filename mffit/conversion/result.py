@@ -29,9 +29,8 @@ class RegionMisfit(NamedTuple):
     load: float  #: at which it is the largest share of the old force [N]
     largest: float  #: at this load [N] or [Nm]
     greatest_force: float  #: largest old force of the region at this load [N] or [Nm]
-    within: (
-        float  #: share of the conditions within GOOD_SHARE of the largest force of the same load and region
-    )
+    within: float
+    """Share of the conditions within GOOD_SHARE of the largest force of the same load and region."""
 
     @property
     def share(self) -> float:
@@ -45,9 +44,8 @@ class _Converted(Brief):
 
     reach: Reach
     misfit: tuple[RegionMisfit, ...]
-    fitted: tuple[
-        str, ...
-    ]  #: names of the coefficients that were fitted; the others mean the same in both formulae
+    fitted: tuple[str, ...]
+    """Names of the coefficients that were fitted; the others mean the same in both formulae."""
 
     @property
     def poor(self) -> tuple[RegionMisfit, ...]:
@@ -81,9 +79,8 @@ class Conversion(_Converted):
 
     tyre: Tyre  #: MF 6.2, every coefficient marked as converted
     old: OldFile
-    held: Mapping[
-        str, float
-    ]  #: curvature factors that the old formula holds to 1 in this file, and what they would be
+    held: Mapping[str, float]
+    """Curvature factors that the old formula holds to 1 in this file, and what they would be."""
 
     @property
     def path(self) -> Path:

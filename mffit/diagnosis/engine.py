@@ -53,31 +53,15 @@ def diagnose(
     culprits: bool = True,
     progress: Progress = silent,
 ) -> Diagnosis:
-    """The diagnosis of a model: where it disagrees with points, and the effects that explain this.
+    """The diagnosis of a model: where it disagrees with points (n,), ISO-W, angles as read, and the effects that explain this.
 
-    Parameters
-    ----------
-    points : raw points (n,), ISO-W, angles as read
-    tyre : the model of the simulation
-    config : its declarations of model, rig and tyre name are used
-    rig : known rig errors, of the rig or of a set-up; default the declared play alone
-    effects : library of effects; extend the catalogue by your own records
-    coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
-    seen : whether the model was fitted to these points
-    repair_all : correct model and readings for uncertain effects too, see :mod:`mffit.diagnosis.repair`
-    as_read : the points (n,) before known errors were subtracted from the readings; default ``points``
-    taken_off : sentences about these errors
-    culprits : whether to search for a wrongly recorded sweep, which needs a model of this tyre
-    progress : called with a sentence before each step
+    Of ``config``, the declarations of model, rig and tyre name are used. ``rig`` are known rig errors, of the rig or of a
+    set-up, by default the declared play alone; ``coefficients`` is the prior of the model's coefficients, by default from
+    ``model.u_coefficients``; ``seen``: the model was fitted to these points; ``repair_all``: see :mod:`mffit.diagnosis.repair`.
+    ``as_read`` are the points (n,) before known errors were subtracted, about which ``taken_off`` has sentences. ``culprits``:
+    search for a wrongly recorded sweep, which needs a model of this tyre.
 
-    Returns
-    -------
-    Diagnosis
-
-    Raises
-    ------
-    InputError
-        Points and model cannot belong together, or there are too few points.
+    Raises InputError if points and model cannot belong together, or there are too few points.
     """
     progress("comparing simulation and measurement")
     start = _simulation(points, tyre, config, rig)

@@ -42,18 +42,16 @@ class Scatter:
     beyond_weights: float = 1.0
     """Standard error of an estimate from weighted readings over the standard error that the weights alone suggest."""
     span: MemorySpan = MemorySpan.SWEEP  #: the chains along which errors are autocorrelated
-    without_noise: bool = (
-        False  #: whether readings hardly scatter, like those of a simulation; the noise is then assumed
-    )
+    without_noise: bool = False
+    """Whether readings hardly scatter, like those of a simulation; the noise is then assumed."""
 
 
 class RunOffsets(NamedTuple):
     """Offsets of whole runs, compared with autocorrelated errors alone."""
 
     log_odds: float  #: log Bayes factor of the offsets over autocorrelation alone
-    needed: (
-        float  #: required log Bayes factor: prior odds against offsets, which are divided among their kinds
-    )
+    needed: float
+    """Required log Bayes factor: prior odds against offsets, which are divided among their kinds."""
     size: float  #: estimated size over the usual one
     channels: frozenset[str]  #: autocorrelated channels in which the offsets appear
 
@@ -104,9 +102,8 @@ class Noise:
     """By channel, in the order of the readings."""
     longer: Mapping[MemorySpan, np.ndarray] = field(default_factory=dict)
     """Possible chains longer than sweeps, (c n,) each."""
-    turn: np.ndarray | None = (
-        None  #: (c n,) rank in time of every reading within its channel; None without longer chains
-    )
+    turn: np.ndarray | None = None
+    """(c n,) rank in time of every reading within its channel; None without longer chains."""
     weight: np.ndarray | None = None  #: (c n,) weight of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
     structure: tuple[SharedDirections, ...] = ()

@@ -57,9 +57,8 @@ class OneSweep:
 class AnotherTyre:
     """The model has other dimensions or nominal conditions than the configuration."""
 
-    differences: tuple[
-        tuple[str, float, float], ...
-    ]  #: key of the property file, its value in the model, its value in tyre.toml
+    differences: tuple[tuple[str, float, float], ...]
+    """Key of the property file, its value in the model, its value in tyre.toml."""
 
     @property
     def sentence(self) -> str:

@@ -109,9 +109,8 @@ def _best_addition(
 class Judged:
     """Support of an effect by left-out sweeps."""
 
-    confidence: (
-        float  #: share of the misfit beyond the noise that it removes, in the channel where it removes most
-    )
+    confidence: float
+    """Share of the misfit beyond the noise that it removes, in the channel where it removes most."""
     tied: tuple[Hypothesis, ...]  #: with another effect in its place, not significantly worse
 
 

@@ -97,10 +97,7 @@ def remains(fitted: Fitted, linear: LinearisedFit) -> Remains:
     """The examination of a fit's residuals at its solution, from their linear model."""
     left = Left.of(fitted, linear)
     return Remains(
-        linear=linear,
-        effect=best_effect(left),
-        held=held_numbers(left),
-        left_out=left_out_sweeps(linear),
+        linear=linear, effect=best_effect(left), held=held_numbers(left), left_out=left_out_sweeps(linear)
     )
 
 

@@ -150,14 +150,8 @@ class Diagnosis(Brief):
 def corrected_points(points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> Points:
     """Points with the readings that a faultless rig at reference conditions would give at the same angle readings.
 
-    The diagnosed model supplies the influence of the faults. The angles are not shifted, because that would break the mirror
-    symmetry of the set-points.
-
-    Parameters
-    ----------
-    points : raw points (n,), angles as read
-    state : the simulation after all corrections, backlash included
-    channels : channels to correct
+    The diagnosed model, the simulation after all corrections, supplies the influence of the faults. The angles are not shifted,
+    because that would break the mirror symmetry of the set-points.
     """
     channels = tuple(channels)
     faulty, faultless = state.readings(points, channels), state.faultless.readings(points, channels)

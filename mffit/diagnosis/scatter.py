@@ -204,16 +204,7 @@ class ScatterOfChannel:
         }
         parts = {
             name: getattr(self, name)[rows]
-            for name in (
-                "stated",
-                "residual",
-                "size",
-                "sweep",
-                "named",
-                "smooth",
-                "weight",
-                "runs",
-            )
+            for name in ("stated", "residual", "size", "sweep", "named", "smooth", "weight", "runs")
         }
         return replace(self, chains=chains, **parts)
 
@@ -231,12 +222,7 @@ class ScatterOfChannel:
         return self if stride == 1 else self.select(rows)
 
 
-def learned(
-    noise: Noise,
-    residual: np.ndarray,
-    explained: ExplainingColumns,
-    size: np.ndarray,
-) -> Noise:
+def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
     """The noise with the scatter estimated from the residual (c n,); it may grow in proportion to ``size`` (c n,)."""
     u, weight, scatter = noise.u.copy(), np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}

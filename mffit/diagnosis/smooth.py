@@ -27,9 +27,8 @@ AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 class Smooth:
     """The smooth structure that fits a residual best."""
 
-    amplitude: dict[
-        str, float
-    ]  #: by channel, rms over the rms of the readings; 0 or no entry without structure
+    amplitude: dict[str, float]
+    """By channel, rms over the rms of the readings; 0 or no entry without structure."""
     gain: float  #: gain of log evidence
 
     @property
@@ -76,12 +75,7 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.nda
     inputs, at = [], []
     for name, x in conditions.items():
         lower, upper = float(np.nanmin(x)), float(np.nanmax(x))
-        steps = {
-            "alpha": divisions,
-            "gamma": divisions,
-            "t": 2,
-            "Fz": 2,
-        }
+        steps = {"alpha": divisions, "gamma": divisions, "t": 2, "Fz": 2}
         distinct = len(np.unique(np.round((x[np.isfinite(x)] - lower) / (upper - lower), 2))) - 1
         inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps.get(name, 1), distinct), 1)))
         at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper)))

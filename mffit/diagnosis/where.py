@@ -39,18 +39,10 @@ class Region:
 
 
 def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, ...]:
-    """Regions whose mean residual differs from zero, at a false discovery rate of 1 %.
+    """Regions whose mean residual differs from zero, at a false discovery rate of 1 %; the most significant first.
 
-    Parameters
-    ----------
-    points : (n,) conditions
-    residual : (c n,) measured minus simulated, in the channels of ``noise``
-    noise : covariance of the readings
-
-    Returns
-    -------
-    tuple of Region
-        The most significant first; regions that mostly repeat the points of a more significant one are left out.
+    ``residual`` (c n,) is measured minus simulated, in the channels of ``noise``. Regions that mostly repeat the points of a
+    more significant one are left out.
     """
     from scipy.stats import false_discovery_control  # slow to load, so it is imported only on use
 

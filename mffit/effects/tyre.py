@@ -221,10 +221,7 @@ TYRE_EFFECTS = (
         id="combined-camber",
         name="combined slip with camber",
         physics="A leaned tyre shares its grip between drive and sideslip otherwise than an upright one.",
-        free=(
-            Free(name="RBX3", spread=10.0),
-            Free(name="RBY4", spread=10.0),
-        ),
+        free=(Free(name="RBX3", spread=10.0), Free(name="RBY4", spread=10.0)),
         needs=("drive", "combined_camber"),
     ),
     _effect(

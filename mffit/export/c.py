@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import tir
 from mffit.errors import InputError
 from mffit.output import output_folder
-from tir.codegen.c99 import Code, taken
+from tir.codegen.c99 import taken
 
 
 def write_c(
@@ -48,42 +48,52 @@ def write_c(
     TirError
         The file cannot be read.
     """
-    path, out = Path(path), Path(out)
-    known = as_c(path, name, turn_slip, limits=limits, tunable=tunable, lag=transient)
+    path = Path(path)
+    known = code_of(path, name, turn_slip, limits=limits, tunable=tunable, lag=transient)
+    return written(
+        path, Path(out), {f"{known.name}.h": known.code.header, f"{known.name}.c": known.code.source}
+    )
+
+
+def written(path: Path, out: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write the code of a property file by the names of its files; returns their paths."""
     with output_folder(out, by="export", protected=[path]) as folder:
-        (folder / f"{known.name}.h").write_text(known.code.header, encoding="ascii", newline="\n")
-        (folder / f"{known.name}.c").write_text(known.code.source, encoding="ascii", newline="\n")
-    return [out / f"{known.name}.h", out / f"{known.name}.c"]
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="ascii", newline="\n")
+    return [out / name for name in texts]
 
 
 class CodeOfFile(NamedTuple):
-    """A property file as C code."""
+    """A property file as code."""
 
     tyre: tir.Tyre
-    name: str  #: prefix of the functions
+    name: str  #: of the function, or prefix of the functions
     turn_slip: bool
-    code: Code
+    code: Any
 
 
-def as_c(path: Path, given: str | None, turn_slip: bool | None, **switches: bool) -> CodeOfFile:
-    """The code of a property file, with a ``given`` name or one made from that of the file."""
-    tyre = tir.read(path)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
-    name = name_in_code(path, tyre, on, taken) if given is None else given
-    try:
-        return CodeOfFile(tyre, name, on, tir.export_c(tyre, name=name, turn_slip=on, **switches))
-    except tir.TirError as error:
-        raise InputError(error.sentence, file=path) from error
-
-
-def name_in_code(path: Path, tyre: tir.Tyre, turn_slip: bool, is_taken: Callable[[str], bool]) -> str:
-    """A name in a language, made from that of the property file.
+def code_of(
+    path: Path,
+    given: str | None,
+    turn_slip: bool | None,
+    export: Callable[..., Any] = tir.export_c,
+    is_taken: Callable[[str], bool] = taken,
+    **switches: bool,
+) -> CodeOfFile:
+    """The code of a property file in a language, by default C, with a ``given`` name or one made from that of the file.
 
     Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
     USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
     """
-    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode_suffix(tyre, turn_slip)
-    return name if re.match(r"[A-Za-z]", name) and not is_taken(name) else f"tyre_{name}"
+    tyre = tir.read(path)
+    on = tyre.turn_slip if turn_slip is None else turn_slip
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem) + mode_suffix(tyre, on) if given is None else given
+    if given is None and (is_taken(name) or not re.match(r"[A-Za-z]", name)):
+        name = f"tyre_{name}"
+    try:
+        return CodeOfFile(tyre, name, on, export(tyre, name=name, turn_slip=on, **switches))
+    except tir.TirError as error:
+        raise InputError(error.sentence, file=path) from error
 
 
 def mode_suffix(tyre: tir.Tyre, on: bool) -> str:

@@ -32,13 +32,7 @@ def suffix() -> str:
 
 
 def host_folder(fmi: int) -> str:
-    """The folder of ``binaries`` for this machine.
-
-    Raises
-    ------
-    InputError
-        FMI has no name for this machine.
-    """
+    """The folder of ``binaries`` for this machine. Raises InputError if FMI has no name for this machine."""
     machine, system = MACHINES.get(platform.machine().lower()), SYSTEMS.get(sys.platform)
     if machine is None or system is None:
         raise InputError(
@@ -49,13 +43,7 @@ def host_folder(fmi: int) -> str:
 
 
 def compile_shared(sources: Sequence[Path], library: Path, definitions: Sequence[str]) -> None:
-    """Compile C files to a shared library.
-
-    Raises
-    ------
-    InputError
-        There is no compiler, or it failed.
-    """
+    """Compile C files to a shared library. Raises InputError if there is no compiler, or it failed."""
     command = [
         *_compiler(),
         *FLAGS,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import mffit
 from mffit.errors import InputError
 from mffit.export import compiler, variables
-from mffit.export.c import CodeOfFile, as_c
+from mffit.export.c import CodeOfFile, code_of
 from mffit.output import output_folder
 from mffit.templates import environment
 from tir.mode import words
@@ -75,7 +75,7 @@ def write_fmu(
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
-    known = as_c(path, name, turn_slip, limits=limits, tunable=True, lag=transient)
+    known = code_of(path, name, turn_slip, limits=limits, tunable=True, lag=transient)
     name, files = known.name, _texts(known, path.name, fmi, limits=limits, transient=transient)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)

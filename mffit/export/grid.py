@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,14 +34,9 @@ class Grid(NamedTuple):
 def grid_of(function: Function, ranges: Ranges, goal: float) -> Grid:
     """The smallest grid found on which multilinear interpolation misses the function by less than the goal.
 
-    Parameters
-    ----------
-    function : of the conditions by name, which broadcast
-    ranges : lowest and highest value of each condition
-    goal : largest error over the largest absolute value; with too many nodes (``TABLE_NODES``) the grid may miss it
+    ``function`` takes the conditions by name, which broadcast, within ``ranges``. ``goal`` is the largest error over the
+    largest absolute value; with too many nodes (``TABLE_NODES``) the grid may miss it.
 
-    Notes
-    -----
     The error of multilinear interpolation is at most the sum of those along each axis, and the nodes needed along an axis grow
     with the inverse root of its error: the product of the numbers of nodes is smallest if all axes have the same error. So
     every axis gets the same share of the goal, and the longest steps that keep it at all places that were looked at. The share
@@ -133,11 +128,15 @@ def _measured(
     random: np.random.Generator,
 ) -> Grid:
     """The grid of these nodes, with its error at random conditions, in the middle of cells and all over the worst cells."""
-    nodes = list(axes.values())
-    values = function(**dict(zip(axes, np.meshgrid(*nodes, indexing="ij", sparse=True), strict=True)), **held)
+    nodes, n = list(axes.values()), int(constants.TABLE_CONDITIONS)
+    shape = (n, len(nodes))
+
+    def exact(at: Iterable[np.ndarray]) -> Any:
+        return function(**dict(zip(axes, at, strict=True)), **held)
+
+    values = exact(np.meshgrid(*nodes, indexing="ij", sparse=True))
     values = _rounded(np.broadcast_to(values, [len(x) for x in nodes]), largest)
     largest = max(largest, float(np.abs(values).max()))
-    n = int(constants.TABLE_CONDITIONS)
 
     def within(cells: np.ndarray, part: Any) -> np.ndarray:
         """Conditions (k, axes) in cells given by their lowest nodes (k, axes)."""
@@ -146,23 +145,15 @@ def _measured(
         )
 
     def missed(at: np.ndarray) -> np.ndarray:
-        exact = function(**dict(zip(axes, at.T, strict=True)), **held)
-        return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact) / largest)
+        return np.asarray(np.abs(interpolated(nodes, values[..., None], at.T)[0] - exact(at.T)) / largest)
 
-    shape = (n, len(nodes))
-    cells = random.integers(0, [len(x) - 1 for x in nodes], shape)
-    at = np.concatenate(
-        [
-            random.uniform([x[0] for x in nodes], [x[-1] for x in nodes], shape),
-            within(cells, np.full(shape, 0.5)),
-        ]
-    )
+    middle = within(random.integers(0, [len(x) - 1 for x in nodes], shape), np.full(shape, 0.5))
+    anywhere = random.uniform([x[0] for x in nodes], [x[-1] for x in nodes], shape)
+    at = np.concatenate([anywhere, middle])
     first = missed(at)
     worst = at[np.argsort(-first)[: int(constants.TABLE_WORST_CELLS)]]
-    cells = np.stack(
-        [np.clip(np.searchsorted(x, q) - 1, 0, len(x) - 2) for x, q in zip(nodes, worst.T, strict=True)],
-        axis=1,
-    )
+    lowest = (np.searchsorted(x, q) - 1 for x, q in zip(nodes, worst.T, strict=True))
+    cells = np.clip(np.stack([*lowest], axis=1), 0, [len(x) - 2 for x in nodes])
     again = missed(within(cells[np.arange(n) % len(cells)], random.uniform(size=shape)))
     return Grid(axes, values, largest, float(max(first.max(), again.max())), len(first) + len(again), held)
 

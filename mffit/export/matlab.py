@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import tir
-from mffit.errors import InputError
-from mffit.export.c import name_in_code
-from mffit.output import digest, output_folder
-from tir.codegen.matlab import taken
+from mffit.export.c import code_of, written
+from mffit.output import digest
+from tir.codegen.matlab import MatlabCode, taken
 
 
 def write_matlab(
@@ -42,16 +42,11 @@ def write_matlab(
     TirError
         The file cannot be read.
     """
-    path, out = Path(path), Path(out)
-    tyre = tir.read(path)
-    on = tyre.turn_slip if turn_slip is None else turn_slip
-    name = name_in_code(path, tyre, on, taken) if name is None else name
-    origin = f"From {path.name}, SHA-256 {digest(path)}"
-    try:
-        code = tir.export_matlab(tyre, name=name, turn_slip=on, limits=limits, origin=origin)
-    except tir.TirError as error:
-        raise InputError(error.sentence, file=path) from error
-    with output_folder(out, by="export", protected=[path]) as folder:
-        (folder / f"{name}.m").write_text(code.function, encoding="ascii", newline="\n")
-        (folder / f"{name}_mfeval.m").write_text(code.mfeval, encoding="ascii", newline="\n")
-    return [out / f"{name}.m", out / f"{name}_mfeval.m"]
+    path = Path(path)
+
+    def export(tyre: tir.Tyre, **given: Any) -> MatlabCode:
+        return tir.export_matlab(tyre, origin=f"From {path.name}, SHA-256 {digest(path)}", **given)
+
+    known = code_of(path, name, turn_slip, export, taken, limits=limits)
+    texts = {f"{known.name}.m": known.code.function, f"{known.name}_mfeval.m": known.code.mfeval}
+    return written(path, Path(out), texts)

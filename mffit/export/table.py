@@ -25,7 +25,6 @@ class LookupTables(NamedTuple):
 
     written: list[Path]
     tables: list[LookupTable]
-    turn_slip: bool
     warnings: list[str]  #: tables that miss the goal or are left out, and what helps
 
 
@@ -96,7 +95,7 @@ def write_table(
     stem = path.stem + mode_suffix(tyre, on)
     with output_folder(out, by="export", protected=[path]) as folder:
         names = FORMS[form].write(folder, stem, about, tables)
-    return LookupTables([out / name for name in names], tables, on, warnings)
+    return LookupTables([out / name for name in names], tables, warnings)
 
 
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:

@@ -49,10 +49,7 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
     A sweep with both directions gives ``<name>-forward`` and ``<name>-backward``. Reading the files with ``axes = "iso"`` gives
     the same points to rounding. Direction, mount and path curvature are in the comments, as TYDEX has no channels for them.
 
-    Raises
-    ------
-    InputError
-        Two sweeps would get the same name.
+    Raises InputError if two sweeps would get the same name.
     """
     texts: dict[str, str] = {}
     for k in np.unique(points.sweep):

@@ -18,13 +18,8 @@ from tir.parameters import BY_NAME
 def ensemble(found: FitResult, count: int, *, seed: int = 0) -> list[dict[str, float]]:
     """Coefficients of ``count`` tyres drawn from the joint posterior, each within its bounds and the physical limits.
 
-    A tyre is drawn again until it keeps the limits; after many rejected draws, closer and closer to the best tyre.
-
-    Parameters
-    ----------
-    found : the result of the fit
-    count : number of members
-    seed : seed of the random numbers; the same seed gives the same members
+    A tyre is drawn again until it keeps the limits; after many rejected draws, closer and closer to the best tyre. The same
+    seed gives the same members.
     """
     assert found.search is not None
     random, posterior, best = np.random.default_rng(seed), found.posterior, found.tyre.values

@@ -59,22 +59,13 @@ def fit(
     progress: Progress = silent,
     steps: Mapping[str, Points] = MappingProxyType({}),
 ) -> FitResult:
-    """The fit of MF 6.2 to raw points with turn slip on; directly measured values are held.
+    """The fit of MF 6.2 to raw points, angles as read, with turn slip on; directly measured values are held.
 
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    points : raw points, angles as read
-    parts : their odd and even parts
-    measured : the direct method's result; ``epsilon_gamma`` None on a flat track
-    base : property file that supplies the values that are not fitted, if any
-    progress : called with a sentence before each step
-    steps : samples of step tests, by the stepped setting: sideslip angle or longitudinal slip
+    ``parts`` are the points' odd and even parts; ``epsilon_gamma`` of ``measured`` is None on a flat track; ``base`` supplies
+    the values that are not fitted; ``steps`` are samples of step tests, by the stepped setting: sideslip angle or longitudinal
+    slip.
 
-    Raises
-    ------
-    InputError
-        If there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
+    Raises InputError if there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
     hand, sister, known, radii, turning, start, plan, problem = begin(config, points, measured, base)

@@ -88,14 +88,10 @@ def joint(problem: FitProblem, solution: Solution, held: Mapping[str, float]) ->
 def beside_held(
     free: Sequence[str], covariance: np.ndarray, held: Mapping[str, float], shared: np.ndarray
 ) -> Posterior:
-    """The posterior of free and held numbers.
+    """The posterior of free numbers (k,) and of held ones (m,), from the covariance (k, k) of the free ones with the held ones
+    exact.
 
-    Parameters
-    ----------
-    free : names (k,) of the free numbers
-    covariance : (k, k) of the free numbers with the held ones exact
-    held : standard uncertainty of the held numbers (m,)
-    shared : (k, m) ``J^T J_held``, the mixed block of the information matrix of the data
+    ``held`` has standard uncertainties; ``shared`` (k, m) is ``J^T J_held``, the mixed block of the data's information matrix.
     """
     shift = -covariance @ shared
     known = np.diag(np.array(list(held.values())) ** 2)

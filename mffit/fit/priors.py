@@ -67,10 +67,7 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
 def of_fleet(config: Config) -> dict[str, Prior]:
     """The prior of each coefficient from the file that ``[tyre] priors`` names; empty without that key.
 
-    Raises
-    ------
-    InputError
-        The file is missing, was not written by a fleet, or holds at another nominal load or pressure.
+    Raises InputError if the file is missing, was not written by a fleet, or holds at another nominal load or pressure.
     """
     path = config.priors_path
     if path is None:

@@ -46,9 +46,8 @@ class Direction:
     sigma: str  #: tir's name of the relaxation length
     K: str  #: tir's name of the slip stiffness
     slip_stiffness: Callable[[Any, Any], Any]  #: of coefficients and inputs of the upright wheel
-    names: tuple[
-        str, str, str, str
-    ]  #: carcass stiffness, its linear and quadratic terms over load, and its linear term over pressure
+    names: tuple[str, str, str, str]
+    """Carcass stiffness, its linear and quadratic terms over load, and its linear term over pressure."""
     zero: str  #: rig error that shifts the setting
     unit: float  #: unit of the zero, in units of the setting
     stage: str  #: word for the row of the coverage matrix
@@ -140,19 +139,11 @@ class Relaxation:
 
 
 def relaxation(
-    steps: Mapping[str, Points],
-    simulation: Simulation,
-    posterior: Posterior,
-    held: Collection[str] = (),
+    steps: Mapping[str, Points], simulation: Simulation, posterior: Posterior, held: Collection[str] = ()
 ) -> tuple[Relaxation, ...]:
     """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 
-    Parameters
-    ----------
-    steps : samples of the runs of steps, one sweep each, by the stepped setting
-    simulation : the fitted tyre on its rig
-    posterior : posterior of the fit
-    held : coefficients held by hand
+    ``steps`` are samples of the runs of steps, one sweep each, by the stepped setting; ``held`` are coefficients held by hand.
     """
     return tuple(
         _of_direction(one, steps.get(one.setting), simulation, posterior, held) for one in DIRECTIONS

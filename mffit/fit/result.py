@@ -48,9 +48,8 @@ class FitResult(Brief):
     seconds: float
     epsilon_gamma_model: float | None = None  #: of the fitted model; None on a flat track
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
-    left_by_formula: LinearisedFit | None = field(
-        default=None, repr=False
-    )  #: linear model of the full fit's residuals
+    left_by_formula: LinearisedFit | None = field(default=None, repr=False)
+    """Linear model of the full fit's residuals."""
     prediction: Predictor | None = field(default=None, repr=False)  #: of forces at any conditions
     outliers: tuple[Outlier, ...] = ()  #: single readings with zero weight
     at_turns: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
@@ -64,9 +63,8 @@ class FitResult(Brief):
     relaxation: tuple[Relaxation, ...] = ()  #: carcass stiffnesses from steps of sideslip and of slip
     lent: Lent | None = None  #: coefficients from a sister tyre, for a tyre measured only sideways
     runs: BetweenRuns | None = None  #: random effects of the runs, if modelled
-    choice: NuisanceChoice | None = (
-        None  #: influences modelled in addition to coefficients and declared rig errors, with reasons
-    )
+    choice: NuisanceChoice | None = None
+    """Influences modelled in addition to coefficients and declared rig errors, with reasons."""
     radii: Vertical = field(default_factory=Vertical)  #: from loaded radius and wheel speed
 
     @property

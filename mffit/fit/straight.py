@@ -21,19 +21,12 @@ STEP = 1e-4  # rad; the curve bends by less than 1e-6 of its slope
 
 
 def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadResult) -> Quantity | None:
-    """The tyre's cornering stiffness on a straight path [N/rad]; None if none was measured.
+    """The tyre's cornering stiffness on a straight path [N/rad] at the load of the direct measurement; None if none was
+    measured.
 
-    Parameters
-    ----------
-    fitted : the fitted model and its posterior
-    points : points of the campaign, which give the usual path, pressure and speed
-    row : the direct measurement at one load
-
-    Notes
-    -----
     The value is the model's slope without turn slip. Three components make up its uncertainty: the posterior, a share of the
-    correction from the curved to the straight path, and the part of the difference between the model's and the measured slope on
-    the curved path that exceeds both uncertainties.
+    correction from the curved to the straight path, and the part of the difference between the model's and the measured slope
+    on the curved path that exceeds both uncertainties.
     """
     phi_t = main_path(points)
     if row.C_alpha is None or phi_t == 0.0:

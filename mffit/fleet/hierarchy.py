@@ -63,12 +63,7 @@ class Hierarchy:
 
 
 def estimate(found: Sequence[Information]) -> Hierarchy:
-    """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free.
-
-    Parameters
-    ----------
-    found : information of each tyre's build on this rig
-    """
+    """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free."""
     tyres = _Tyres(found)
     tau = tyres.general.copy()
     learnt = tyres.count >= constants.FEWEST_TYRES_FOR_SCATTER

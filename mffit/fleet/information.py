@@ -136,10 +136,7 @@ def to_json(found: Information | None) -> dict[str, Any]:
 def from_json(content: Mapping[str, Any]) -> Information:
     """The record from the content of ``information.json``.
 
-    Raises
-    ------
-    ValueError, KeyError, TypeError
-        The content has another form.
+    Raises ValueError, KeyError or TypeError if the content has another form.
     """
     names = tuple(str(name) for name in content["names"])
     k = len(names)

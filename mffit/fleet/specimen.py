@@ -138,10 +138,7 @@ def read(folder: str | Path) -> Specimen:
 def read_information(path: Path) -> Information | None:
     """The content of an ``information.json``; None if nothing was free in its build.
 
-    Raises
-    ------
-    InputError
-        The file is missing, or was not written by ``mffit build``.
+    Raises InputError if the file is missing, or was not written by ``mffit build``.
     """
     if not path.is_file():
         raise InputError(

@@ -48,15 +48,7 @@ class Components:
     def logarithms(self) -> np.ndarray:
         """Logarithms (d + 6,) of all components."""
         return np.log(
-            [
-                self.missed,
-                *self.lengths,
-                self.offset,
-                self.scale,
-                self.shape,
-                self.shape_length,
-                self.noise,
-            ]
+            [self.missed, *self.lengths, self.offset, self.scale, self.shape, self.shape_length, self.noise]
         )
 
     @classmethod

@@ -154,8 +154,7 @@ class LinearisedChannel:
         """Log evidence if the model error is only a constant."""
         constant = SmoothFunctions.over(())
         model = replace(
-            self.alone,
-            common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]]),
+            self.alone, common=np.hstack([1.0 / self.unit[:, None], self.alone.common[:, len(self.missed) :]])
         )
         found = _found(model, constant, self.unit, self.declared)
         return _evidence(model, found, constant, self.declared)
@@ -228,15 +227,9 @@ def linearised(
 ) -> LinearisedFit:
     """The linear model of a simulation's residuals at the points.
 
-    Parameters
-    ----------
-    points : (n,)
-    simulation : the fitted tyre on its rig
-    sigma : by channel, uncertainty (n,) that the fit used; inf where a reading has no weight
-    numbers : numbers of the fit, each with a prior
-    only : channels of the result; all fitted channels if None
-    without : indices of points that the fit did not use; they do not enter the estimation of the components
-    near : linear model of a similar fit to these points; its components are the starting values of the search
+    ``sigma`` (n,) is the uncertainty that the fit used, by channel, inf where a reading has no weight. ``only`` are the
+    channels of the result, all fitted ones if None. Points ``without`` do not enter the estimation of the components; those of
+    ``near``, a linear model of a similar fit, are the starting values.
     """
     readings = simulation.readings(points, sigma)
     sight = _Sight(

@@ -26,21 +26,14 @@ def align(
     measured: Mapping[float, Quantity] | None = None,
     resolution_deg: float = constants.AXIS_RESOLUTION,
 ) -> Alignment:
-    """The next correction of the sideslip axis, from forward and backward zeros.
+    """The next correction of the sideslip axis, in the rig's ``axes``, from forward and backward zeros.
 
-    Parameters
-    ----------
-    points : points corrected for the play, with rows at zero sideslip and camber in both directions; ``iteration`` numbers
-        repeated steps. If the usual path has several set-ups, the last one is aligned
-    axes : the rig's axes, in which the correction is returned
-    C_alpha : cornering stiffness per load [1/rad], positive, used if none is measured; default 10
-    measured : measured cornering stiffness by load [N], used if its relative uncertainty is the smallest
-    resolution_deg : smallest angle by which the axis can be turned [deg]
+    The points are corrected for the play and have rows at zero sideslip and camber in both directions; ``iteration`` numbers
+    repeated steps. If the usual path has several set-ups, the last one is aligned. ``measured`` is the cornering stiffness by
+    load [N], used if its relative uncertainty is the smallest; else ``C_alpha`` per load [1/rad], positive, default 10. The
+    axis can be turned by ``resolution_deg`` at the smallest [deg].
 
-    Raises
-    ------
-    InputError
-        If zeros of one direction are missing.
+    Raises InputError if zeros of one direction are missing.
     """
     steps: list[AlignmentStep] = []
     on_usual = points.phi_t == main_path(points)

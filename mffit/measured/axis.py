@@ -114,18 +114,12 @@ class ZeroSplit(NamedTuple):
 
 
 def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> ZeroSplit | None:
-    """Misalignment and ply-steer, split by their priors; None without both directions in the set-up.
+    """Misalignment and ply-steer [rad], from their sum alpha_M and their priors; None without both directions in the set-up.
 
-    Parameters
-    ----------
-    alpha_M : sum of misalignment and ply-steer [rad]
-    C_alpha : cornering stiffness [N/rad]
-    u_force : declared standard uncertainty of the alignment, as the side force that it causes [N]
-
-    Notes
-    -----
-    The sum is divided in proportion to the prior variances. If it is far beyond both priors, it contradicts the declared
-    alignment, because no tyre has so much ply-steer: the prior variance of the misalignment is then enlarged to explain it.
+    ``C_alpha`` is the cornering stiffness [N/rad], ``u_force`` the uncertainty of the alignment as the side force that it
+    causes [N]. The sum is divided in proportion to the prior variances. If it is far beyond both priors, it contradicts the
+    declared alignment, because no tyre has so much ply-steer: the prior variance of the misalignment is then enlarged to
+    explain it.
     """
     if alpha_M is None:
         return None
@@ -142,18 +136,10 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: float, u_force: float) -> Zer
 def at_true_zero(
     C_alpha: UFloat | None, bend: UFloat | None, split: ZeroSplit | None, u_force: float
 ) -> UFloat | None:
-    """Cornering stiffness at true zero sideslip [N/rad], from the slope at zero reading.
+    """Cornering stiffness at true zero sideslip [N/rad], from the slope at zero reading and its change with sideslip [N/rad^2].
 
-    Parameters
-    ----------
-    C_alpha : slope at zero reading [N/rad]
-    bend : change of the slope with sideslip [N/rad^2]
-    split : the misalignment, if both directions were run
-    u_force : declared standard uncertainty of the alignment, as the side force that it causes [N]; used without ``split``
-
-    Notes
-    -----
-    On a disc the curve is shifted by about a degree, so its slope changes even at zero.
+    On a disc the curve is shifted by about a degree, so its slope changes even at zero. ``split`` is the misalignment if both
+    directions were run; without it, ``u_force`` counts, the alignment's uncertainty as the side force that it causes [N].
     """
     if C_alpha is None or bend is None:
         return C_alpha

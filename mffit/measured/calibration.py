@@ -31,16 +31,11 @@ class Factors(NamedTuple):
 def calibration(
     evidence: DirectEvidence, group: LoadGroup, over_load: Slopes, slopes: LoadSlopes, found: Turning | None
 ) -> Factors:
-    """The correction factors at one load.
+    """The correction factors at one load. An error common to all loads is one source: it cancels in differences and ratios of
+    results.
 
-    An error common to all loads is one source, so it cancels in differences and ratios of results.
-
-    Parameters
-    ----------
-    evidence : supplies the calibration errors
-    group : points of the load
-    over_load : relative change of stiffnesses and force per relative change of load
-    slopes, found : stiffnesses and turn-slip force as read
+    ``over_load`` are relative changes of stiffnesses and force per relative change of load; ``slopes`` and ``found`` are
+    stiffnesses and turn-slip force as read.
     """
     of_camber, spin = 0.0, 0.0
     if slopes.C_gamma is not None:

@@ -57,12 +57,8 @@ def turn_slip_force(
 ) -> UFloat:
     """Turn-slip force [N]: the raw force at (0, 0) less the forces of the rig errors; (23) in ISO signs.
 
-    Parameters
-    ----------
-    F_raw : raw force [N], the mean of both directions if both were run
-    errors : rig errors by name, in the declared unit
-    at : stiffnesses of the tyre and side of the play
-    both_directions : whether errors that change sign with the direction of rolling cancel in ``F_raw``
+    ``errors`` are in the declared units. With ``both_directions``, ``F_raw`` is their mean, in which errors that change sign
+    with the direction of rolling cancel.
     """
     for name, number in errors.items():
         declared = READ[name][1]

@@ -24,13 +24,7 @@ from mffit.measured.axis import (
 )
 from mffit.measured.calibration import Factors, calibration, powers_of_load
 from mffit.measured.drift import shares_of_sweeps
-from mffit.measured.epsilon import (
-    corrected,
-    epsilon_from_moments,
-    factor,
-    load_dependence,
-    stiffer_in_camber,
-)
+from mffit.measured.epsilon import corrected, epsilon_from_moments, factor, load_dependence, stiffer_in_camber
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import Drift, LoadResult, Measured, SetupScatter, SideslipZeros
@@ -58,24 +52,11 @@ class _AtLoad:
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
-    """Stiffnesses, turn-slip force and eps_gamma at every load.
+    """Stiffnesses, turn-slip force and eps_gamma at every load, from points with the angles as read; stiffnesses only on a flat
+    track.
 
-    Parameters
-    ----------
-    config : the rig, its uncertainties and the method for C_gamma
-    points : points with the angles as read
-    parts : odd and even parts of the points
-    base : property file that supplies the shape of Re over load for loads at which r_e was not measured
-
-    Returns
-    -------
-    Measured
-        On a flat track it has stiffnesses only.
-
-    Raises
-    ------
-    InputError
-        If the turn-slip force points towards the centre of the disc.
+    ``base`` is the property file that supplies the shape of Re over load for loads at which r_e was not measured. Raises
+    InputError if the turn-slip force points towards the centre of the disc.
     """
     evidence = evidence_of(config, points, parts, base)
     warnings = [*parts.unpaired]
@@ -106,11 +87,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     measured, troubles = _assembled(evidence, rows, skew)
     warnings += [*troubles, *warnings_of_setups(points, measured.nominal, scatter, config)]
     return replace(
-        measured,
-        warnings=tuple(warnings),
-        setup_scatter=scatter,
-        sideslip_zeros=zeros,
-        drift=drift,
+        measured, warnings=tuple(warnings), setup_scatter=scatter, sideslip_zeros=zeros, drift=drift
     )
 
 

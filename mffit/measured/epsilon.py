@@ -9,12 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.constants import (
-    CAMBER_OF_SLOPES,
-    COVERAGE_FACTOR_95,
-    LARGEST_CAMBER_REDUCTION,
-    USUAL_U_MOMENT,
-)
+from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, LARGEST_CAMBER_REDUCTION, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
@@ -37,17 +32,9 @@ def factor(
 ) -> Factor:
     """eps_gamma at one load.
 
-    Parameters
-    ----------
-    evidence : supplies the errors common to all loads
-    C_gamma : camber stiffness, corrected for rig errors [N/rad]
-    found : turn-slip force and stiffness
-    r_e : effective radius [m]
-    stiffer : relative excess of the tyre's stiffness in the camber sweep over that at the zeros
-
-    Notes
-    -----
-    The secant follows the published procedure, whose budget has neither finite spin nor temperature.
+    ``C_gamma`` is the camber stiffness, corrected for rig errors [N/rad], r_e the effective radius [m], ``stiffer`` the
+    relative excess of the tyre's stiffness in the camber sweep over that at the zeros. The secant follows the published
+    procedure, whose budget has neither finite spin nor temperature.
     """
     if not evidence.published:
         C_gamma = C_gamma * (1.0 - stiffer)
@@ -116,20 +103,10 @@ class LoadDependence(NamedTuple):
 def load_dependence(
     loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float
 ) -> LoadDependence:
-    """PECP1 and PECP2: eps_gamma at the nominal load, and a fitted slope over load.
+    """PECP1 and PECP2: eps_gamma at the nominal load (index ``nominal`` of the loads [N]), and a fitted slope over load.
 
-    Rig errors common to all loads are treated as correlated.
-
-    Parameters
-    ----------
-    loads : [N]
-    epsilon : eps_gamma at each load, with its correlations
-    nominal : index of the load nearest FNOMIN
-    Fz0 : FNOMIN [N]
-
-    Notes
-    -----
-    PECP2 is not 0 only if slope and PECP1 clearly differ from zero and eps_gamma stays below its limit within the loads.
+    Rig errors common to all loads are treated as correlated. PECP2 is not 0 only if slope and PECP1 clearly differ from zero
+    and eps_gamma stays below its limit within the loads.
     """
     at_nominal = epsilon[nominal]
     pecp1 = float(at_nominal.nominal_value)

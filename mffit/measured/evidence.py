@@ -120,13 +120,7 @@ def rest_of_play(config: Config) -> UFloat:
 
 
 def odd_alpha(points: Points, parts: Parts, config: Config) -> np.ndarray:
-    """Sideslip (n,) of the odd part of every point: half the difference of the true angles of a mirror pair [rad].
-
-    Parameters
-    ----------
-    points : points with the angles as read
-    parts : odd and even parts of the points
-    """
+    """Sideslip (n,) of the odd part of every point: half the difference of the true angles of a mirror pair [rad]."""
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
         return points.alpha

@@ -33,13 +33,7 @@ def results_of_setups(
 ) -> tuple[SetupResult, ...]:
     """Turn-slip force and eps_gamma of every path and set-up alone; empty if there is only one.
 
-    Parameters
-    ----------
-    evidence : supplies alpha_M of the set-ups that were run both ways
-    found : the zeros and turn-slip forces at one load
-    C_alpha : cornering stiffness [N/rad]
-    C_gamma : camber stiffness, corrected for rig errors [N/rad]
-    r_e : effective radius [m]
+    Stiffnesses are in N/rad, that of camber corrected for rig errors; r_e is the effective radius [m].
     """
     if len(found.paths) < 2:
         return ()

@@ -43,19 +43,11 @@ class Secant(NamedTuple):
 def slope_at_zero(
     x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float, curvature: float = 0.0
 ) -> SlopeAtZero | None:
-    """Slope at zero of an odd curve.
+    """Slope at zero of an odd curve; None if there are fewer than three angles.
 
-    Parameters
-    ----------
-    x : (n,) angles > 0 [rad]
-    y : (n,) odd part of the curve at these angles
-    u : (n,) standard uncertainties of y
-    local : largest angle up to which a cubic describes the curve [rad]
-    curvature : prior standard deviation of the curvature E of the shape; 0 holds it at 0
-
-    Returns
-    -------
-    Slope, or None if there are fewer than three angles.
+    ``x`` (n,) are angles > 0 [rad], ``y`` and ``u`` the odd part of the curve there and its standard uncertainties. A cubic
+    describes the curve up to the angle ``local`` [rad]. ``curvature`` is the prior standard deviation of the shape's curvature
+    E; 0 holds it at 0.
     """
     if len(np.unique(np.round(x, 4))) < 3:
         return None
@@ -236,16 +228,10 @@ def _estimates(
     at: float,
     curvature: float = 0.0,
 ) -> Estimates:
-    """Slope at zero and secant of an odd curve over an angle (n,) [rad].
+    """Slope at zero and secant at the angle ``at`` [rad] of an odd curve: side force [N] over the angle (n,) [rad] at rows
+    ``index``.
 
-    Parameters
-    ----------
-    evidence : supplies the uncertainties of the readings
-    index : (m,) indices of the points to use
-    angle, odd : (n,) angles [rad] and odd part of the side force [N]
-    local : largest angle up to which a cubic describes the curve [rad]
-    at : angle of the secant [rad]
-    curvature : prior standard deviation of the curvature of the shape
+    ``local`` and ``curvature`` are as in :func:`slope_at_zero`.
     """
     u = evidence.parts.u_Fy_odd
     u = np.where(np.isfinite(u), u, USUAL_U_FORCE / math.sqrt(2.0))
@@ -289,13 +275,9 @@ def sweep(
 
 
 def _number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None) -> UFloat | None:
-    """An estimate as a number with uncertainty [N/rad].
+    """An estimate as a number with uncertainty [N/rad] of this ``source`` in the budget.
 
-    Parameters
-    ----------
-    estimate : slope or secant
-    source : name of the source in the budget
-    shape : relative error of the slope due to the shape of the curve, if several slopes share it
+    ``shape`` is the relative error of the slope due to the shape of the curve, if several slopes share it.
     """
     if estimate is None:
         return None

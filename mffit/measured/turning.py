@@ -67,10 +67,7 @@ def turning(
 ) -> tuple[Turning | None, list[str]]:
     """Turn-slip force and stiffness, and warnings; None without zeros.
 
-    Raises
-    ------
-    InputError
-        The force points towards the centre of the disc.
+    Raises InputError if the force points towards the centre of the disc.
     """
     config, points, rig = evidence.config, evidence.points, evidence.rig
     assert rig is not None

@@ -77,9 +77,8 @@ class PathZeros:
     forward: UFloat  #: force rolling forwards, corrected for the sideslip of backlash [N]
     backward: UFloat | None  #: force rolling backwards [N]; None without backward runs
     moment: UFloat | None  #: turn-slip moment [Nm]
-    side_of_play: (
-        float  #: sign of the sideslip that backlash adds to a forward reading of zero; 0 without play
-    )
+    side_of_play: float
+    """Sign of the sideslip that backlash adds to a forward reading of zero; 0 without play."""
 
     @property
     def readings(self) -> tuple[UFloat, ...]:

@@ -79,11 +79,7 @@ def build(
         assert fitted.files is not None
         files = fitted.files.by_use
         trust, left = judged(
-            config,
-            reading.points,
-            measured,
-            fitted,
-            {use: files[use].tyre for use in names},
+            config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
         )
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
@@ -140,12 +136,7 @@ def build(
 
 
 def _fitted(
-    config: Config,
-    reading: Reading,
-    parts: Parts,
-    measured: Measured,
-    base: Tyre | None,
-    progress: Progress,
+    config: Config, reading: Reading, parts: Parts, measured: Measured, base: Tyre | None, progress: Progress
 ) -> tuple[Measured, FitResult]:
     """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
 

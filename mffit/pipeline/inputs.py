@@ -21,12 +21,8 @@ from tir import Tyre
 
 
 def read_points(config: Config, *, continuous: bool = False) -> Reading:
-    """The points of a configuration, refused or warned about if they are not plausible.
-
-    Parameters
-    ----------
-    config : the checked ``tyre.toml``
-    continuous : see :func:`mffit.points.read`
+    """The points of a configuration, refused or warned about if they are not plausible; ``continuous`` as in
+    :func:`mffit.points.read`.
     """
     with formats.reading_once():
         found = points.read(config, continuous=continuous)

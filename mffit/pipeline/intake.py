@@ -66,10 +66,8 @@ def init_from(
 def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:
     """The text of the ``tyre.toml`` for recordings, and what they hold with the doubts that the statements raise.
 
-    Raises
-    ------
-    InputError
-        The pressure is unknown, no axes fit, or the recordings look like those of a disc and nothing is stated about the path.
+    Raises InputError if the pressure is unknown, no axes fit, or the recordings look like those of a disc and nothing is stated
+    about the path.
     """
     _check_recordings(sniffed, stated)
     if stated.disc is None and not stated.belt and (signs := disc_signs(sniffed)):
@@ -124,12 +122,9 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
 
 
 def written_project(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
-    """Write the text of :func:`project_of` with what belongs to it; returns the paths, ``tyre.toml`` first.
+    """Write the text of :func:`project_of` and its other files; returns the paths, ``tyre.toml`` first.
 
-    Raises
-    ------
-    InputError
-        One of the files is there already, or the folder cannot be written to.
+    Raises InputError if one of the files is there already, or the folder cannot be written to.
     """
     pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
     contents = {"tyre.toml": text}

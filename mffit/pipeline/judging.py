@@ -20,15 +20,7 @@ from mffit.measured import Measured, radius_readings
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.rig_errors import error_of
-from mffit.suspicion import (
-    Doubt,
-    FinishedFit,
-    JudgedMeasurement,
-    LeftOutSweeps,
-    Outlier,
-    Trust,
-    judge,
-)
+from mffit.suspicion import Doubt, FinishedFit, JudgedMeasurement, LeftOutSweeps, Outlier, Trust, judge
 from tir import Tyre
 
 

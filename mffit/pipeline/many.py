@@ -153,12 +153,7 @@ def _check_folder(job: Job, others: Sequence[Job], *, given: bool) -> None:
 def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: bool = True) -> bool:
     """Whether ``out`` holds a complete, unedited build of this source, configuration and inputs.
 
-    Parameters
-    ----------
-    config : configuration of the build
-    out : folder of an earlier build; it need not exist
-    ensemble : number of drawn files required; 0 accepts any
-    with_report : whether the report is required
+    ``ensemble`` is the number of drawn files required, 0 accepts any; ``with_report`` requires the report.
     """
     kept = written_by(out, "build")
     try:

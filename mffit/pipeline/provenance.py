@@ -137,16 +137,9 @@ def known_of_model(
 ) -> tuple[Inexactness | None, bool]:
     """The uncertainty of a model's coefficients, None if unknown; and whether the model was fitted to the present sweeps.
 
-    Coefficients fitted to the present sweeps are fitted again; those of a build on other sweeps have that build's posterior.
-    ``model.u_coefficients`` takes precedence over a posterior. A file counts as built only if result.json beside it has the
-    same values, because it may have been edited since.
-
-    Parameters
-    ----------
-    tyre, config : the model and the configuration of the sweeps
-    path : file of the model; None if it was not read from a file
-    same : whether a build fitted it to the present sweeps, see :func:`fitted_to`
-    fresh : whether it was fitted just now
+    Coefficients fitted to the present sweeps (``same``, see :func:`fitted_to`, or ``fresh``: just now) are fitted again; those
+    of a build on other sweeps have that build's posterior. ``model.u_coefficients`` takes precedence over a posterior. A file
+    counts as built only if result.json beside it has the same values, because it may have been edited since.
     """
     posterior = None if path is None else posterior_of(tyre, path)
     if same and (fresh or posterior is not None):

@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import tomli_w
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
 from mffit import fit, planning
 from mffit.config import Config, SweepTable
+from mffit.config.toml_file import toml_text
 from mffit.errors import InputError
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_names, read_base, read_points
 from mffit.pipeline.intake import STRETCHES
-from mffit.pipeline.measuring import alignment_of, measure, spin_of
+from mffit.pipeline.measuring import alignment_of, epsilon_gamma, spin_of
 from mffit.planning import NextRun, next_run, read_goal
 from mffit.planning.goals import EPSILON, FILE
 from mffit.planning.plan import U
@@ -67,14 +67,14 @@ def watch(
     InputError
         At the start: ``tyre.toml`` cannot be read or is wrong. Later its last state counts until it is corrected.
     """
-    watched = Watch(Path(path))
+    watched = _Watch(Path(path))
     while True:
+        (pause or time.sleep)(every)
         found = watched.look()
         if found is not None:
             yield found
-        if once and watched.is_quiet:
+        if once and not watched.waiting:
             return
-        (pause or time.sleep)(every)
 
 
 class _File(NamedTuple):
@@ -86,35 +86,35 @@ class _File(NamedTuple):
     problem: str = ""  #: why it cannot be read
 
 
-class Watch:
-    """A campaign that is looked at again and again."""
+class _Watch:
+    """A campaign that is looked at again and again; what it holds of files was seen at the last look."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.config = configuration.load(path, awaiting=True)
-        self._wrong = self._wrong_before = (
-            ""  #: what is wrong with tyre.toml at this look and at the one before
-        )
-        self._looks = 0
+        self.waiting: tuple[Path, ...] = ()  #: files that are being written
+        self._wrong: tuple[str, str] = ("", "")  #: what was wrong with tyre.toml at the look before, and now
         self._arriving = ArrivingFiles()
         self._files: dict[Path, _File] = {}  #: that rest, those of tyre.toml first
-        self._waiting: tuple[Path, ...] = ()  #: files that are being written
-        self._shown: tuple[Config, str, dict[Path, _File]] | None = (
-            None  #: what the last campaign was made of
-        )
-        self._states: dict[str, tuple[Arrival, Signature]] = {}
+        self._shown: tuple[Config, str, dict[Path, _File]] | None = None
+        """What the last campaign was made of."""
+        self._states: dict[str, tuple[object, ...]] = {}  #: of its files, by their names
         self._said: set[str] = set()
         self._epsilon: Quantity | None = None
-
-    @property
-    def is_quiet(self) -> bool:
-        """Whether the folder was looked at and no file is being written."""
-        return self._shown is not None and not self._waiting
+        self._see()
 
     @formats.reading_once()
     def look(self) -> WatchedCampaign | None:
-        """The campaign if something has changed since the look before, at first at the second look; None otherwise."""
-        self._looks += 1
+        """The campaign if something has changed since the look before; None otherwise."""
+        self._see()
+        shown = self._shown[2] if self._shown else {}
+        rewritten = {path: shown[path] for path in self.waiting if path in shown}  # no news until complete
+        if (self.config, self._lasting_problem, rewritten | self._files) == self._shown:
+            return None
+        self._shown = self.config, self._lasting_problem, self._files
+        return self._campaign()
+
+    def _see(self) -> None:
         self._reload()
         listed = {self.config.folder / entry.file: entry for entry in self.config.sweep}
         paths = [*listed, *self._unlisted(listed)]
@@ -131,30 +131,21 @@ class Watch:
                 self._files[path] = found
             else:
                 waiting.append(path)
-        self._waiting = tuple(waiting)
-        shown = self._shown[2] if self._shown else {}
-        rewritten = {
-            path: shown[path] for path in waiting if path in shown
-        }  # is no news until it is complete
-        now = self.config, self._lasting_problem, rewritten | self._files
-        if self._looks < 2 or now == self._shown:
-            return None
-        self._shown = self.config, self._lasting_problem, self._files
-        return self._campaign()
+        self.waiting = tuple(waiting)
 
     @property
     def _lasting_problem(self) -> str:
         """What is wrong with tyre.toml, unless it is just being saved."""
-        return self._wrong if self._wrong == self._wrong_before else ""
+        return self._wrong[1] if self._wrong[0] == self._wrong[1] else ""
 
     def _reload(self) -> None:
         """Read tyre.toml again; if it is wrong, the one before counts."""
-        self._wrong_before, self._wrong = self._wrong, ""
         try:
             config = configuration.load(self.path, awaiting=True)
         except InputError as error:
-            self._wrong = str(error)
+            self._wrong = self._wrong[1], str(error)
             return
+        self._wrong = self._wrong[1], ""
         if config.model_copy(update={"sweep": self.config.sweep}) != self.config:
             self._files = {}  # read them again: columns or axes may be others
         self.config = config
@@ -174,7 +165,7 @@ class Watch:
         if not self._arriving.rests(path):
             return None
         final = self._arriving.is_final(path)
-        entry = listed or SweepTable(file=relative(path, self.config.folder))
+        entry = listed or SweepTable(file=self._name(path))
         try:
             if not final and ends_within_line(path):
                 return None
@@ -187,7 +178,7 @@ class Watch:
 
     def _recognised(self, path: Path) -> SweepTable:
         """The [[sweep]] of a recording that tyre.toml does not list: as a listed one with these headings, else as recognised."""
-        config, name = self.config, relative(path, self.config.folder)
+        config, name = self.config, self._name(path)
         for known in self._files.values():
             alike = known.listed and known.entry.columns and not known.problem
             if alike and same_headings(path, config.folder / known.entry.file):
@@ -197,38 +188,36 @@ class Watch:
         text = sweeps_text(found, config.folder, config.columns)
         return SweepTable.model_validate(tomllib.loads(text)["sweep"][0])
 
+    def _name(self, path: Path) -> str:
+        return relative(path, self.config.folder)
+
     def _of(self, entries: Iterable[SweepTable]) -> Config:
         """The configuration of some sweeps."""
         return self.config.model_copy(update={"sweep": tuple(entries)})
 
     def _campaign(self) -> WatchedCampaign:
-        taken = {path: file for path, file in self._files.items() if not file.problem}
         refused = {path: file.problem for path, file in self._files.items() if file.problem}
         problem, reading, measured, alignment, planned = self._lasting_problem, None, None, None, None
-        while taken and reading is None:
+        while taken := {path: file.entry for path, file in self._files.items() if path not in refused}:
+            config = self._of(taken.values())
             try:
-                reading = read_points(self._of(file.entry for file in taken.values()))
-            except InputError as error:
-                own = [path for path in taken if error.file is not None and error.file.name == path.name]
-                if not own:
-                    problem = problem or str(error)
-                    break
-                refused[own[0]] = str(error)
-                del taken[own[0]]
-        if reading is not None:
-            config = self._of(file.entry for file in taken.values())
-            try:
+                reading = read_points(config)
                 with threadpool_limits(1):  # the matrices are small: threads cost more than they save
                     measured = spin_of(config, reading)
                     alignment = alignment_of(config, reading.points)
                     planned = next_of(config, reading.points, measured)
             except InputError as error:
+                at_fault = [path for path in taken if error.file is not None and error.file.name == path.name]
+                if reading is None and at_fault:
+                    refused[at_fault[0]] = str(error)
+                    continue
                 problem = problem or str(error)
+            break
         before, self._epsilon = self._epsilon, measured.epsilon_gamma if measured else None
         given = measured.warnings if measured else reading.warnings if reading else ()
         return WatchedCampaign(
             changed=self._changed(reading, refused),
-            taken=tuple(file.entry.file for file in taken.values()),
+            taken=tuple(entry.file for entry in taken.values()),
             awaited=self._awaited(),
             points=0 if reading is None else len(reading.points),
             measured=measured,
@@ -240,29 +229,25 @@ class Watch:
         )
 
     def _changed(self, reading: Reading | None, refused: Mapping[Path, str]) -> tuple[Arrival, ...]:
-        """What became of files since the campaign before."""
-        before, self._states = self._states, {}
+        """What became of files since the campaign before; other numbers in a sentence are no change."""
+        before, self._states, new = self._states, {}, []
         for path, file in self._files.items():
-            name, own = file.entry.file, 0
-            if reading is not None and path not in refused and name in reading.points.files:
+            name, own, why = file.entry.file, 0, refused.get(path, "")
+            if reading is not None and not why and name in reading.points.files:
                 own = int(np.sum(reading.points.file == reading.points.files.index(name)))
-            text = "" if file.listed else _as_toml(file.entry)
-            state = Arrival(name, "refused" if path in refused else "taken", own, refused.get(path, ""), text)
-            self._states[name] = state, file.signature
-        there = {relative(path, self.config.folder) for path in self._waiting}
-        gone = (Arrival(name, "gone") for name in before if name not in self._states and name not in there)
-        new = (
-            now for name, (now, _) in self._states.items() if not _alike(before.get(name), self._states[name])
-        )
-        return (*new, *gone)
+            entry = file.entry.model_dump(mode="json", exclude_defaults=True)
+            text = "" if file.listed else toml_text({"sweep": [entry]}).strip()
+            self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
+            if self._states[name] != before.get(name):
+                new.append(Arrival(name, "refused" if why else "taken", own, why, text))
+        there = {*self._states, *map(self._name, self.waiting)}
+        return (*new, *(Arrival(name, "gone") for name in before if name not in there))
 
     def _awaited(self) -> tuple[str, ...]:
         """Files that are missing or being written."""
         there = {file.entry.file for file in self._files.values()}
         missing = [entry.file for entry in self.config.sweep if entry.file not in there]
-        return tuple(
-            dict.fromkeys([*missing, *(relative(path, self.config.folder) for path in self._waiting)])
-        )
+        return tuple(dict.fromkeys([*missing, *map(self._name, self.waiting)]))
 
     def _not_said(self, warnings: Iterable[str]) -> tuple[str, ...]:
         """Warnings that the campaign before did not have, with whatever numbers."""
@@ -281,10 +266,7 @@ def next_of(config: Config, points: Points, measured: Measured) -> NextRun | Non
     goal = read_goal(EPSILON if on_disc else FILE, on_disc=on_disc)
 
     def direct(points: Points) -> DirectU | None:
-        try:
-            found = measure(config, points, base)[1].epsilon_gamma
-        except InputError:
-            return None
+        found = epsilon_gamma(config, points, base)
         return None if found is None else DirectU(found.u, found.u)
 
     try:
@@ -306,19 +288,3 @@ def next_of(config: Config, points: Points, measured: Measured) -> NextRun | Non
 def _as_listed(known: _File, entry: SweepTable | None) -> bool:
     """Whether a file was read as tyre.toml lists it now, or does not."""
     return known.entry == entry if known.listed or entry is not None else True
-
-
-def _alike(before: tuple[Arrival, Signature] | None, now: tuple[Arrival, Signature]) -> bool:
-    """Whether nothing became of a file but other numbers in its sentence."""
-    if before is None:
-        return False
-    (was, of), (arrival, signature) = before, now
-    same = (was.state, was.points) == (arrival.state, arrival.points) and of == signature
-    return same and NUMBER.sub("0", was.why) == NUMBER.sub("0", arrival.why)
-
-
-def _as_toml(entry: SweepTable) -> str:
-    """The [[sweep]] as it would stand in tyre.toml."""
-    keys = entry.model_dump(mode="json", exclude_defaults=True)
-    columns = {"sweep": {"columns": keys.pop("columns")}} if "columns" in keys else {}
-    return f"[[sweep]]\n{tomli_w.dumps(keys)}{tomli_w.dumps(columns)}".strip()

@@ -70,10 +70,7 @@ def in_processes(wanted: Sequence[Job], jobs: int, build_one: BuildOne) -> Outco
 def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outcomes:
     """Outcomes of builds on a Dask cluster, which repeats the builds of workers that died.
 
-    Raises
-    ------
-    InputError
-        Dask is not installed, or no scheduler answers.
+    Raises InputError if Dask is not installed, or no scheduler answers.
     """
     try:
         from distributed import Client, as_completed

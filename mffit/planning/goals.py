@@ -39,10 +39,7 @@ class Goal:
 def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
     """A goal from its text: ``eps_gamma``, ``bands``, ``file`` or a coefficient's name.
 
-    Raises
-    ------
-    InputError
-        The goal is unknown, needs a disc, needs recordings of steps, or is a coefficient ``held`` by hand.
+    Raises InputError if the goal is unknown, needs a disc, needs recordings of steps, or is a coefficient ``held`` by hand.
     """
     if text in held or (text == JOINT and "PECP1" in held):
         text = "PECP1" if text == JOINT else text

@@ -88,16 +88,8 @@ def plan(
 ) -> Plan:
     """Identifiability by these points, and the runs that lower the goal's uncertainty most.
 
-    Parameters
-    ----------
-    config : declarations of tyre and rig
-    points : the programme so far, with readings
-    measured, found : direct measurement and fit of these points
-    goal : the number whose uncertainty should decrease
-    direct : returns u(eps_gamma) of the direct method for given points
-    most : largest number of runs in the list
-    without : additions that this rig cannot run
-    progress : called with a sentence before each step
+    ``measured`` and ``found`` are direct measurement and fit of the points; ``direct`` returns u(eps_gamma) of the direct
+    method for given points; the list has at most ``most`` runs, ``without`` the additions that this rig cannot run.
     """
     prospect = Prospect(config, points, measured, found, direct)
     u = prospect.u_of(goal)

@@ -87,12 +87,7 @@ class Prospect:
     """
 
     def __init__(
-        self,
-        config: Config,
-        points: Points,
-        measured: Measured,
-        found: FitResult,
-        direct: Direct,
+        self, config: Config, points: Points, measured: Measured, found: FitResult, direct: Direct
     ) -> None:
         assert found.search is not None
         search = found.search

@@ -22,11 +22,7 @@ AVERAGED_CHANNELS = (
     *(f"u_{name}" for name in CHANNELS),
 )
 
-AVERAGED_RANGE = {
-    "alpha": STRAIGHT.rad,
-    "gamma": STRAIGHT.rad,
-    "kappa": float(constants.SLIP),
-}
+AVERAGED_RANGE = {"alpha": STRAIGHT.rad, "gamma": STRAIGHT.rad, "kappa": float(constants.SLIP)}
 """Largest change of each swept setting within one average along a sweep."""
 
 
@@ -54,13 +50,8 @@ def means(
 ) -> Means:
     """Points: means over plateaus, with estimated standard errors if the file states none, and over short blocks of sweeps.
 
-    Parameters
-    ----------
-    sweep : samples (n,) of a recording
-    phi_t : turn slip of the path [1/m]
-    stretches : plateaus and sweeps to average
-    labels : name of the sweep of each stretch
-    faulty : mask (n,) of samples to leave out
+    ``phi_t`` is the turn slip of the path [1/m]; ``labels`` name the sweep of each stretch; samples of the mask ``faulty`` (n,)
+    are left out.
     """
     used = np.zeros(len(sweep), dtype=bool)
     if not stretches:

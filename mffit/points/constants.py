@@ -70,11 +70,7 @@ LARGEST_ORDER_OF_NOISE = Count(
     4, "-", "Autoregressive order: two for noise, two for a ripple such as once per revolution."
 )
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep, and shortest gap in time.")
-NEAR_ZERO = Real(
-    0.25,
-    "-",
-    "Fx over the load below which its curve over slip is nearly straight.",
-)
+NEAR_ZERO = Real(0.25, "-", "Fx over the load below which its curve over slip is nearly straight.")
 
 # Definition of slip
 SLIP_OF_ZERO_FORCE = Real(

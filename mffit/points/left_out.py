@@ -76,14 +76,9 @@ def by_rule(sweep: Sweep, which: np.ndarray, rule: str, why: str) -> tuple[LeftO
 def of_recording(
     sweep: Sweep, wrong: Sequence[Fault], tried: Sequence[Stretch], used: np.ndarray
 ) -> tuple[LeftOut, ...]:
-    """Entries for the samples of a recording that are part of no average, each sample under its first reason.
+    """Entries for the samples (n,) of a recording that are part of no average (mask ``used``), each under its first reason.
 
-    Parameters
-    ----------
-    sweep : the samples (n,)
-    wrong : faults, in the order of their rules
-    tried : all stretches
-    used : mask (n,) of the averaged samples
+    ``wrong`` are faults, in the order of their rules; ``tried`` are all stretches.
     """
     rest = ~used
     out: list[LeftOut] = []

@@ -65,13 +65,7 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     """As :func:`nearest_labels`, but a sweep that holds the setting has one label, that of its median.
 
     The load varies with the forces of a sweep, at small loads by more than the tolerance. Levels are therefore those of the
-    medians of such sweeps.
-
-    Parameters
-    ----------
-    values : (n,)
-    sweep : (n,) index of each value's sweep
-    kind : kind of the setting
+    medians of such sweeps. ``sweep`` (n,) is the index of each value's sweep.
     """
     held = np.array(values, dtype=float)
     scaled = in_tolerances(values, kind)

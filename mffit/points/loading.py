@@ -54,29 +54,13 @@ def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str
 
 
 def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False) -> Reading:
-    """The sweeps of a configuration as points in ISO-W axes.
+    """The sweeps of a checked ``tyre.toml`` as points in ISO-W axes; :func:`mffit.suspicion.before_the_fit` judges them.
 
-    Parameters
-    ----------
-    config : the checked ``tyre.toml``
-    continuous : keep the means along sweeps that never rest, marked ``continuous``, with the angle as read; and keep an
-        undeclared zero of the longitudinal slip in the readings
-    may_be_empty : return no points instead of raising an error if no recording gives one
+    On a straight path the means along continuous sweeps are points like any others, with their times, because the fit models
+    the lag of the force. On a disc, which needs pairs of steady points, they are left out, unless ``continuous``: they are then
+    kept, marked so, with the angle as read, and an undeclared zero of the longitudinal slip stays in the readings.
 
-    Returns
-    -------
-    Reading
-        On a straight path the means along continuous sweeps are points like any others, with their times, because the fit models
-        the lag of the force. On a disc, which needs pairs of steady points, they are left out.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or no point is found.
-
-    Notes
-    -----
-    :func:`mffit.suspicion.before_the_fit` judges whether the points are plausible.
+    Raises InputError if a file cannot be read, or no point is found and the result must not be empty (``may_be_empty``).
     """
     with as_declared(config):
         found = files.load(config)
@@ -166,22 +150,12 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
 
 
 def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:
-    """Points of a table without ``tyre.toml``, for the alignment of the sideslip axis.
+    """Points of a table without ``tyre.toml``, with the headings of docs/files.md, for the alignment of the sideslip axis.
 
-    Parameters
-    ----------
-    path : file with the headings of docs/files.md
-    axes : "iso", "sae" or "adapted-sae"
-    path_centre : "left" or "right"; the radius is unknown, so phi_t is -1 or 1 and only its sign has a meaning
+    ``axes`` are "iso", "sae" or "adapted-sae", ``path_centre`` "left" or "right"; the radius is unknown, so phi_t is -1 or 1
+    and only its sign has a meaning. A continuous sweep has no zero points and is left out.
 
-    Raises
-    ------
-    InputError
-        ``axes`` or ``path_centre`` is not given, or the file cannot be read.
-
-    Notes
-    -----
-    A continuous sweep has no zero points and is left out.
+    Raises InputError if ``axes`` or ``path_centre`` is not given, or the file cannot be read.
     """
     rig = {
         "axes": _given("axes", axes, tuple(FLIPPED), path),

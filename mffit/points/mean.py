@@ -41,19 +41,10 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def mean_and_error(x: np.ndarray) -> tuple[float, float]:
-    """Mean of a stationary series (n,) and its standard error, autocorrelation included.
+    """Mean of a stationary series (n,) of equidistant samples and its standard error, autocorrelation included.
 
-    Parameters
-    ----------
-    x : (n,) equidistant samples; NaN anywhere gives NaN
+    NaN anywhere gives NaN. The error of a constant series is 0, of fewer than two samples NaN.
 
-    Returns
-    -------
-    mean, error
-        The error of a constant series is 0, of fewer than two samples NaN.
-
-    Notes
-    -----
     Var(mean) = g sigma^2 / n, where g, the statistical inefficiency, is the number of samples that count as one. g is the
     spectral density at zero frequency of an autoregressive process, e / (1 - sum a_k)^2 over sigma^2, with coefficients from
     Burg's recursion and the order from the Bayesian information criterion. Windowing the autocorrelation function would need

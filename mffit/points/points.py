@@ -143,28 +143,14 @@ def make_points(
     table: pd.DataFrame | None = None,
     **fields: Any,
 ) -> Points:
-    """Points from arrays or scalars in ISO-W and SI.
+    """Points from arrays or scalars in ISO-W and SI, broadcast to the common length (n,).
 
-    Parameters
-    ----------
-    alpha, gamma : scalar or (n,) [rad]
-    Fz : scalar or (n,) load, positive [N]
-    sweep_names, files, setups : names that the fields ``sweep``, ``file`` and ``setup`` count
-    table : input columns as reported, (n,) rows; empty if not given
-    fields : other fields of :class:`Points`, scalar or (n,); ``p``, ``V`` and ``phi_t`` are required, the others are
-        optional (``OPTIONAL`` has their defaults)
+    ``sweep_names``, ``files`` and ``setups`` are the names that the fields ``sweep``, ``file`` and ``setup`` count; ``table``
+    has the input columns as reported. Of the other ``fields`` of :class:`Points`, ``p``, ``V`` and ``phi_t`` are required;
+    ``OPTIONAL`` has the defaults of the others.
 
-    Returns
-    -------
-    Points
-        All arrays broadcast to the common length.
-
-    Raises
-    ------
-    TypeError
-        A required field is missing, or a field is unknown.
-    ValueError
-        Lengths disagree, or ``direction`` or ``mount`` is neither +1 nor -1.
+    Raises TypeError if a required field is missing, or a field is unknown; ValueError if lengths disagree, or ``direction`` or
+    ``mount`` is neither +1 nor -1.
     """
     given = {**OPTIONAL, "alpha": alpha, "gamma": gamma, "Fz": Fz, **fields}
     if missing := [name for name in ARRAYS if name not in given]:

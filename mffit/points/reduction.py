@@ -32,10 +32,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     Every moving stretch is a sweep of its own. ``phi_t`` is the turn slip of the path [1/m]; ``scale`` is the usual size of the
     settings in all series of the campaign, to judge changes (None: that of this series).
 
-    Raises
-    ------
-    InputError
-        The time of a series does not rise.
+    Raises InputError if the time of a series does not rise.
     """
     if not sweep.is_series:
         lost = driven(sweep)

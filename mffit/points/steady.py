@@ -54,20 +54,12 @@ def stretches(
     cuts: Sequence[int] = (),
     scale: Scale | None = None,
 ) -> list[Stretch]:
-    """The stretches of a series in time order, transients included.
+    """The stretches of a series in time order: plateaus, where all settings rest; sweeps, where one angle or the slip moves
+    through its range and all else rests; and moves, which are neither, with the reason, such as the change of an angle
+    between plateaus.
 
-    Parameters
-    ----------
-    settings : settings of one series
-    point : (n,) label of the point of every sample, "" between points; None: the settings decide
-    cuts : samples at which a new stretch begins, in addition to gaps in time
-    scale : usual size of each setting in the whole campaign; if None, that of this series
-
-    Returns
-    -------
-    list of Stretch
-        Plateaus, where all settings rest; sweeps, where one angle or the slip moves through its range and all else rests; and
-        moves, which are neither, with the reason, such as the change of an angle between two plateaus.
+    ``point`` (n,) is the label of the point of every sample, "" between points; None: the settings decide. A stretch begins at
+    the samples ``cuts``, too. ``scale`` is the usual size of each setting in the whole campaign; None: that of this series.
     """
     n = len(settings.time)
     if point is not None:

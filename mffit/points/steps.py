@@ -39,14 +39,8 @@ def steps(
 ) -> dict[str, Points]:
     """By stepped setting, the samples of all runs of steps between held values, with each run as a sweep with times.
 
-    Settings without steps have no entry.
-
-    Parameters
-    ----------
-    sweeps : files of the campaign
-    phi_t : turn slip of the path [1/m], by file
-    radius : unloaded radius [m], the scale of relaxation lengths
-    scale : usual size of the settings in the campaign
+    Settings without steps have no entry. ``phi_t`` is the turn slip of the path [1/m] by file; ``radius`` is the unloaded
+    radius [m], the scale of relaxation lengths.
     """
     found: dict[str, list[Points]] = {}
     for sweep in sweeps:

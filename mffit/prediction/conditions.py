@@ -29,10 +29,7 @@ UNITS = {**{name: CONDITIONS[name].unit for name in (*REQUIRED, *OPTIONAL) if na
 def read_conditions(path: Path) -> pd.DataFrame:
     """The conditions (n,) of a file, in its order and in the units of the column names; other columns are kept unchanged.
 
-    Raises
-    ------
-    InputError
-        A required column is missing, or a value is not a number or is impossible; names file, line and column.
+    Raises InputError if a required column is missing, or a value is not a number or is impossible; names file, line and column.
     """
     raw = read(path)
     return checked(pd.DataFrame({heading: raw.column(heading) for heading in raw.headings}), raw)
@@ -41,15 +38,7 @@ def read_conditions(path: Path) -> pd.DataFrame:
 def checked(table: pd.DataFrame, raw: RawTable | None = None) -> pd.DataFrame:
     """The table with numbers in the columns that a prediction uses; required columns are finite.
 
-    Parameters
-    ----------
-    table : conditions (n,)
-    raw : the file of the table, which may state units
-
-    Raises
-    ------
-    InputError
-        As :func:`read_conditions`.
+    ``raw`` is the file of the table, which may state units. Raises as :func:`read_conditions`.
     """
     file, line = (None, None) if raw is None else (raw.path, raw.heading_line)
     missing = [name for name in REQUIRED if name not in table]

@@ -48,14 +48,9 @@ class MissedChannel:
         """The model error (n,), the variance of the tyre's force (n,), and the variance of a reading of it (n,).
 
         The estimate keeps the file's coefficients, so it is 0 where the formula describes the tyre exactly; errors of the
-        coefficients count in the variance.
-
-        Parameters
-        ----------
-        settings : (n, d) conditions
-        slopes : (n, k) derivatives of the force by coefficients and calibrations
-        path : (n,) correlation of the model error with that on the measured path
-        of_tyre : (k,) mask of the coefficients among the k numbers
+        coefficients count in the variance. ``slopes`` (n, k) are derivatives of the force at the conditions ``settings`` (n,
+        d), ``path`` (n,) is the correlation of the model error with that on the measured path, ``of_tyre`` (k,) the mask of the
+        coefficients.
         """
         likeness, functions = self._functions(settings, path)
         of_functions, of_numbers = np.split(self.root, [len(self.missed)])
@@ -96,9 +91,8 @@ class Predictor:
     path: float  #: path curvature of most readings [1/m], the default of predictions; 0 on a flat track
     names: tuple[str, ...]  #: (k,) names of the uncertain coefficients and of the rig's calibrations
     channels: Mapping[str, MissedChannel]
-    zeros: Mapping[
-        str, float
-    ]  #: fitted zeros of the rig, each the largest of all set-ups; they are part of a reading
+    zeros: Mapping[str, float]
+    """Fitted zeros of the rig, each the largest of all set-ups; they are part of a reading."""
     beside: Mapping[str, float]  #: effects of the tyre for which a property file has no coefficient
 
     @property
@@ -109,20 +103,12 @@ class Predictor:
     def predict(
         self, tyre: Tyre, fitted: Tyre, conditions: pd.DataFrame, channels: Iterable[str] | None = None
     ) -> pd.DataFrame:
-        """The conditions with the forces of the file and the best estimates, all with standard uncertainties.
+        """The conditions with the forces of the file and the best estimates, all with standard uncertainties; ISO-W axes.
 
-        Parameters
-        ----------
-        tyre : the plain file of the build
-        fitted : the file of the fitted model; on a disc it differs from a plain file for turn slip off
-        conditions : columns ``alpha_deg``, ``gamma_deg`` and ``Fz_N``; other columns of a sweep and ``phi_t_per_m`` are
-            optional. ISO-W axes.
-        channels : channels to predict; all fitted ones if None
-
-        Returns
-        -------
-        DataFrame
-            The conditions, and for each channel, here Fy: ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``, ``u_Fy_run_N``.
+        ``tyre`` is the plain file of the build, ``fitted`` that of the fitted model; on a disc it differs from a plain file for
+        turn slip off. Of the conditions, ``alpha_deg``, ``gamma_deg`` and ``Fz_N`` are required, other columns of a sweep and
+        ``phi_t_per_m`` optional. Each channel, here Fy, gets ``Fy_N``, ``u_Fy_N``, ``Fy_best_N``, ``u_Fy_best_N``,
+        ``u_Fy_run_N``.
         """
         points = self.points(tyre, conditions)
         plain = Simulation.of(tyre, turn_slip=tyre.turn_slip)
@@ -233,14 +219,9 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
 def predictor(
     points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
 ) -> Predictor:
-    """The predictor of a build.
+    """The predictor of a build, from the linear model of its residuals and the fitted rig errors.
 
-    Parameters
-    ----------
-    points : points of the build
-    left : linear model of the fitted model's residuals
-    rig : fitted rig errors
-    known : rig errors to take as exactly known, to find how much they widen the bands
+    Rig errors ``known`` are taken as exact, to find how much they widen the bands.
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():

@@ -64,14 +64,10 @@ class _Seen(NamedTuple):
 def missed_at_readings(
     known: Predictor, fitted: Tyre, points: Points, model: Readings, proven: Collection[str]
 ) -> dict[str, MissedAtReadings]:
-    """By channel, the model error at the readings and the region of the largest one.
+    """By channel, the model error at the readings and the region of the largest one, for channels with a ``proven`` one.
 
-    Parameters
-    ----------
-    known : predictor of the ``fitted`` file
-    points : the readings (n,)
-    model : readings of the fitted model at the points, rig errors included
-    proven : channels with a proven model error
+    ``known`` is the predictor of the ``fitted`` file; ``model`` has the fitted model's readings at the points, rig errors
+    included.
     """
     swept = set(swept_of(points, inputs_of(points)).values())
     level = {

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 from mffit.recordings import constants
 from mffit.sweeps import formats
 
 BINARY = (".gz", ".mat", ".xlsx", ".xlsm", ".parquet")
 """Endings of files whose reader refuses a part of one."""
-
-
-class Signature(NamedTuple):
-    """What changes when a file is written."""
-
-    size: int
-    modified: int  #: [ns]
+Signature = tuple[int, int]
+"""Size and time [ns] of a file, which change when it is written."""
 
 
 class ArrivingFiles:
@@ -36,7 +30,7 @@ class ArrivingFiles:
                 stat = path.stat()
             except OSError:
                 continue
-            signature = Signature(stat.st_size, stat.st_mtime_ns)
+            signature = stat.st_size, stat.st_mtime_ns
             old, looks = before.get(path, (None, 0))
             self._now[path] = (signature, looks + 1 if signature == old else 0)
             if path in self._taken and signature != old:

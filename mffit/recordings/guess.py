@@ -55,13 +55,7 @@ class Guesses(NamedTuple):
 
 
 def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
-    """The guessed channels of a file, and remarks.
-
-    Parameters
-    ----------
-    raw : the file's cells
-    unloaded_radius : [m], to check the speed of rotation; None if it is not known
-    """
+    """The guessed channels of a file, and remarks; the unloaded radius [m], if known, checks the speed of rotation."""
     columns = _number_columns(raw)
     slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)

@@ -55,9 +55,8 @@ class Stated(NamedTuple):
     nominal_load: float | None = None  #: [N]
     nominal_pressure: float | None = None  #: [kPa]; else the most frequent pressure
     nominal_speed: float | None = None  #: [m/s]; else the most frequent speed
-    name: str | None = (
-        None  #: of the output files; else the name of the recording, or of the folder for several
-    )
+    name: str | None = None
+    """Of the output files; else the name of the recording, or of the folder for several."""
     size: str | None = None
     width: float | None = None  #: [m]; else from the size
     rim_radius: float | None = None  #: [m]; else from the size

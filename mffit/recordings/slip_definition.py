@@ -19,11 +19,7 @@ def slip_definition(
 ) -> tuple[Guess | None, tuple[str, ...]]:
     """The column to take as slip, None without any, and remarks; it is the column whose slip at Fx = 0 is closest to zero.
 
-    Parameters
-    ----------
-    candidates : columns with a heading of slip
-    found : columns of the other channels
-    unit_of : unit of the readings of a channel, by its name
+    ``candidates`` are columns with a heading of slip, ``found`` those of the other channels, whose units ``unit_of`` gives.
     """
     remarks, judged = [], []
     for column in candidates:

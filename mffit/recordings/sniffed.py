@@ -77,9 +77,8 @@ class Sniffed:
     axes: tuple[str, ...]  #: axes that agree with physics, those of ``reading`` first; empty if none agrees
     wrong: tuple[str, ...]  #: contradictions with physics under the axes tried first
     reading: Reading  #: points and stretches under the likeliest axes
-    conditions: dict[
-        str, tuple[Level, ...]
-    ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
+    conditions: dict[str, tuple[Level, ...]]
+    """Levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]."""
 
     of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
@@ -140,10 +139,7 @@ def sniff(
 def files_of(path: str | Path) -> list[Path]:
     """The file of this name, or the files that match this pattern, sorted by name.
 
-    Raises
-    ------
-    InputError
-        No file matches, the name is that of a folder, or there is no such file.
+    Raises InputError if no file matches, the name is that of a folder, or there is no such file.
     """
     if is_pattern(str(path), Path()):
         found = matches(str(path), Path())
@@ -244,15 +240,11 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Seq
 
 
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The axes under which the points behave like a tyre, and contradictions under the declared axes.
+    """The axes under which the points behave like a tyre, and contradictions under the ``declared`` axes, under which they were
+    read.
 
-    The declared axes come first. If axes that a file format prescribes are among them, only these are returned.
-
-    Parameters
-    ----------
-    points : read under ``declared``
-    declared : axes
-    load_falls : whether the load is reported as a negative force; axes with positive load are then skipped
+    The declared axes come first. If axes that a file format prescribes are among them, only these are returned. If the load is
+    reported as a negative force (``load_falls``), axes with positive load are skipped.
     """
     agreeing = []
     for axes in (declared, *(axes for axes in FLIPPED if axes != declared)):

@@ -40,9 +40,8 @@ class Guess(NamedTuple):
     upper: float = np.nan
     why: str = ""  #: reason for the unit, if neither the file nor the heading states it
     scale: float = 1.0  #: -1 if the file has the opposite sign
-    against: str | None = (
-        None  #: reference radius of longitudinal slip; None for other channels, or if unknown
-    )
+    against: str | None = None
+    """Reference radius of longitudinal slip; None for other channels, or if unknown."""
 
     @property
     def unit_of_readings(self) -> str:
@@ -123,13 +122,7 @@ AMERICAN = frozenset(
 def choices(
     found: Mapping[str, FoundChannel], radius: float | None
 ) -> tuple[dict[str, Choice], dict[str, str], list[str]]:
-    """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units.
-
-    Parameters
-    ----------
-    found : columns of numbers by channel
-    radius : unloaded [m]; None if it is not known
-    """
+    """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units."""
     chosen: dict[str, Choice] = {}
     for kind in KINDS:
         for group in _groups(kind, found):

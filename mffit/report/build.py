@@ -15,16 +15,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
 from mffit.report.build_view import PER_LOAD, BuildView, CoefficientRow, view_of
 from mffit.report.catalogue import Picture
-from mffit.report.figures import (
-    bands,
-    decomposition,
-    fit,
-    missed,
-    radii,
-    residuals,
-    slip,
-    spin,
-)
+from mffit.report.figures import bands, decomposition, fit, missed, radii, residuals, slip, spin
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS

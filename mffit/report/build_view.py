@@ -93,9 +93,8 @@ class BuildView(Overlay):
     """A build, and what its pictures draw."""
 
     build: BuildResult
-    felt: (
-        Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
-    )
+    felt: Points
+    """As the tyre felt them, less the errors of the rig, where slip was run; else the same points."""
     conditions: tuple[CurveCondition, ...]
     rows: tuple[CoefficientRow, ...]
     file_names: Mapping[str, str]  #: by use

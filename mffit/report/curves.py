@@ -167,15 +167,7 @@ class CurveLine:
 def model_lines(
     simulation: Simulation, points: Points, curves: Sequence[Curve], channels: Iterable[str] = SIDEWAYS
 ) -> dict[Curve, CurveLine]:
-    """A line per curve, at the curve's median load, pressure, speed and held angle.
-
-    Parameters
-    ----------
-    simulation : the model on the rig, with the errors of the rig
-    points : the measured points (n,), angles as read
-    curves : rows of the points that belong together
-    channels : those to compute
-    """
+    """A line per curve, at the curve's median load, pressure, speed and held angle; the simulation has the errors of the rig."""
     if not curves:
         return {}
     grid = _along_curves(points, curves)

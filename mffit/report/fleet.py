@@ -117,14 +117,7 @@ def headline(found: Fleet) -> str:
 
 
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
-    """Write ``plots/*.png`` and ``fleet.html``.
-
-    Parameters
-    ----------
-    found : the record
-    folder : existing folder to write to
-    priors : whether the folder holds ``priors.json``
-    """
+    """Write ``plots/*.png`` and ``fleet.html`` to an existing folder; ``priors``: whether it holds ``priors.json``."""
     estimates = {key: words for key, words in EPSILON.items() if any(found.numbers(key))}
     page.write(
         "fleet.html.j2",

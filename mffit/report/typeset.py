@@ -65,11 +65,8 @@ def sentence(text: str) -> str:
 
 
 def page(html: str) -> str:
-    """The page with its text typeset, except for verbatim elements.
-
-    Parameters
-    ----------
-    html : well-formed HTML, in which ``<`` and ``>`` outside of tags are escaped
+    """The page, well-formed HTML with ``<`` and ``>`` escaped outside of tags, with its text typeset except for verbatim
+    elements.
     """
     return TABLE.sub(_stacked, _typeset(html))
 

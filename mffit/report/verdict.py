@@ -10,11 +10,7 @@ from mffit.results import BuildResult
 from mffit.rounding import number, stated, times
 from tir import Quantity
 
-JUDGED = {
-    "distrusted": "NOT TO BE TRUSTED",
-    "doubted": "in doubt",
-    "sound": "sound",
-}
+JUDGED = {"distrusted": "NOT TO BE TRUSTED", "doubted": "in doubt", "sound": "sound"}
 FOR = {
     "turn-slip": "simulators that compute turn slip (USE_MODE {mode:.0f})",
     "normal": "simulators without turn slip (USE_MODE {mode:.0f}); this one if you do not know",
@@ -62,11 +58,7 @@ def headlines(result: BuildResult) -> list[Headline]:
     tyre = result.tyres[result.fitted]
     load = float(tyre["FNOMIN"])
     of_model = characteristics(
-        tyre,
-        load,
-        turn_slip=result.on_disc,
-        known=result.fit.posterior,
-        predictor=result.prediction,
+        tyre, load, turn_slip=result.on_disc, known=result.fit.posterior, predictor=result.prediction
     )
     fitted = {name for name, a in result.fit.channels.items() if a.n}
     found += [

@@ -33,9 +33,7 @@ class WatchedCampaign(Brief):
     measured: Measured | None  #: as by ``mffit spin``; None without points that it can use
     before: Quantity | None  #: eps_gamma before the change
     alignment: Alignment | None  #: as by ``mffit align``; None without zeros both ways
-    next_run: (
-        NextRun | None
-    )  #: that lowers the uncertainty most; None if no run does, or if it is not known yet
+    next_run: NextRun | None  #: None if no run lowers the uncertainty, or if it is not known yet
     warnings: tuple[str, ...]  #: that were not given before
     problem: str  #: why ``tyre.toml`` or all files together cannot be used; empty if they can
 

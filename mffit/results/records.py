@@ -34,9 +34,8 @@ class BuildResult(Brief):
     parts: Parts
     measured: Measured
     fit: FitResult
-    files: Mapping[
-        str, str
-    ]  #: name of each file by use, "turn-slip" or "normal"; "temperature": that at one temperature
+    files: Mapping[str, str]
+    """Name of each file by use, "turn-slip" or "normal"; "temperature": that at one temperature."""
     tyres: Mapping[str, Tyre]  #: the tyre of each file, by use
     plain: str  #: the use whose file has the plain name
     warnings: tuple[str, ...]

@@ -214,10 +214,7 @@ class Chain:
 
     def _tyre(self, wanted: tuple[str, ...], alpha: Any, rows: np.ndarray | None = None) -> list[Any]:
         """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad], for all or some rows."""
-        conditions = {
-            **{name: self._quantities[name] for name in self._conditions},
-            "Vx": self.points.Vx,
-        }
+        conditions = {**{name: self._quantities[name] for name in self._conditions}, "Vx": self.points.Vx}
         p = self._coefficients
         if rows is not None:
             conditions, p = ({k: _of_rows(v, rows) for k, v in each.items()} for each in (conditions, p))

@@ -57,16 +57,9 @@ def lag_of_move(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Change of the lag (n,) if a move between two samples is abrupt instead of linear, and its two derivatives.
 
-    The derivatives are by the relaxation length [1/m] and by the share. An abrupt move at share u of the distance d leaves the
-    lag exp(-(1 - u) q) with q = d/sigma, a linear one (1 - exp(-q))/q, which is the mean over u.
-
-    Parameters
-    ----------
-    row : index of the sample before the move
-    moved : size of the move [rad or -]
-    rolled : (n,) distance rolled at every sample [m]
-    sigma : relaxation length [m]
-    share : position of the move between the two samples, from 0 to 1
+    The derivatives are by the relaxation length ``sigma`` [m] and by the share. An abrupt move at share u of the distance d
+    leaves the lag exp(-(1 - u) q) with q = d/sigma, a linear one (1 - exp(-q))/q, which is the mean over u. ``row`` is the
+    index of the sample before the move, ``moved`` its size [rad or -], ``rolled`` (n,) the distance at every sample [m].
     """
     out = np.zeros((3, len(rolled)))
     q = (rolled[row + 1] - rolled[row]) / sigma

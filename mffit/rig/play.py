@@ -20,13 +20,9 @@ class Settled(NamedTuple):
 
 
 def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_play: float) -> Settled:
-    """The rest positions of a wheel that can turn by ``half_play`` to either side of ``alpha``.
+    """The rest positions of a wheel that can turn by ``half_play`` [rad] to either side of ``alpha`` (n,) [rad].
 
-    Parameters
-    ----------
-    moment_of : takes indices (m,) of conditions and returns their moment; a positive one turns the wheel to smaller sideslip
-    alpha : (n,) sideslip angle in the middle of the play [rad]
-    half_play : half of the play [rad]
+    ``moment_of`` returns the moment of conditions by their indices (m,); a positive one turns the wheel to smaller sideslip.
     """
     n = len(alpha)
     both = moment_of(np.tile(np.arange(n), 2))  # both stops in one call, because calls are expensive

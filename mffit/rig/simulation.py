@@ -81,17 +81,8 @@ class Simulation(Brief):
         return replace(self, faults=Faults(**own), of_parts={})
 
     def readings(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
-        """The simulated readings at every point.
-
-        Parameters
-        ----------
-        points : set-points (n,): angles as read, slip, load, pressure, speed, direction, mount and path curvature
-        channels : channels to compute
-
-        Returns
-        -------
-        Readings
-            In ISO-W axes, contact frame, rig-fixed also when rolling backwards.
+        """The readings of some channels at every point (n,), in ISO-W axes, contact frame, rig-fixed also when rolling
+        backwards.
         """
         return self.sensitivities(points, (), channels)[0]
 

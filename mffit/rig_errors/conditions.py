@@ -21,11 +21,7 @@ CAMBER_GAIN = calibration(
     slopes=lambda at: Slopes(C_gamma=1.0),
 )
 LOAD_GAIN = calibration(
-    "Fz",
-    "gain_Fz",
-    "true load = gain_Fz times the reading",
-    place=Place.LOAD,
-    slopes=lambda at: at.over_load,
+    "Fz", "gain_Fz", "true load = gain_Fz times the reading", place=Place.LOAD, slopes=lambda at: at.over_load
 )
 CAMBER_ZERO = _of_camber(
     name="gamma_0_deg",
@@ -164,13 +160,7 @@ PATH_RADIUS = RigError(
             remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
         ),
     ),
-    declared=Declared(
-        key="u_path_radius",
-        unit="m",
-        default=None,
-        source="path radius",
-        value="radius",
-    ),
+    declared=Declared(key="u_path_radius", unit="m", default=None, source="path radius", value="radius"),
 )
 CROWN = RigError(
     name="crown_m",

@@ -7,14 +7,7 @@ from functools import partial
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import (
-    Appearance,
-    Declared,
-    Place,
-    RigError,
-    Slopes,
-    calibration,
-)
+from mffit.rig_errors.record import Appearance, Declared, Place, RigError, Slopes, calibration
 
 _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 _zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)

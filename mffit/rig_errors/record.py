@@ -59,9 +59,8 @@ class AtLoad(NamedTuple):
     over_load: Slopes  #: relative change per relative change of load
     by_moment: Slopes  #: relative change per unit of steering compliance [rad/Nm]
     load_of_camber: float  #: load over camber stiffness [rad]; 0 if this was not measured
-    spin_of_camber: (
-        float  #: turn-slip force times turn slip over camber stiffness [1/m]; 0 if one was not measured
-    )
+    spin_of_camber: float
+    """Turn-slip force times turn slip over camber stiffness [1/m]; 0 if one was not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,9 +77,8 @@ class Declared:
     source: str  #: name in the uncertainty budget
     value: str = ""  #: attribute of RigTable with the declared value; empty: the undisturbed value
     force_at_zero: Callable[[Any, AtZero], Any] | None = None  #: contribution to the force at zero angles [N]
-    camber_stiffness: Callable[[Any, AtZero], Any] | None = (
-        None  #: to the slope over camber, forwards [N/rad]
-    )
+    camber_stiffness: Callable[[Any, AtZero], Any] | None = None
+    """To the slope over camber, forwards [N/rad]."""
     turns_with_direction: bool = False  #: whether the force changes sign with the direction of rolling
     calibrates: Callable[[AtLoad], Slopes] | None = None
     """Relative change of the readings per unit of the error; None if it is not multiplicative."""
@@ -126,9 +124,8 @@ class RigError:
     of_setup: bool = False  #: whether it differs from set-up to set-up, as a zero does
     seen_as: tuple[Appearance, ...] = ()
     word: str = ""  #: words for the number in sentences; default: the name of the first appearance
-    shown_in: tuple[str, float] | None = (
-        None  #: unit for display, and the factor to it; default: its own unit
-    )
+    shown_in: tuple[str, float] | None = None
+    """Unit for display, and the factor to it; default: its own unit."""
     declared: Declared | None = None
 
     @property

@@ -127,10 +127,7 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
     """Signs of the angles on a disc, where turn slip is separated by mirror symmetry."""
     if not config.rig.on_disc:
         return
-    for column, values, zero in (
-        ("alpha_deg", points.alpha, STRAIGHT),
-        ("gamma_deg", points.gamma, UPRIGHT),
-    ):
+    for column, values, zero in (("alpha_deg", points.alpha, STRAIGHT), ("gamma_deg", points.gamma, UPRIGHT)):
         degrees = np.degrees(values)
         if (degrees.max() > zero) != (degrees.min() < -zero):
             facts = {"smallest": degrees.min(), "largest": degrees.max()}

@@ -10,11 +10,7 @@ SIDESLIP_OF_SLOPES = Real(
     "deg",
     "Sideslip up to which side force and aligning moment count as linear, and from which every tyre has a force.",
 )
-FEWEST = Count(
-    4,
-    "-",
-    "Fewest readings, or sweeps, that show something: a slope, a copy, which one is odd.",
-)
+FEWEST = Count(4, "-", "Fewest readings, or sweeps, that show something: a slope, a copy, which one is odd.")
 WEAK_TURN_SLIP_FORCE = Real(0.01, "-", "A smaller turn-slip force over the load has no direction.")
 STEEPEST_CAMBER_STIFFNESS = Real(
     -1.9, "1/rad", "Steepest camber stiffness over load of any tyre; a wrong frame changes it by 1."
@@ -35,9 +31,7 @@ RADIUS_OF_ANOTHER_TYRE = Real(
     "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
 )
 SMALLEST_RADIUS = Real(
-    0.75,
-    "-",
-    "Loaded or rolling over unloaded radius of a flat tyre: the rim is at 0.6 to 0.7.",
+    0.75, "-", "Loaded or rolling over unloaded radius of a flat tyre: the rim is at 0.6 to 0.7."
 )
 BEYOND_NOMINAL = Real(
     3.0,
@@ -68,9 +62,7 @@ SHARE_OF_WORST_POINTS = Real(
 )
 GROSS_SHARE = Real(0.1, "-", "Error from which known mistakes are tried.")
 IMPLAUSIBLE_SHARE = Real(
-    0.5,
-    "-",
-    "Error that is refused without a known mistake, and that undoing one must not leave.",
+    0.5, "-", "Error that is refused without a known mistake, and that undoing one must not leave."
 )
 MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which the fit is repeated.")
 

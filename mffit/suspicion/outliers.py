@@ -39,12 +39,8 @@ def outliers(
 ) -> tuple[Outlier, ...]:
     """The readings to which the fit gave zero weight, in the order of the points.
 
-    Parameters
-    ----------
-    points : (n,)
-    stated : by channel, uncertainty (n,); inf where not measured
-    weights : by channel, uncertainty (n,) that the last fit used; inf for outliers
-    model : by channel, readings of the fitted model (n,)
+    By channel, ``stated`` has the uncertainty (n,), inf where not measured, ``weights`` the one that the last fit used, inf for
+    outliers, and ``model`` the readings of the fitted model (n,).
     """
     out = []
     for name, u in stated.items():

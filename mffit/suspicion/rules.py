@@ -12,15 +12,7 @@ from mffit.config import Config
 from mffit.config.loading import as_declared
 from mffit.points import Points
 from mffit.points.faulty import FAULTS
-from mffit.suspicion import (
-    all_files,
-    declarations,
-    other_tyre,
-    others,
-    single_files,
-    slopes,
-    trust,
-)
+from mffit.suspicion import all_files, declarations, other_tyre, others, single_files, slopes, trust
 from mffit.suspicion.misread import misread_sweep
 from mffit.suspicion.outliers import OUTLYING
 from mffit.suspicion.reversals import TURNING
@@ -74,10 +66,7 @@ def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
 
     Driven and braked points are not judged if there are free-rolling ones, nor, on a disc, the samples of moving sweeps.
 
-    Raises
-    ------
-    InputError
-        The points contradict every tyre or the declaration, or lack points that a disc needs.
+    Raises InputError if the points contradict every tyre or the declaration, or lack points that a disc needs.
     """
     judged = points.select(~points.continuous) if config.rig.on_disc else points
     if np.any(judged.free_rolling) and not np.all(judged.free_rolling):

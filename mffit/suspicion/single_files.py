@@ -26,10 +26,7 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 """Signs of the rig's axes; these checks use sizes only, so all are +1."""
 
 
-@rule_of_files(
-    id="dead-channel",
-    sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
-)
+@rule_of_files(id="dead-channel", sentence="is {reading:g} in every row, so the channel was dead; {remedy}")
 def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
     """Mz and Fy that are the same in every row although the angles change."""
     if len(part) < constants.FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
@@ -150,10 +147,7 @@ def impossible(part: Points, config: Config) -> list[Impossible]:
     return [found for test in IMPOSSIBLE for found in test(part, config)]
 
 
-@rule_of_files(
-    id="impossible-file",
-    sentence="{said}; {looks}",
-)
+@rule_of_files(id="impossible-file", sentence="{said}; {looks}")
 def impossible_file(part: Points, config: Config) -> Iterator[Finding]:
     """Pressure over the nominal one, slopes of Fy over the angles, Fy, Mz and Mx over load; as read and without each mistake."""
     found = impossible(part, config)

@@ -155,13 +155,7 @@ def _sign(slope: str, sign: int, column: str, told: str, looks_at: str, id: str)
         if getattr(found, slope).sign == sign:
             yield Finding({}, column=column)
 
-    return Rule(
-        id=id,
-        looks_at=looks_at,
-        outcome=Outcome.CONTRADICTION,
-        sentence=told,
-        find=find,
-    )
+    return Rule(id=id, looks_at=looks_at, outcome=Outcome.CONTRADICTION, sentence=told, find=find)
 
 
 def contradictions(found: Signatures) -> list[str]:
@@ -173,8 +167,7 @@ _size = partial(rule, outcome=Outcome.CONTRADICTION)
 
 
 @_size(
-    id="camber-force-too-steep",
-    sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg",
+    id="camber-force-too-steep", sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg"
 )
 def camber_too_steep(found: Signatures) -> Iterator[Finding]:
     """Slope of Fy per load over camber, plus two standard errors."""
@@ -182,10 +175,7 @@ def camber_too_steep(found: Signatures) -> Iterator[Finding]:
         yield Finding({"slope": -found.camber.value}, column="gamma_deg")
 
 
-@_size(
-    id="camber-thrust",
-    sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)",
-)
+@_size(id="camber-thrust", sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)")
 def camber_thrust(found: Signatures) -> Iterator[Finding]:
     """-Fy over Fz tan(gamma) at large camber of both signs."""
     if found.thrust < constants.SMALLEST_CAMBER_THRUST or found.thrust > constants.LARGEST_CAMBER_THRUST:

@@ -19,12 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
 
-from mffit.constants import (
-    FALSE_ALARM,
-    LEAST_PREDICTED_SHARE,
-    NAMED_IN_SENTENCE,
-    ODD_SWEEP_RATIO,
-)
+from mffit.constants import FALSE_ALARM, LEAST_PREDICTED_SHARE, NAMED_IN_SENTENCE, ODD_SWEEP_RATIO
 from mffit.linearised import LinearisedFit
 from mffit.linearised.inputs import word_of
 from mffit.measured import Drift, LoadResult, SideslipZeros
@@ -97,9 +92,8 @@ class FinishedFit(JudgedMeasurement):
     free: int = 0  #: number of free coefficients
     left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences
-    stranger: str = (
-        ""  #: why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model
-    )
+    stranger: str = ""
+    """Why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model."""
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
         """Misfit over the stated noise at the used readings, or at those of them in the mask ``rows`` (n,)."""
@@ -459,11 +453,7 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             yield {**facts, "unit": CHANNELS[name].unit}
 
 
-@of_model(
-    id="model-of-another-tyre",
-    outcome=Outcome.DISTRUSTED,
-    sentence="{why}",
-)
+@of_model(id="model-of-another-tyre", outcome=Outcome.DISTRUSTED, sentence="{why}")
 def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of a given model that is none of this tyre; no other rule is applied then."""
     if fit.stranger and any(_blamed_by(rule, fit) for rule in OF_READINGS):

@@ -79,24 +79,14 @@ class _Read(NamedTuple):
 
 
 def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str] = ()) -> Columns:
-    """The contract's columns of a file, converted and checked.
+    """The contract's columns of a file, converted and checked, by ``[sweep.columns]``: contract column -> heading, unit and
+    scale.
 
-    Parameters
-    ----------
-    raw : the file's cells
-    mapping : ``[sweep.columns]``: contract column -> heading, unit and scale; its keys are contract columns
-    shared : the keys of ``mapping`` that come from ``[columns]``, which applies to all files; if a file lacks the heading, the
-        key is ignored unless the column is required
+    Keys that are ``shared`` come from ``[columns]``, which applies to all files; if a file lacks the heading, such a key is
+    ignored unless the column is required. A recording (``time_s``) may have gaps: cells without a number, and rare samples
+    outside the plausible range, which become NaN. In a table of points each of them is an error.
 
-    Notes
-    -----
-    A recording (``time_s``) may have gaps: cells without a number, and rare samples outside the plausible range, which
-    become NaN. In a table of points each of them is an error.
-
-    Raises
-    ------
-    InputError
-        A column is missing, a cell is not a finite number, or a value is outside its plausible range.
+    Raises InputError if a column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
@@ -324,10 +314,7 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
 def _in_range(source: _Source, values: np.ndarray) -> _Read:
     """The values, checked against the plausible range; rare spikes of a recording become NaN.
 
-    Raises
-    ------
-    InputError
-        More values are outside the range than spikes explain.
+    Raises InputError if more values are outside the range than spikes explain.
     """
     channel = source.channel
     outside = _outside(values, channel)

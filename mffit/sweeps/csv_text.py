@@ -55,10 +55,7 @@ class Dialect(NamedTuple):
 def read_csv(path: Path) -> RawTable:
     """Read a text table, also ``.gz``; blank lines and lines that begin with ``#`` are skipped.
 
-    Raises
-    ------
-    InputError
-        The file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
+    Raises InputError if the file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
     """
     return _table_of_text(_utf8(path), path)
 

@@ -15,13 +15,7 @@ from mffit.sweeps import constants
 
 
 def needed(module: str, what: str, path: Path) -> Any:
-    """The imported module.
-
-    Raises
-    ------
-    InputError
-        The module is not installed; the error says how to install it.
-    """
+    """The imported module. Raises InputError if the module is not installed."""
     try:
         return importlib.import_module(module)
     except ImportError:
@@ -65,10 +59,7 @@ TIME_TO_READ = 600.0
 def content_of(path: Path) -> bytes:
     """The file's unpacked bytes.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not a complete gzip file, or holds more than :func:`largest` bytes.
+    Raises InputError if the file cannot be read, is not a complete gzip file, or holds more than :func:`largest` bytes.
     """
     with readable(path):
         try:

@@ -46,17 +46,9 @@ def letter_of(heading: str) -> str:
 
 
 def frame_of(headings: Mapping[str, str], rig: MachineTable) -> FileFrame:
-    """The frame of a file: by TYDEX's letters in its headings, else as ``[rig]`` declares.
+    """The frame of a file: by TYDEX's letters in its headings (by contract column), else as ``[rig]`` declares.
 
-    Parameters
-    ----------
-    headings : headings of the file, by contract column
-    rig : ``[rig]``
-
-    Raises
-    ------
-    MixedAxesError
-        The moments are not all in the same axes, or the load is in C and the side force is not.
+    Raises MixedAxesError if the moments are not all in the same axes, or the load is in C and the side force is not.
     """
     letters = {name: letter_of(headings[name]) for name in (*FORCES, *MOMENTS) if name in headings}
     of_moments = {letters[name] for name in MOMENTS if name in letters}
@@ -85,12 +77,8 @@ def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
 
 
 def forces_turned(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
-    """The sweep with forces turned from C to W.
-
-    Parameters
-    ----------
-    sweep : rows in ISO signs, frame C
-    load_is_vertical : the load column is the vertical load, not the component along the wheel plane
+    """The sweep, in ISO signs, with forces turned from C to W; ``load_is_vertical``: the load column is not along the wheel
+    plane.
     """
     c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
     if load_is_vertical:
@@ -99,12 +87,7 @@ def forces_turned(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
 
 
 def moments_turned(sweep: Sweep) -> Sweep:
-    """The sweep with moments turned from C to W, in ISO signs.
-
-    Notes
-    -----
-    If My was not measured, the contribution of rolling resistance to Mz is neglected.
-    """
+    """The sweep with moments turned from C to W, in ISO signs. Without My, the part of rolling resistance in Mz is neglected."""
     c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
     measured = np.isfinite(sweep.My)
     Mz = np.where(measured, c * sweep.Mz + s * np.where(measured, sweep.My, 0.0), sweep.Mz / c)
@@ -112,18 +95,11 @@ def moments_turned(sweep: Sweep) -> Sweep:
 
 
 def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
-    """The sweep with moments about the contact point instead of the wheel centre.
+    """The sweep, in ISO signs and frame W, with moments about the contact point instead of the wheel centre.
 
-    Parameters
-    ----------
-    sweep : rows in ISO signs, frame W
-    unloaded_radius : lever [m] if the file has no loaded radius (``RL_m``)
-
-    Notes
-    -----
-    The centre is at ``l = RL (0, -sin gamma, cos gamma)`` from the contact point, and ``M = M_centre + l x F``: Mx decreases
-    by ``RL (Fy cos gamma + Fz sin gamma)``, My increases by ``RL Fx cos gamma`` and Mz by ``RL Fx sin gamma``. If Fx was not
-    measured, the wheel is assumed to roll freely.
+    The centre is at ``l = RL (0, -sin gamma, cos gamma)`` from the contact point, and ``M = M_centre + l x F``: Mx decreases by
+    ``RL (Fy cos gamma + Fz sin gamma)``, My increases by ``RL Fx cos gamma`` and Mz by ``RL Fx sin gamma``. Without a loaded
+    radius (``RL_m``) the unloaded one [m] is the lever; without Fx, the wheel is assumed to roll freely.
     """
     lever = np.where(np.isfinite(sweep.RL), sweep.RL, unloaded_radius)
     Fx = np.nan_to_num(sweep.Fx)

@@ -42,14 +42,7 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
-    """Headings and units in the first rows of a table.
-
-    Parameters
-    ----------
-    rows : cells stripped of blanks, "" for an empty one; no row is empty
-    lines : line of each row in the file, from 1
-    path : of the file, for errors
-    """
+    """Headings and units in the first rows of a table, none of them empty, whose cells are stripped of blanks."""
     if not rows:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)

@@ -36,17 +36,9 @@ NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def load(config: Config) -> Sweeps:
-    """Read every file of ``[[sweep]]``.
+    """The sweeps of every file of ``[[sweep]]``, in its order, in ISO-W, contact frame, SI; with warnings as sentences.
 
-    Returns
-    -------
-    Sweeps
-        In the order of the configuration, ISO-W, contact frame, SI; with warnings as sentences.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
+    Raises InputError if a file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
     """
     found: list[Sweep] = []
     excluded: list[ExcludedRows] = []
@@ -174,10 +166,7 @@ def _apart(
 def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
     """Check that the ranges of ``[fit] exclude`` for a file begin and end at lines (n,) with readings.
 
-    Raises
-    ------
-    InputError
-        A range begins or ends at another line.
+    Raises InputError if a range begins or ends at another line.
     """
     for index, one in enumerate(config.fit.exclude):
         ends = (end for pair in one.ranges for end in pair) if one.file == file else ()

@@ -34,11 +34,8 @@ CONDITION_OF = re.compile("(alpha|gamma|camber|fz|pressure|speed)_?(fx|fy|mx|my|
 def read_mat(path: Path) -> RawTable:
     """Read a ``.mat`` file whose variables are column vectors of one length.
 
-    Raises
-    ------
-    InputError
-        The file is not a MAT file, is damaged, or has no vectors of a common length; or it is of v7.3 and h5py is not
-        installed.
+    Raises InputError if the file is not a MAT file, is damaged, or has no vectors of a common length, or if it is of v7.3 and
+    h5py is not installed.
     """
     content = _hdf5(path) if _is_hdf5(path) else _classic(path)
     vectors = {name: values for name, values in content.items() if isinstance(values, np.ndarray)}

@@ -13,10 +13,7 @@ from mffit.sweeps.raw_table import Cells, RawTable
 def read_parquet(path: Path) -> RawTable:
     """Read a ``.parquet`` file of numbers and texts; the unit of a column is its metadata ``unit`` or ``units``.
 
-    Raises
-    ------
-    InputError
-        The file is not a Parquet file, has no rows, has a heading twice, or pyarrow is not installed.
+    Raises InputError if the file is not a Parquet file, has no rows, has a heading twice, or pyarrow is not installed.
     """
     needed("pyarrow", "Parquet files", path)
     parquet = needed("pyarrow.parquet", "Parquet files", path)

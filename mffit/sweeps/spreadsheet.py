@@ -15,10 +15,7 @@ from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_c
 def read_xlsx(path: Path) -> RawTable:
     """Read an ``.xlsx`` file: headings, optionally a row of units, then numbers; a formula counts as its last value.
 
-    Raises
-    ------
-    InputError
-        The file is not a workbook, no sheet has a table, or openpyxl is not installed.
+    Raises InputError if the file is not a workbook, no sheet has a table, or openpyxl is not installed.
     """
     openpyxl = needed("openpyxl", "Excel workbooks", path)
     with undamaged(path, "Excel workbook"), zipfile.ZipFile(path) as members:

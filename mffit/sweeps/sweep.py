@@ -38,13 +38,11 @@ class MeasuredRows(Brief):
     u_omega: np.ndarray
     iteration: np.ndarray  #: step of the steering alignment; NaN when not given
     direction: np.ndarray  #: +1 forward, -1 backward
-    time: (
-        np.ndarray
-    )  #: time of a sample within its file or moving sweep [s]; NaN for finished and steady points
+    time: np.ndarray
+    """Time of a sample within its file or moving sweep [s]; NaN for finished and steady points."""
     line: np.ndarray  #: line in the file, from 1
-    table: (
-        pd.DataFrame
-    )  #: columns as reported, in the contract's names and units and the rig's axes, a row per reading
+    table: pd.DataFrame
+    """Columns as reported, in the contract's names and units and the rig's axes, a row per reading."""
 
     def __len__(self) -> int:
         return len(self.alpha)
@@ -58,9 +56,8 @@ class Sweep(MeasuredRows):
     file: str  #: name as in ``tyre.toml``
     mount: int  #: +1 normal, -1 tyre turned on its rim
     setup: str  #: name of the set-up of the rig; empty if none is declared
-    point: (
-        np.ndarray | None
-    )  #: label of the point that a sample belongs to, "" between points; None without labels
+    point: np.ndarray | None
+    """Label of the point that a sample belongs to, "" between points; None without labels."""
 
     @property
     def is_series(self) -> bool:

@@ -39,11 +39,8 @@ class Entry(NamedTuple):
 def read_tydex(path: Path) -> RawTable:
     """Read a ``.tdx`` file; a constant becomes a column of equal values, unless a channel has its name.
 
-    Raises
-    ------
-    InputError
-        The file is binary (National Instruments writes another ``.tdx``), has no ``**HEADER``, channels or data, or a
-        row of data does not have one number for each channel.
+    Raises InputError if the file is binary (National Instruments writes another ``.tdx``), has no ``**HEADER``, channels or
+    data, or a row of data does not have one number for each channel.
     """
     sections = _sections(path)
     channels = _channels(sections.get(CHANNEL_SECTION, []), path)

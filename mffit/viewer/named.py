@@ -21,12 +21,7 @@ Given = str | Path | Tyre
 def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyre]:
     """Tyres by name: the given name, or the shortest end of the path that differs from all others.
 
-    Raises
-    ------
-    InputError
-        If no tyre is given, or if a value is not finite.
-    TirError
-        If a file cannot be read.
+    Raises InputError if no tyre is given, or if a value is not finite; TirError if a file cannot be read.
     """
     if isinstance(given, str | Path | Tyre):
         given = [given]

@@ -23,17 +23,10 @@ def rounded(values: np.ndarray, bits: int) -> np.ndarray:
 
 
 def packed(columns: Mapping[str, np.ndarray]) -> dict[str, Json]:
-    """Columns, each of its own length, as one text.
+    """Columns, each of its own length, as one text; floats become single with six digits, whole numbers the smallest type.
 
-    Parameters
-    ----------
-    columns : by name; floats become single with six digits, whole numbers the smallest type that holds them
-
-    Returns
-    -------
-    dict
-        ``layout`` has name, type and length of each column in their order, ``bytes`` their bytes, deflated, in base 64: of each
-        column the lowest bytes of all numbers, then the next ones, because bytes that are alike compress better side by side.
+    ``layout`` has name, type and length of each column in their order, ``bytes`` their bytes, deflated, in base 64: of each
+    column the lowest bytes of all numbers, then the next ones, because bytes that are alike compress better side by side.
     """
     layout: list[Json] = []
     content = b""

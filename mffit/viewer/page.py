@@ -34,10 +34,7 @@ class Page:
     def write(self, path: str | Path) -> Path:
         """Write the page; returns its path.
 
-        Raises
-        ------
-        InputError
-            If the path is another file or a page that was changed since, or if it cannot be written.
+        Raises InputError if the path is another file or a page that was changed since, or if it cannot be written.
         """
         path = Path(path)
         if os.path.lexists(path) and not _is_ours(path):

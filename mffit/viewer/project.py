@@ -110,15 +110,10 @@ def project_html(
     window: dict[str, Json] | None = None,
     here: dict[str, Json] | None = None,
 ) -> str:
-    """The page of a project.
+    """The page of a tyre, with the data of :func:`project_data`, None before the first fit.
 
-    Parameters
-    ----------
-    name : of the tyre
-    data : of :func:`project_data`; None before the first fit
-    turn_slip, star : which model the page evaluates
-    window, here : state of the local window, see :mod:`mffit.window`, and folder and endings of recordings that it takes; None
-        for a page without a server
+    ``window`` is the state of the local window, see :mod:`mffit.window`, ``here`` folder and endings of recordings that it
+    takes; None for a page without a server.
     """
     return (
         environment("mffit.viewer")

@@ -16,13 +16,7 @@ FOUND = frozenset({"fitted", "regularised", "measured"})
 
 
 def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, object]]:
-    """The coefficients on which the page's curves depend, in the order of a property file.
-
-    Parameters
-    ----------
-    result : of the build
-    used : parameters of the page's model
-    """
+    """The coefficients on which the page's curves depend (``used`` by its model), in the order of a property file."""
     names = set(used)
     rows = [row for row in TABLE if row.name in names and not unsettable(row.name)]
     return [_row(row, result.fit) for row in rows]

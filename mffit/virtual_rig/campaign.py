@@ -182,10 +182,7 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
     content["sweep"] = [_sweep_entry(sweep) for sweep in plan.tables.sweep]
     radii = [
         written_down(
-            row,
-            _direct(plan, machine, row.load_N).r_e_m,
-            machine.faults["path_radius_m"],
-            generator,
+            row, _direct(plan, machine, row.load_N).r_e_m, machine.faults["path_radius_m"], generator
         )
         for row in plan.tables.rolling_radius
     ]
@@ -213,19 +210,11 @@ def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
 def written_down(
     row: RollingRadiusPlan, r_e: float, R: float, generator: np.random.Generator
 ) -> dict[str, Any]:
-    """The table ``[[rolling_radius]]`` of tyre.toml for one load.
+    """The table ``[[rolling_radius]]`` of tyre.toml for one load, from the true radii of wheel and path [m]; R is infinite on a
+    belt.
 
-    Parameters
-    ----------
-    row : load, and uncertainties of the readings
-    r_e : true effective rolling radius [m]
-    R : true radius of the path [m]; infinite on a flat track
-    generator : errors of the readings, normally distributed with the declared uncertainties
-
-    Notes
-    -----
-    Angles are read to 0.1 deg. The notches of the disc are aligned by eye at the start and at the end, so the wheel travels
-    ``2 pi R`` plus two small random arcs.
+    Angles are read to 0.1 deg. The notches of the disc are aligned by eye at the start and at the end, so the wheel travels ``2
+    pi R`` plus two small random arcs. Errors are normally distributed with the declared uncertainties.
     """
     chance = generator.standard_normal(4)
     if row.u_effective_radius is not None:
@@ -265,13 +254,8 @@ def drawn(
 ) -> dict[str, Faults]:
     """Random rig errors of every set-up by the declared uncertainties; the zeros are drawn for each set-up.
 
-    Parameters
-    ----------
-    rig : the declaration; every ``u_`` is one standard deviation of a normal distribution
-    values : given errors, which are not drawn
-    C_alpha : cornering stiffness at the nominal load [N/rad], converts ``u_slip_alignment_N`` to an angle
-    generator : source of random numbers
-    setups : names of the set-ups; the first has the same errors as a rig with one set-up
+    Errors in ``values`` are not drawn. ``C_alpha`` [N/rad] converts ``u_slip_alignment_N`` to an angle. The first set-up has
+    the same errors as a rig with one set-up.
     """
     # Each error has its own stream, seeded by its name: fixing or adding one error does not change the others.
     seed = int(generator.integers(2**32))

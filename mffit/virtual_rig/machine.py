@@ -112,7 +112,7 @@ SCALES: dict[str, tuple[str, Formula]] = {
 }
 """Factors on scaling factors of the tyre."""
 ADDED: dict[str, tuple[str, Formula]] = {
-    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m))),
+    "k_p_arm_per_kPa": ("QSX3", lambda x, s, m: x * (s.p / 1000.0 - _usual_pressure(m)))
 }
 """Terms added to coefficients of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
@@ -285,16 +285,7 @@ def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine)
 def loaded_radius(
     p: Mapping[str, Any], Fz: Any, Fx: Any, Fy: Any, gamma: Any, omega: Any, pressure: Any
 ) -> Any:
-    """Distance (n,) of the wheel's centre from the contact point [m], by bisection for the load.
-
-    Parameters
-    ----------
-    p : values of the property file
-    Fz, Fx, Fy : forces (n,) [N]
-    gamma : camber (n,) [rad]
-    omega : speed of rotation (n,) [rad/s]
-    pressure : inflation pressure (n,) [Pa]
-    """
+    """Distance (n,) of the wheel's centre from the contact point [m], by bisection for the load; SI, inputs (n,)."""
     R0, Fz0 = p["UNLOADED_RADIUS"], p["FNOMIN"]
     rim_speed = np.abs(omega) * R0 / p["LONGVL"]
     free = R0 * (p["Q_RE0"] + p["Q_V1"] * rim_speed**2)

@@ -128,9 +128,8 @@ class DriveTable(Table):
     """[drive]: the drive of the wheel, and the reference of the reported slip."""
 
     slip_against: Literal["free-rolling", "loaded-radius"] = "free-rolling"
-    drag_Nm: NonNegativeFloat = (
-        0.0  #: moment of bearings and brake against the rotation of a wheel that rolls freely
-    )
+    drag_Nm: NonNegativeFloat = 0.0
+    """Moment of bearings and brake against the rotation of a wheel that rolls freely."""
 
 
 class ConditionsTable(Table):
@@ -148,9 +147,8 @@ class RollingRadiusPlan(Table):
     load_N: q.Load
     u_angle_deg: stated.Angle = 1.0
     u_arc_m: stated.Length = 0.001
-    u_effective_radius: stated.Length | None = (
-        None  #: if given, a radius with this uncertainty is written instead of a revolution
-    )
+    u_effective_radius: stated.Length | None = None
+    """If given, a radius with this uncertainty is written instead of a revolution."""
 
 
 class RecordingTable(Table):
@@ -181,9 +179,8 @@ class SweepPlan(Table):
     alpha_deg: Angles = (0.0,)
     gamma_deg: Angles = (0.0,)
     kappa: Slips = (0.0,)
-    free_rolling: bool = (
-        False  #: whether the wheel is undriven: rolling resistance and drag then cause a small slip
-    )
+    free_rolling: bool = False
+    """Whether the wheel is undriven: rolling resistance and drag then cause a small slip."""
     p_kPa: Pressures | None = None
     V_mps: Speeds | None = None
     T_degC: Angles | None = None  #: one temperature, or those of the first and the last point

@@ -30,15 +30,9 @@ def record(
     generator: np.random.Generator,
     added: Sequence[str] = (),
 ) -> Recording:
-    """The time series of one sweep.
+    """The time series of one sweep, whose set-points (n,) are all at one load, speed and pressure.
 
-    Parameters
-    ----------
-    machine : tyre and rig
-    settings : set-points (n,) of one sweep, all at one load, speed and pressure
-    table : settings of the recording
-    generator : source of random numbers
-    added : columns of the channels measured in addition to Fy, Mz and My
+    ``added`` are columns of the channels measured in addition to Fy, Mz and My.
     """
     time, alpha, gamma, kappa = course(settings, table)
     seen = settings.at(alpha, gamma, kappa)
@@ -85,14 +79,7 @@ def course(
 def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:
     """The lagged angle (m,) that determines the force: ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
 
-    The sideslip angle changes linearly between samples.
-
-    Parameters
-    ----------
-    alpha : sideslip angle of the wheel, sample by sample (m,) [rad]
-    V : speed [m/s]
-    sigma : relaxation length [m]
-    rate_Hz : samples per second
+    The sideslip angle (m,) [rad] changes linearly between samples. SI units.
     """
     seconds = sigma / V  # the time constant
     decay = math.exp(-1.0 / (seconds * rate_Hz))

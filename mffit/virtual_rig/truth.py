@@ -69,9 +69,8 @@ class Truth:
     faults: Faults  #: rig errors in the first set-up
     faults_of_sweeps: dict[str, dict[str, float]]  #: additional errors of single sweeps, by file
     faults_of_setups: dict[str, dict[str, float]]  #: zeros of every set-up, if there are several
-    coefficients: dict[
-        str, float
-    ]  #: of the tyre's side force, aligning moment and turn slip; of all channels that were measured
+    coefficients: dict[str, float]
+    """Of the tyre's side force, aligning moment and turn slip; of all channels that were measured."""
     seed: int
     driven: tuple[DrivenTruth, ...] = ()  #: per load, if Fx, Mx, a radius or the wheel speed was measured
     drive: Mapping[str, Any] = field(default_factory=dict)  #: the table [drive], if the rig reports slip
@@ -101,15 +100,7 @@ class Truth:
 def direct_truth(
     tyre: Tyre, load: float, speed: float, pressure: float, phi_t: float, R: float
 ) -> DirectTruth:
-    """True values of the direct method's quantities at one load.
-
-    Parameters
-    ----------
-    tyre : the tyre on the rig
-    load, speed, pressure : load [N], speed [m/s], pressure [Pa]
-    phi_t : turn slip of the path [1/m]; 0 on a flat track
-    R : true radius of the path [m]
-    """
+    """True values of the direct method's quantities at one load; SI, ``phi_t`` is 0 on a flat track, R the true path radius."""
 
     def Fy(alpha: float = 0.0, gamma: float = 0.0, curvature: float = 0.0, turn_slip: bool = True) -> float:
         out = tyre(load, alpha, gamma, 0.0, curvature, speed, pressure, turn_slip=turn_slip)

@@ -63,13 +63,7 @@ class Opened:
 
     @property
     def session(self) -> Session:
-        """The open project.
-
-        Raises
-        ------
-        InputError
-            There is none.
-        """
+        """The open project. Raises InputError if there is none."""
         if self._session is None:
             raise InputError("no project is open in this window")
         return self._session

@@ -19,14 +19,10 @@ LONE_NEWLINE = re.compile(r"(?<!\r)\n")
 
 
 def coefficient(text: str, *, name: str, entry: float | Mapping[str, Any] | None) -> str:
-    """The text with what the engineer says of a coefficient.
+    """The text of a file with another entry for a coefficient.
 
-    Parameters
-    ----------
-    text : of the file
-    name : of the coefficient
-    entry : the number at which it is held, or numbers by key of :data:`mffit.config.by_hand.KEYS`, which replace what the file
-        gave; None or no key removes it
+    ``entry`` is the number at which it is held, or numbers by key of :data:`mffit.config.by_hand.KEYS`, which replace what the
+    file gave; None or no key removes it.
     """
     keys = entry if isinstance(entry, Mapping) else {}
     if unknown := [key for key in keys if key not in KEYS]:
@@ -53,13 +49,9 @@ def coefficient(text: str, *, name: str, entry: float | Mapping[str, Any] | None
 
 
 def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> str:
-    """The text with readings added to ``[fit] exclude``.
+    """The text with readings added to ``[fit] exclude``, each with ``file`` as in [[sweep]], ``first`` and ``last`` line.
 
-    Parameters
-    ----------
-    text : of the file
-    readings : each with ``file`` as in [[sweep]], ``first`` and ``last`` line
-    why : the reason; an entry of the same file and reason is extended
+    An entry of the same file and reason is extended.
     """
 
     def change(document: Any) -> None:
@@ -98,16 +90,7 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
 
 
 def setting(text: str, *, table: str, key: str, value: str, file: str = "") -> str:
-    """The text with another value of a key.
-
-    Parameters
-    ----------
-    text : of the file
-    table : its name; "sweep" for the [[sweep]] of ``file``
-    key : in it
-    value : in the notation of TOML; "" removes the key
-    file : as in [[sweep]]
-    """
+    """The text with another value, in the notation of TOML, of a key; "" removes it. ``file`` is that of table "sweep"."""
 
     def change(document: Any) -> None:
         if table not in TABLES and table != "sweep":
@@ -131,13 +114,9 @@ def _sweep(document: Any, file: str) -> Any:
 
 
 def add_recordings(text: str, *, sweeps: str, bad: Sequence[Mapping[str, Any]] = ()) -> str:
-    """The text with further recordings.
+    """The text with further recordings: their [[sweep]] as TOML, added to a list ``sweep = [...]`` where the file has one.
 
-    Parameters
-    ----------
-    text : of the file
-    sweeps : their [[sweep]], as TOML; where the file has a list of its own, ``sweep = [...]``, they are added to that
-    bad : readings among them to leave out, as in :func:`leave_out`, each with its ``why``
+    ``bad`` are readings among them to leave out, as in :func:`leave_out`, each with its ``why``.
     """
 
     def listed(document: Any) -> None:

@@ -27,10 +27,7 @@ class ReadingProcess:
     def ask(self, folder: RecordingsFolder, what: str, *given: Any) -> Any:
         """What the method ``what`` of a folder returns.
 
-        Raises
-        ------
-        InputError
-            As the method; or it was stopped, or takes longer than any recording.
+        Raises InputError as the method, or if it was stopped or takes longer than any recording.
         """
         with self._lock:
             if self._pool is None:  # a forked copy of a process with threads may hang

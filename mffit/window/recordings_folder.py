@@ -80,10 +80,8 @@ class RecordingsFolder:
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
 
-        Raises
-        ------
-        InputError
-            The name is not that of a recording in this folder, the file exists, or the folder cannot be written to.
+        Raises InputError if the name is not that of a recording in this folder, the file exists, or the folder cannot be
+        written to.
         """
         simple = bool(name) and name.isprintable() and not name.startswith(".") and not set(name) & SEPARATORS
         if not simple or name in NOT_READABLE_HERE or not name.lower().endswith(formats.ENDINGS):
@@ -177,10 +175,7 @@ class RecordingsFolder:
     def added(self, choice: Mapping[str, Any]) -> dict[str, Any]:
         """What :func:`mffit.window.edits.add_recordings` adds to the project.
 
-        Raises
-        ------
-        InputError
-            The recordings cannot be read as chosen.
+        Raises InputError if the recordings cannot be read as chosen.
         """
         assert self.project is not None
         project = config.load(self.project)
@@ -198,10 +193,7 @@ class RecordingsFolder:
     def make(self, choice: Mapping[str, Any]) -> Path:
         """Write what ``mffit init --from`` writes; returns the path of the ``tyre.toml``.
 
-        Raises
-        ------
-        InputError
-            The recordings cannot be read as chosen, or one of the files exists.
+        Raises InputError if the recordings cannot be read as chosen, or one of the files exists.
         """
         return written_project(self.folder, *self._project(choice))[0]
 

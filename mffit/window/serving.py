@@ -27,19 +27,11 @@ def open_path(
     opened: Callable[[str], None],
     launch: Callable[[Path], None] | None = None,
 ) -> None:
-    """Serve a window until it is interrupted.
+    """Serve a window of a ``tyre.toml``, its folder, a folder of recordings, or property files until it is interrupted.
 
-    Parameters
-    ----------
-    paths : a ``tyre.toml``, the folder that it is in, a folder of recordings, or property files
-    port : on the loopback address; 0 for the usual one of this project, or any if that is in use
-    opened : called with the address once requests are answered, and with another when that has let a browser in
-    launch : called with a file that takes a browser there, for none but this user to read; None to open none
-
-    Raises
-    ------
-    InputError
-        The port is in use, or the files cannot be read.
+    ``port`` is on the loopback address; 0 is the usual one of this project, or any if that is in use. ``opened`` is called with
+    the address once requests are answered, and with another when that has let a browser in; ``launch`` with a file that takes a
+    browser there, for none but this user to read. Raises InputError if the port is in use, or the files cannot be read.
     """
     import uvicorn
 

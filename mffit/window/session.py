@@ -77,13 +77,7 @@ class ProjectFile:
         return found
 
     def config(self) -> Config:
-        """The configuration as it is on the disk.
-
-        Raises
-        ------
-        InputError
-            The file cannot be read or is wrong.
-        """
+        """The configuration as it is on the disk. Raises InputError if the file cannot be read or is wrong."""
         return self._checked(self._bytes())
 
     def tables(self) -> dict[str, object]:
@@ -91,17 +85,11 @@ class ProjectFile:
         return tables_of(self._bytes(), self.path, TYRE_TOML)[0]
 
     def edit(self, change: Callable[[str], str], seen: str) -> None:
-        """Write the changed text, if the file is still the one that was seen and the new one is a right ``tyre.toml``.
+        """Write the changed text, if the file is still the one that was ``seen`` (its digest) and the new one is a right
+        ``tyre.toml``.
 
-        Parameters
-        ----------
-        change : old text -> new text
-        seen : digest of the content that the change is meant for
-
-        Raises
-        ------
-        InputError
-            The file was changed by another program or another window, or the new content would be refused; nothing is written.
+        Raises InputError if the file was changed by another program or window, or the new content would be refused; nothing is
+        written.
         """
         before = self._bytes()
         try:
@@ -131,10 +119,7 @@ class ProjectFile:
     def undo(self) -> None:
         """Take back the last change that the window saved.
 
-        Raises
-        ------
-        InputError
-            There is none, or the file was changed elsewhere since.
+        Raises InputError if there is none, or the file was changed elsewhere since.
         """
         try:
             step = self.steps.pop()
@@ -231,10 +216,7 @@ class Session:
     def edit(self, name: str, seen: str, arguments: dict[str, Any]) -> None:
         """Carry out one of the changes of :data:`mffit.window.edits.EDITS` and save it.
 
-        Raises
-        ------
-        InputError
-            The change is unknown or not possible; nothing is written.
+        Raises InputError if the change is unknown or not possible; nothing is written.
         """
         if name not in EDITS:
             raise InputError(f'"{name}" is not a change of tyre.toml')
@@ -254,13 +236,7 @@ class Session:
             self.file.undo()
 
     def run(self, kind: str) -> None:
-        """Start a run.
-
-        Raises
-        ------
-        InputError
-            It is unknown, or another one is under way.
-        """
+        """Start a run. Raises InputError if it is unknown, or another one is under way."""
         if kind not in RUNS:
             raise InputError(f'"{kind}" is not something to run')
         with self._lock:

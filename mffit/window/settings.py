@@ -22,12 +22,7 @@ TABLES: Mapping[str, type[Table]] = {
 
 
 def settings(tables: Tables) -> list[dict[str, Any]]:
-    """The keys of every table and of every [[sweep]], with what the file says and what holds otherwise, as TOML.
-
-    Parameters
-    ----------
-    tables : content of a ``tyre.toml``
-    """
+    """The keys of every table and of every [[sweep]], with what the file says and what holds otherwise, as TOML."""
     found = [_listed(f"[{name}]", name, "", model, tables.get(name, {})) for name, model in TABLES.items()]
     sweeps = tables.get("sweep", [])
     for sweep in [sweeps] if isinstance(sweeps, Mapping) else sweeps:

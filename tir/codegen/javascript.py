@@ -34,12 +34,7 @@ def javascript(
 
     Its value is a function of the tyre's parameters (an object by name) that returns a function of
     :data:`~tir.codegen.program.INPUTS` in this order, named as in a call (ISO-W, SI, radians), which returns an object of the
-    outputs.
-
-    Parameters
-    ----------
-    outputs : fields of Forces and State, or RL, the loaded radius [m]
-    turn_slip, star, limits : as in a call of the tyre
+    ``outputs``: fields of Forces and State, or RL, the loaded radius [m].
     """
     program = trace(Switches(turn_slip, star, limits), outputs)
     once, _ = assignments(program.per_tyre, program.constants, JAVASCRIPT)

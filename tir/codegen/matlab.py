@@ -10,6 +10,7 @@ from typing import NamedTuple
 from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES, opening, refuse_name
 from tir.codegen.graph import CONSTANT, INPUT, level
 from tir.codegen.program import INPUTS, ORDER, Program, called, refuse_zero_divisors
+from tir.codegen.replay import allocated
 from tir.codegen.source import COMMON, COMPARISONS, SourceDialect, assignments, name_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
@@ -206,24 +207,18 @@ def _reusing(
 
     ``flags`` hold truth values and never share a variable with numbers; ``constants`` keep their names.
     """
-    last = {word: i for i, line in enumerate([*lines, *results]) for word in VARIABLE.findall(line)}
-    last |= {word: len(lines) for line in results for word in VARIABLE.findall(line)}
-    new: dict[str, str] = {word: word for word in constants}
-    free: dict[bool, list[str]] = {True: [], False: []}
-    count, renamed = 0, []
-    for i, line in enumerate(lines):
-        target, expression = line.split(" = ", 1)
-        read = {*VARIABLE.findall(expression)} - {*constants}
-        expression = VARIABLE.sub(lambda found: new[found[0]], expression)
-        for word in sorted(read):
-            if last[word] == i:
-                free[word in flags].append(new[word])
-        if not free[target in flags]:
-            count += 1
-            free[target in flags].append(f"x{count}")
-        new[target] = free[target in flags].pop()
-        renamed.append(f"{new[target]} = {expression}")
-    return renamed, [VARIABLE.sub(lambda found: new[found[0]], text) for text in results]
+    targets, expressions = zip(*(line.split(" = ", 1) for line in lines), strict=True)
+    kept = frozenset([*constants, *VARIABLE.findall(" ".join(results))])
+    place: dict[str, int] = {}
+    used = [sorted({*VARIABLE.findall(text)}) for text in expressions]
+    allocated(targets, used, kept, place, flags.__contains__)
+
+    def renamed(text: str) -> str:
+        return VARIABLE.sub(
+            lambda found: found[0] if found[0] in constants else f"x{place[found[0]] + 1}", text
+        )
+
+    return [*map(renamed, lines)], [*map(renamed, results)]
 
 
 def _mfeval(name: str, about: Sequence[str], use: int, pressure: str) -> str:

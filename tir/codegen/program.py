@@ -54,14 +54,9 @@ def trace(
     fixed: Mapping[str, float] | None = None,
     changed: Callable[[dict[str, Any], Graph], None] | None = None,
 ) -> Program:
-    """Run the model on symbols.
+    """Run the model on symbols; ``outputs`` are fields of Forces and State, or RL.
 
-    Parameters
-    ----------
-    switches : see :class:`Switches`
-    outputs : fields of Forces and State to compute, or RL
-    fixed : parameters that the program holds as numbers, the others stay symbols
-    changed : changes the parameters by name before the run
+    ``fixed`` are parameters that the program holds as numbers; ``changed`` changes the parameters by name before the run.
     """
     found = run_on_symbols(switches, fixed or {}, {}, changed, radius=LOADED in outputs)
     for name in outputs:

@@ -163,19 +163,8 @@ def _run(operations: tuple[tuple[Any, ...], ...], at: list[Any]) -> list[Any]:
 def replay(
     switches: Switches, outputs: tuple[str, ...], wrt: tuple[str, ...] = (), still: tuple[str, ...] = ()
 ) -> Replay:
-    """The program for some forces or states and their derivatives.
-
-    Parameters
-    ----------
-    switches : options of the model
-    outputs : fields of Forces and State
-    wrt : parameters and inputs to differentiate by
-    still : inputs that are zero
-
-    Returns
-    -------
-    Replay
-        of the outputs, and then for each output its derivatives by ``wrt``
+    """The program for some fields of Forces and State, and then for each of them its derivatives by ``wrt``; inputs ``still``
+    are zero.
     """
     with _ONE_AT_A_TIME:
         found, known = _on_symbols(switches, still)
@@ -218,7 +207,7 @@ def replayed(results: Sequence[Any]) -> Replay:
     kept = [_key(x) for x in results]
     constants = list(dict.fromkeys(key for keys in (kept, *arguments) for key in keys if type(key) is tuple))
     place = {key: i for i, key in enumerate([*(node.number for node in symbols), *constants])}
-    room = _allocated([node.number for node in others], arguments, frozenset(kept), place)
+    room = allocated([node.number for node in others], arguments, frozenset(kept), place)
     places = [
         (place[node.number], *[place[key] for key in keys])
         for node, keys in zip(others, arguments, strict=True)
@@ -241,25 +230,30 @@ def replayed(results: Sequence[Any]) -> Replay:
     )
 
 
-def _allocated(
-    results: Sequence[int], arguments: Sequence[Sequence[Any]], kept: frozenset[Any], place: dict[Any, int]
+def allocated(
+    results: Sequence[Any],
+    arguments: Sequence[Sequence[Any]],
+    kept: frozenset[Any],
+    place: dict[Any, int],
+    kind: Callable[[Any], bool] = lambda key: False,
 ) -> int:
     """Number of places, after giving the result of every operation a place that is free by then.
 
     ``results`` and ``arguments`` are the keys of what the operations compute and use; what is in ``kept`` is never replaced.
+    Keys of a different ``kind`` never share a place.
     """
     room = len(place)
     last = {key: i for i, keys in enumerate(arguments) for key in keys}
     for key in (*place, *kept):
         last.pop(key, None)
-    free: list[int] = []
+    free: dict[bool, list[int]] = {True: [], False: []}
     for i, (result, keys) in enumerate(zip(results, arguments, strict=True)):
         for key in keys:
             if last.get(key) == i:
-                free.append(place[key])
+                free[kind(key)].append(place[key])
                 del last[key]  # both arguments may be the same
-        if free:
-            place[result] = free.pop()
+        if own := free[kind(result)]:
+            place[result] = own.pop()
         else:
             place[result], room = room, room + 1
     return room

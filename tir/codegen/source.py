@@ -62,12 +62,8 @@ def name_of(node: Node) -> str:
 def assignments(
     nodes: Iterable[Node], results: Iterable[Any], dialect: SourceDialect
 ) -> tuple[list[str], list[str]]:
-    """Lines that compute the nodes, and the expressions of the results.
-
-    Parameters
-    ----------
-    nodes : in order; symbols and other nodes are taken for existing variables
-    results : nodes or numbers
+    """Lines that compute the nodes, and the expressions of the results; symbols and other nodes are taken for existing
+    variables.
     """
     nodes, results = [node for node in nodes if node.operation != "symbol"], list(results)
     uses = Counter(a.number for node in nodes for a in node.arguments if isinstance(a, Node))

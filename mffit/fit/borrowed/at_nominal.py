@@ -258,10 +258,8 @@ CONDITIONS = "nominal conditions"
 def tyre_at_nominal(tyre: Tyre, wanted: Nominal) -> Tyre:
     """The tyre with other nominal conditions and, as far as the equations allow, the same forces; its provenance records this.
 
-    Raises
-    ------
-    ArithmeticError
-        Coefficients would be infinite, because a factor of load or pressure is 0; the message names the coefficients.
+    Raises ArithmeticError if coefficients would be infinite, because a factor of load or pressure is 0; the message names the
+    coefficients.
     """
     old, new = Nominal.of(tyre.values).beside(wanted)
     rest = {key: text for key, text in tyre.provenance.items() if key != CONDITIONS}

@@ -81,10 +81,7 @@ class Lent:
 def sister_of(config: Config, base: Tyre | None, points: Points) -> Sister | None:
     """The sister tyre that ``[sister]`` declares; None without that table.
 
-    Raises
-    ------
-    InputError
-        The base file has no measured longitudinal force, or longitudinal force was measured on this tyre too.
+    Raises InputError if the base file has no measured longitudinal force, or longitudinal force was measured on this tyre too.
     """
     if config.sister is None or base is None or config.tyre.base is None:
         return None
@@ -167,10 +164,7 @@ class _Scaled(NamedTuple):
 
 
 def _scaled(
-    values: Mapping[str, Any],
-    theirs: Mapping[str, float],
-    sister: Sister,
-    by: Sequence[str] = (),
+    values: Mapping[str, Any], theirs: Mapping[str, float], sister: Sister, by: Sequence[str] = ()
 ) -> _Scaled:
     """The sister's coefficients ``theirs``, scaled to the tyre with these ``values``.
 

@@ -82,11 +82,7 @@ class JointFit:
 
     @classmethod
     def of(
-        cls,
-        problem: FitProblem,
-        numbers: Sequence[FreeNumber],
-        own: Sequence[str],
-        group: np.ndarray,
+        cls, problem: FitProblem, numbers: Sequence[FreeNumber], own: Sequence[str], group: np.ndarray
     ) -> JointFit:
         """The model linearised at the values of ``problem``; ``own`` names the numbers with a random effect per group."""
         looked_at = np.arange(0, len(group), -(-len(group) // int(POINTS_EXAMINED)))

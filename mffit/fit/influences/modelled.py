@@ -27,12 +27,10 @@ class BetweenRuns:
     """Random effects of the runs, and their standard deviations."""
 
     runs: tuple[str, ...]  #: names of the sweeps
-    scatter: Mapping[
-        str, tuple[float, float]
-    ]  #: number -> (standard deviation among the runs, its uncertainty) [-]
-    values: Mapping[
-        str, tuple[tuple[float, float], ...]
-    ]  #: number -> (value, standard error) of every run [-]
+    scatter: Mapping[str, tuple[float, float]]
+    """Number -> (standard deviation among the runs, its uncertainty) [-]."""
+    values: Mapping[str, tuple[tuple[float, float], ...]]
+    """Number -> (value, standard error) of every run [-]."""
     alone: Mapping[str, Agreement]  #: by channel, agreement of the model without the random effects
 
 

@@ -33,9 +33,8 @@ class Nuisance:
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
-    per_run: bool = (
-        False  #: whether each run (sweep) has its own numbers, random effects around their undisturbed values
-    )
+    per_run: bool = False
+    """Whether each run (sweep) has its own numbers, random effects around their undisturbed values."""
 
     def free(self, points: Points, scatter: Mapping[str, float]) -> tuple[FreeNumber, ...]:
         """The free numbers with their bounds; ``scatter`` gives, by name, the prior standard deviation of random effects."""
@@ -170,11 +169,7 @@ NUISANCES = (
         rival="hysteresis",
     ),
     Nuisance(
-        id="warm-up",
-        name="warm-up at the start",
-        key="warm_up",
-        numbers=("warm_up",),
-        lacking=_distances,
+        id="warm-up", name="warm-up at the start", key="warm_up", numbers=("warm_up",), lacking=_distances
     ),
     Nuisance(
         id="wear",

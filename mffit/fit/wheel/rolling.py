@@ -116,8 +116,7 @@ def rolling_resistance(
     of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(
         beside=BesideNumbers(
-            {name: end.values[name] for name in names},
-            covariance[: len(names), : len(names)] + of_gain,
+            {name: end.values[name] for name in names}, covariance[: len(names), : len(names)] + of_gain
         ),
         regularised=frozenset(of_prior.intersection(names)),
         zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in of_prior and zero.u > 0.0},

@@ -284,11 +284,7 @@ class _OfRadius(NamedTuple):
 
 
 def _fitted(
-    names: Sequence[str],
-    before: Sequence[str],
-    values: Mapping[str, Any],
-    at: RadiusReadings,
-    channel: str,
+    names: Sequence[str], before: Sequence[str], values: Mapping[str, Any], at: RadiusReadings, channel: str
 ) -> _OfRadius:
     """The fit of the named numbers to one radius; numbers ``before`` have been found already."""
     dpi = at.p / float(values["NOMPRES"]) - 1.0

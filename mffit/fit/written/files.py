@@ -31,9 +31,8 @@ class Files:
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
     weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.written.road.weights`
     camber_limit: float | None = None  #: largest camber of the file for turn slip off [rad]
-    wide_limit: float | None = (
-        None  #: requested camber limit beyond the files' camber range, hence without effect [rad]
-    )
+    wide_limit: float | None = None
+    """Requested camber limit beyond the files' camber range, hence without effect [rad]."""
     sideslips_with_slip: tuple[float, ...] = ()  #: sideslips at which longitudinal slip was run [rad]
     untested: Mapping[str, str] = field(default_factory=dict)
     """By quantity that the sweeps do not vary, the origin of its written range, in words."""
@@ -53,12 +52,7 @@ class Files:
 
 
 def make_files(
-    config: Config,
-    known: Known,
-    points: Points,
-    base: Tyre | None,
-    *,
-    only: str | None = None,
+    config: Config, known: Known, points: Points, base: Tyre | None, *, only: str | None = None
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one; ``only`` limits them to one use."""
     disc = config.rig.on_disc

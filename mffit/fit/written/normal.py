@@ -39,21 +39,16 @@ def derive(
     hand: Hand = NO_HAND,
     weight: str = "everything",
 ) -> dict[str, float]:
-    """The coefficients of a derived file that differ from the fitted model.
+    """The coefficients of a derived file that differ from the fitted model, which is meant for turn slip on.
 
     The file for turn slip off is fitted to the forces of the fitted model on a straight path over the written ranges. The file
-    for both uses is fitted with equal weight to three sets of forces: those, the same forces computed with turn slip, and the
-    forces on the disc. Only coefficients that act through camber or spin are free, so the upright wheel on a straight path stays
-    exact. Fy is fitted first, because its shifts enter Mz.
+    for both uses, if the curvature of the disc's path ``both_on`` [1/m] is given, is fitted with equal weight to three sets of
+    forces: those, the same forces computed with turn slip, and the forces on the disc. Only coefficients that act through
+    camber or spin are free, so the upright wheel on a straight path stays exact. Fy is fitted first, because its shifts enter
+    Mz.
 
-    Parameters
-    ----------
-    values : the fitted model, meant for turn slip on
-    tested, written : ranges of the data and of the file, by name of the file's limits
-    both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
-    symmetric : hold the terms that a symmetric tyre does not have
-    hand : held values and bounds set by hand, which apply to every file
-    weight : "everything" or "road", see :func:`mffit.fit.written.road.weights`
+    ``symmetric`` holds the terms that a symmetric tyre does not have; ``hand`` has values and bounds set by hand, which apply
+    to every file; ``weight`` is as in :func:`mffit.fit.written.road.weights`.
     """
     road = road_grid(tested, written, float(values["FNOMIN"]))
     uses = [(False, 0.0)] if both_on is None else [(True, both_on), (True, 0.0), (False, 0.0)]

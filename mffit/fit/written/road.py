@@ -51,10 +51,7 @@ def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
     return Road(Fz.ravel(), np.zeros(Fz.size), gamma.ravel(), pressure), n
 
 
-CORNER = {
-    "everything": float(constants.WEIGHT_IN_CORNER),
-    "road": float(constants.LITTLE_WEIGHT),
-}
+CORNER = {"everything": float(constants.WEIGHT_IN_CORNER), "road": float(constants.LITTLE_WEIGHT)}
 """By ``[normal] weight``, the weight of conditions with large camber and large sideslip."""
 
 

@@ -23,15 +23,7 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from mffit.report import constants, style
-from mffit.report.drawing.records import (
-    Axis,
-    Bars,
-    ColourScale,
-    Look,
-    Panel,
-    Sheet,
-    Trace,
-)
+from mffit.report.drawing.records import Axis, Bars, ColourScale, Look, Panel, Sheet, Trace
 
 INCH = 72.0
 NUMBER_OFF = 7.0

@@ -18,13 +18,7 @@ LINE = Look(colour=style.INK, line="-", width=0.6)
 
 
 def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
-    """One panel per channel; gaps in time are closed and the lines broken there.
-
-    Parameters
-    ----------
-    sweep : a series in ISO-W and SI
-    notes : its stretches
-    """
+    """One panel per channel; gaps in time are closed and the lines broken there."""
     channels = {
         "sideslip [deg]": np.degrees(sweep.alpha),
         "camber [deg]": np.degrees(sweep.gamma),

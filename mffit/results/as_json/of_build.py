@@ -103,11 +103,7 @@ keys(
     "id=nuisance.id name=nuisance.name modelled reason numbers=nuisance.numbers left_out_rmse",
     left_out_rmse=lambda row: {"with": row.beside, "without": row.without} if row.beside else None,
 )
-keys(
-    BetweenRuns,
-    "names=runs scatter channels_without=alone",
-    scatter=lambda found: of_rig(found.scatter),
-)
+keys(BetweenRuns, "names=runs scatter channels_without=alone", scatter=lambda found: of_rig(found.scatter))
 keys(
     Relaxation,
     "runs coefficients missing?",

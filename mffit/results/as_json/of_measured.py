@@ -36,18 +36,12 @@ keys(
     setups=lambda found: () if found.nominal is None else found.nominal.setups,
 )
 keys(Drift, "scatter chance least most apart")
-keys(
-    Expanded,
-    "U_epsilon_gamma=U coverage_factor=k coverage_probability=probability effective_dof=dof",
-)
+keys(Expanded, "U_epsilon_gamma=U coverage_factor=k coverage_probability=probability effective_dof=dof")
 keys(
     SetupResult,
     "setup=name path_centre path_radius_m ±F_phit_N ±C_phit_Nm ±epsilon_gamma ±alpha_M_deg misaligned",
     path_centre=lambda row: "left" if row.phi_t < 0.0 else "right",
     path_radius_m=lambda row: abs(1.0 / row.phi_t),
 )
-keys(
-    SetupScatter,
-    "load_N setups between_N degrees_of_freedom declared_N chance excess_N",
-)
+keys(SetupScatter, "load_N setups between_N degrees_of_freedom declared_N chance excess_N")
 keys(Alignment, "correction_deg u_correction_deg=u_deg u_axis_deg aligned steps warnings")
