@@ -99,6 +99,7 @@ def test_another_fit_of_the_readings_can_be_chosen_and_the_address_keeps_it(page
     assert warm > 1.5 * fitted
     page.refresh()
     assert ask(shown(page), "mffit.misfit('Fy').rmse") == warm
+    assert page.find_element("id", "about").text.startswith("warm.tir: ")  # also on paper
     ask(page, choose, 0)
     until(lambda: ask(page, "mffit.misfit('Fy').rmse") == fitted)
     assert console_errors(page) == []
