@@ -384,7 +384,7 @@ async function showProject(data) {
   if (!state.panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
   listCoefficients();
   const fit = project.channels.filter(one => one.of_fit).map(one => `${one.name} ${written(one.rmse)} ${quantity(one.name).unit}`).join(", ");
-  byId("about").textContent = `${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
+  byId("about").textContent = `${data.others.length ? `${state.fit}: ` : ""}${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
   const said = project.warnings, box = byId("warnings");
   box.hidden = !said.length;
   box.open = !project.trusted;

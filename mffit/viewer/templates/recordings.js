@@ -127,7 +127,7 @@
       const box = element("input", "", {type: "checkbox", checked: file.used !== false}), backward = element("input", "", {type: "checkbox", checked: file.backward});
       box.addEventListener("change", () => { file.used = box.checked; });
       backward.addEventListener("change", () => { file.backward = backward.checked; });
-      used.append(box, `${file.name}, ${file.rows} rows `);
+      used.append(box, `${file.name}, ${file.rows} row${file.rows === 1 ? "" : "s"} `);
       back.append(backward, "rolls backwards");
       line.append(used, " ", back);
       files.append(line);

@@ -99,6 +99,7 @@ def test_another_fit_of_the_readings_can_be_chosen_and_the_address_keeps_it(page
     assert warm > 1.5 * fitted
     page.refresh()
     assert ask(shown(page), "mffit.misfit('Fy').rmse") == warm
+    assert page.find_element("id", "about").text.startswith("warm.tir: ")  # also on paper
     ask(page, choose, 0)
     until(lambda: ask(page, "mffit.misfit('Fy').rmse") == fitted)
     assert console_errors(page) == []
@@ -131,6 +132,10 @@ def test_filters_hide_points_and_the_address_keeps_the_view(page):
     assert ask(page, "mffit.trial()") == {"PCY1": 1.5}
 
 
+DRAWN = "[...mffit.visible().keys()].filter(i => Number.isFinite(mffit.place(0, i)[0])).length"
+"""Points of the first picture, which has none of sweeps over something else."""
+
+
 def test_keys_choose_a_point(page):
     canvas = page.find_element("css selector", ".panel canvas")
     canvas.send_keys("\ue014")  # right
@@ -143,7 +148,7 @@ def test_keys_choose_a_point(page):
     canvas.send_keys("\ue008", "\ue012")  # shift, left
     assert ask(page, "mffit.chosen()") == second + first
     canvas.send_keys("\ue009", "a")  # control
-    assert len(ask(page, "mffit.chosen()")) == sum(ask(page, "[...mffit.visible()]"))
+    assert len(ask(page, "mffit.chosen()")) == ask(page, DRAWN)
     canvas.send_keys("\ue00c")  # escape
     assert ask(page, "mffit.chosen()") == []
 
@@ -167,7 +172,7 @@ def drag(page: Any, steps: list[tuple[float, float]], type_: str = "mouse") -> N
 def test_a_rectangle_chooses_the_points_in_it(page, type_):
     """With a finger after "Select points"; then each rectangle adds. The list names every point."""
     page.execute_script("document.querySelector('.panel').scrollIntoView({block: 'center'})")
-    places = np.array([ask(page, "mffit.place(0, arguments[0])", i) for i in range(40)])
+    places = np.array([ask(page, "mffit.place(0, arguments[0])", i) for i in range(40)], dtype=float)
     if type_ == "touch":
         press(page, "#select")
     box = np.array([[20.0, 20.0], [120.0, 60.0], [170.0, 120.0]])
@@ -274,7 +279,7 @@ def test_every_channel_measured_has_a_picture_and_two_are_in_sight(page, result)
     look(page, SCREEN)
 
 
-def test_a_picture_and_its_numbers_are_saved(page, result, tmp_path):
+def test_a_picture_and_its_numbers_are_saved(page, tmp_path):
     page.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
     for k in (0, 1):
         page.execute_script(f"document.querySelectorAll('.panel .more button')[{k}].click()")
@@ -283,7 +288,7 @@ def test_a_picture_and_its_numbers_are_saved(page, result, tmp_path):
     assert files[".png"].read_bytes().startswith(b"\x89PNG")
     lines = files[".csv"].read_text(encoding="utf-8").splitlines()
     assert lines[0].endswith("sideslip [deg],side force [N]")
-    assert sum(line.startswith("point,") for line in lines) == len(result.points)
+    assert sum(line.startswith("point,") for line in lines) == ask(page, DRAWN) - 1  # left out
 
 
 LIGHT = """
