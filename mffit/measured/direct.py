@@ -29,7 +29,7 @@ from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import Drift, LoadResult, Measured, SetupScatter, SideslipZeros
 from mffit.measured.setups import excess_forces, results_of_setups, setup_scatter, warnings_of_setups
-from mffit.measured.stiffnesses import LoadSlopes, cornering_stiffness, load_slopes
+from mffit.measured.stiffnesses import LoadSlopes, assumed_stiffness, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
 from mffit.measured.uncertain import agreed, budget, quantity, quantity_if
 from mffit.measured.zeros import LoadGroup, load_groups, zeros_by_path
@@ -157,7 +157,8 @@ def _at_load(
 ) -> tuple[_AtLoad | None, list[str]]:
     """Results and warnings at one load, with eps_gamma if all its inputs were measured; None without any result."""
     C_alpha, rig = slopes.C_alpha, evidence.rig
-    slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, C_alpha))
+    assumed = assumed_stiffness(evidence, group, C_alpha)
+    slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, assumed))
     found, troubles = (None, []) if rig is None else turning(evidence, group, slopes)
     factors = calibrated(slopes, found)
     slopes = slopes.calibrated(factors.C_alpha, factors.C_gamma)

@@ -17,6 +17,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.measured import constants, wording
+from mffit.measured.axis import slip_stiffness
 from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.uncertain import named, polynomial
 from mffit.measured.zeros import LoadGroup, u_of
@@ -156,7 +157,8 @@ class LoadSlopes:
 def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes, list[str]]:
     """The stiffnesses at one load, and warnings; from odd parts on a disc, from the readings themselves on a straight path."""
     C_alpha = cornering_stiffness(evidence, group)
-    camber, backward = (_camber_estimates(evidence, group, C_alpha, direction) for direction in (1, -1))
+    assumed = assumed_stiffness(evidence, group, C_alpha)
+    camber, backward = (_camber_estimates(evidence, group, assumed, direction) for direction in (1, -1))
     chosen, trouble = _chosen(evidence.config, camber, group.load)
     chosen_backward, _ = _chosen(evidence.config, backward, group.load)
     if evidence.rig is None:
@@ -165,6 +167,12 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
     curved = [x for x in (camber.slope, chosen, chosen_backward) if isinstance(x, SlopeAtZero)]
     shape = _shape_error(curved, CAMBER)
     slope, secant = _number(camber.slope, CAMBER, shape), _number(camber.secant, CAMBER)
+    guessed = False
+    if C_alpha is None and assumed is not None:
+        without, share = _camber_estimates(evidence, group, None, 1), assumed / assumed.nominal_value - 1.0
+        slope = _with_play(slope, camber.slope, without.slope, share)
+        secant = _with_play(secant, camber.secant, without.secant, share)
+        guessed = slope is not None
     found = LoadSlopes(
         C_alpha=C_alpha,
         bend=_bend(evidence, group),
@@ -173,7 +181,8 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
         slope=slope,
         secant=secant,
     )
-    return found, [trouble] if trouble else []
+    troubles = [trouble, wording.guessed_stiffness(group.load) if guessed else None]
+    return found, [one for one in troubles if one]
 
 
 def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
@@ -186,6 +195,27 @@ def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | 
     if C_alpha is None or not config.rig.backlash_deg:
         return C_alpha
     return C_alpha * (1.0 + rest_of_play(config) / local)
+
+
+def assumed_stiffness(evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None) -> UFloat | None:
+    """The cornering stiffness, or else the usual one [N/rad]; None in the published procedure, which does without."""
+    return (
+        C_alpha
+        if C_alpha is not None or evidence.published
+        else slip_stiffness(None, None, group.load).C_alpha
+    )
+
+
+def _with_play(
+    number: UFloat | None,
+    corrected: SlopeAtZero | Secant | None,
+    without: SlopeAtZero | Secant | None,
+    share: UFloat,
+) -> UFloat | None:
+    """The number with the relative uncertainty of the stiffness, ``share``, by which it was corrected for play."""
+    if number is None or corrected is None or without is None:
+        return number
+    return number + (corrected.value - without.value) * share
 
 
 def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
@@ -210,11 +240,11 @@ def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
 def _camber_estimates(
     evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None, direction: int
 ) -> Estimates:
-    """Slope and secant of the camber sweep in one direction."""
-    config, odd_Fy = evidence.config, evidence.odd_Fy
-    i = sweep(evidence.points, odd_Fy, group, "gamma", config, direction)
-    if C_alpha is not None:  # subtract the force of the sideslip that backlash causes in a camber sweep
-        odd_Fy = odd_Fy - direction * C_alpha.nominal_value * evidence.odd_slip
+    """Slope and secant of the camber sweep in one direction, less the force of the sideslip that backlash causes in it."""
+    config = evidence.config
+    i = sweep(evidence.points, evidence.odd_Fy, group, "gamma", config, direction)
+    slope = 0.0 if C_alpha is None else C_alpha.nominal_value
+    odd_Fy = evidence.odd_Fy - direction * slope * evidence.odd_slip
     local, angle = CAMBER_OF_SLOPES.rad, math.radians(config.camber_stiffness.angle_deg)
     return _estimates(evidence, i, evidence.points.gamma, odd_Fy, local, angle)
 

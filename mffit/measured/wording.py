@@ -112,6 +112,13 @@ def conicity_measured(found: Quantity) -> str:
     )
 
 
+def guessed_stiffness(load: float) -> str:
+    return (
+        f"no upright forward sideslip sweep at {load:.0f} N gives C_alpha, so what play and camber skew do to eps_gamma is "
+        "corrected by the usual stiffness of tyres; add the sweep, or check direction and mount of its file"
+    )
+
+
 def slope_not_possible(load: float, angle_deg: float) -> str:
     return (
         f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle_deg:g} deg is used, "

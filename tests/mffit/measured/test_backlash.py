@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from plain_tyre import DEGREE, Plain, R, settings
 
+from mffit import config as configuration
+from mffit.measured import measure
 from mffit.measured.evidence import backlash_corrected, backlash_shift, odd_alpha
 from mffit.parts import split
+from mffit.pipeline.inputs import read_base, read_points
 from mffit.points import make_points
 
 PLAY = 0.2 * DEGREE
@@ -71,3 +74,19 @@ def test_the_odd_part_belongs_to_half_the_difference_of_the_true_angles():
     assert plain.sum() > 20
     assert np.any(np.abs(true[0] - points.alpha)[plain] > 0.0)
     assert found[plain] == pytest.approx(((true[0] - true[1]) / 2.0)[plain], abs=1e-6)
+
+
+def test_without_a_sideslip_sweep_play_and_skew_are_corrected_by_the_usual_stiffness():
+    """The sample's eps_gamma moves by less than the usual stiffness is said to leave in doubt, and skew stays in the budget."""
+    config = configuration.load("samples/front-120-70/tyre.toml")
+    points = read_points(config).points
+    rest = points.select(points.file != points.files.index("sideslip_1400N.csv"))
+    every, fewer = (measure(config, some, split(some), read_base(config)) for some in (points, rest))
+    assert fewer.C_alpha is None
+    doubt = {row.source: row.contribution for row in fewer.budget}
+    moved = abs(fewer.epsilon_gamma.value - every.epsilon_gamma.value)
+    assert 0.005 < moved < doubt["usual cornering stiffness"]
+    assert doubt["camber skew"] > 0.01
+    assert fewer.epsilon_gamma.u > every.epsilon_gamma.u
+    assert [one for one in fewer.warnings if "1400 N gives C_alpha" in one]
+    assert not [one for one in every.warnings if "gives C_alpha" in one]

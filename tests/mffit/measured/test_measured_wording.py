@@ -60,6 +60,7 @@ WARNINGS = [
         wording.camber_skew_beyond(Quantity(0.4907, 0.0212, "deg"), 0.1),
         "a camber skew of 0.491 +- 0.021 deg, and 0.1 deg are declared (u_camber_skew_deg)",
     ),
+    (wording.guessed_stiffness(1400.0), "sideslip sweep at 1400 N gives C_alpha"),
     (wording.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
     (wording.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
     (
