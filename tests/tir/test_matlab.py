@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 import tir
-from tests.octave import needs_octave, run
 from tir.codegen import matlab
 from tir.codegen.matlab import STATE_TEXTS, MatlabCode, export_matlab
 from tir.codegen.program import INPUTS, ORDER, Switches
 from tir.equations.forces import Forces
 from tir.evaluate import evaluate
+
+pytest.importorskip("scipy")  # exchanges arrays with Octave
+from tests.octave import needs_octave, run
 
 ROOT = Path(__file__).parents[2]
 VECTORS = ROOT / "tests" / "tir" / "vectors"
