@@ -88,12 +88,35 @@ class ChainedErrors:
         """Rows (m,) or (m, k) multiplied by the transposed inverse Cholesky factor."""
         return x if self.trivial else self._by_chain(self.root.T, x)
 
-    def _by_chain(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """The rows of every chain multiplied by the upper left block of a matrix."""
-        out = np.empty_like(x)
+    @cached_property
+    def tables(self) -> list[np.ndarray]:
+        """Rows of chains of similar length side by side, (longest, chains) each; below a shorter chain, a row after the last."""
+        similar: dict[int, list[np.ndarray]] = {}
         for rows in self.chains:
-            n = len(rows)
-            out[rows] = matrix[:n, :n] @ x[rows]
+            similar.setdefault(len(rows).bit_length(), []).append(rows)
+        after, out = sum(len(rows) for rows in self.chains), []
+        for some in similar.values():
+            table = np.full((max(len(rows) for rows in some), len(some)), after)
+            for k, rows in enumerate(some):
+                table[: len(rows), k] = rows
+            out.append(table)
+        return out
+
+    def _by_chain(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The rows of every chain multiplied by the upper left block of a triangular matrix."""
+        x = _with_zeros(x)
+        out = np.empty_like(x)
+        for table in self.tables:
+            n, own = len(table), x[table]
+            out[table] = (matrix[:n, :n] @ own.reshape(n, own[:1].size)).reshape(own.shape)
+        return out[:-1]
+
+    def products(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Sum over chains of the products (longest, longest) of the rows (m, k) of a chain in x and in y."""
+        x, y, out = _with_zeros(x), _with_zeros(y), np.zeros_like(self.root)
+        for table in self.tables:
+            n = len(table)
+            out[:n, :n] += x[table].reshape(n, -1) @ y[table].reshape(n, -1).T
         return out
 
     def variance_of_sum(self, weight: np.ndarray) -> float:
@@ -117,6 +140,11 @@ class ChainedErrors:
             n = len(rows)
             out[rows] = np.sum(self.root[:n, :n] ** 2, axis=0)
         return out
+
+
+def _with_zeros(x: np.ndarray) -> np.ndarray:
+    """Rows (m,) or (m, k) with a row of zeros after the last."""
+    return np.concatenate([x, np.zeros((1, *x.shape[1:]))])
 
 
 class ChainedEvidence(NamedTuple):
@@ -157,10 +185,10 @@ class Chained:
         by_memory = np.zeros(2)
         if not errors.trivial:
             slopes = errors.root @ memory.slopes(len(errors.root)) @ errors.root.T
-            for rows in self.chains:
-                n = len(rows)
-                inside = np.outer(left[rows], left[rows]) + spread[rows] @ white[rows, 1:].T - np.eye(n)
-                by_memory += 0.5 * np.einsum("kij,ij->k", slopes[:, :n, :n], inside)
+            inside = errors.products(np.column_stack([left, spread]), np.column_stack([left, white[:, 1:]]))
+            lengths = np.array([len(rows) for rows in self.chains])
+            inside -= np.diag(np.sum(lengths > np.arange(len(inside))[:, None], axis=1))
+            by_memory = 0.5 * np.einsum("kij,ij->k", slopes, inside)
         return ChainedEvidence(
             value=-0.5 * float(left @ white[:, 0]) - log,
             sizes=mean**2 + np.diag(inverse) - 1.0,
