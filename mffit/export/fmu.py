@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mffit
+import tir
 from mffit.errors import InputError
 from mffit.export import compiler, variables
-from mffit.export.c import CodeOfFile, code_of
+from mffit.export.code import CodeOfFile, code_of
 from mffit.output import output_folder
 from mffit.templates import environment
+from tir.codegen.c99 import taken
 from tir.mode import words
 
 if TYPE_CHECKING:
@@ -75,7 +77,7 @@ def write_fmu(
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
-    known = code_of(path, name, turn_slip, limits=limits, tunable=True, lag=transient)
+    known = code_of(path, name, turn_slip, tir.export_c, taken, limits=limits, tunable=True, lag=transient)
     name, files = known.name, _texts(known, path.name, fmi, limits=limits, transient=transient)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)

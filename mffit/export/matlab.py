@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import tir
-from mffit.export.c import code_of, written
+from mffit.export.code import code_of, written
 from mffit.output import digest
 from tir.codegen.matlab import MatlabCode, taken
 

@@ -11,7 +11,7 @@ import numpy as np
 import tir
 from mffit.errors import InputError
 from mffit.export import constants
-from mffit.export.c import mode_suffix
+from mffit.export.code import mode_suffix
 from mffit.export.forms import CONDITIONS, FORMS, LookupTable
 from mffit.export.grid import Ranges, grid_of
 from mffit.output import output_folder
