@@ -11,8 +11,8 @@ from uncertainties import UFloat, ufloat
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.errors import InputError
 from mffit.measured import constants, wording
+from mffit.measured.axis import guessed_stiffness
 from mffit.measured.result import Alignment, AlignmentStep
-from mffit.measured.uncertain import named
 from mffit.measured.zeros import WAYS, LoadGroup, force_at_zero, load_groups
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
@@ -58,14 +58,13 @@ def _steps(
     points: Points, group: LoadGroup, axes: str, guess: float, measured: Quantity | None
 ) -> Iterator[AlignmentStep]:
     """The iterations at one load, on one path and in one set-up."""
-    size = guess * group.load
-    guessed = named(-size, constants.GUESSED_STIFFNESS_U * size, "usual cornering stiffness", "N/rad")
+    guessed = guessed_stiffness(group.load, guess)
     known = [] if measured is None else [("measured", ufloat(measured.value, measured.u))]
     iteration = np.nan_to_num(points.iteration[group.index], nan=1.0).astype(int)
     before: tuple[UFloat, float] | None = None  # slip force, and the correction that was then applied [rad]
     for k in np.unique(iteration).tolist():
         own = group.of(iteration == k)
-        slope = known[0][1].nominal_value if known else -size
+        slope = known[0][1].nominal_value if known else guessed.nominal_value
         forward, backward = (force_at_zero(points, own, way, slope) for way in WAYS)
         if forward is None or backward is None:
             continue

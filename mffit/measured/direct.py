@@ -20,6 +20,7 @@ from mffit.measured.axis import (
     at_true_zero,
     camber_at_true_zero,
     slip_stiffness,
+    slope_at,
     split_of_zero,
 )
 from mffit.measured.calibration import Factors, calibration, powers_of_load
@@ -194,7 +195,7 @@ def _at_load(
 def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
     """The record of one load without eps_gamma."""
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
-    C_alpha = float(slip_stiffness(slopes.C_alpha, slopes.bend, group.load).C_alpha.nominal_value)
+    C_alpha = slope_at(slopes.C_alpha, group.load)
     split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
     stiffness = at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis)
     numbers = {"C_alpha": stiffness, "C_gamma": slopes.C_gamma}

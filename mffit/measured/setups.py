@@ -12,7 +12,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import FALSE_ALARM
 from mffit.measured import wording
-from mffit.measured.axis import slip_stiffness, split_of_zero
+from mffit.measured.axis import slope_at, split_of_zero
 from mffit.measured.camber_reduction import camber_reduction
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.result import LoadResult, SetupResult, SetupScatter, is_clear
@@ -38,7 +38,7 @@ def results_of_setups(
     if len(found.paths) < 2:
         return ()
     out, left = [], evidence.config.rig.u("alpha_0_deg")
-    slope = float(slip_stiffness(C_alpha, None, found.zeros.group.load).C_alpha.nominal_value)
+    slope = slope_at(C_alpha, found.zeros.group.load)
     for path in found.paths:
         zero, C_phit = path.zeros, path.stiffness
         axis = evidence.axes.get(zero.setup)
@@ -84,7 +84,7 @@ def setup_scatter(
     freedom = len(paths) - len(repeated)
     square = sum(float(np.sum((mean - mean.mean()) ** 2)) for mean in means) / freedom
     of_noise = rms(np.array([path.mean(both=both).std_dev for path in paths])) ** 2
-    slope = slip_stiffness(slopes.C_alpha, None, group.load).C_alpha.nominal_value
+    slope = slope_at(slopes.C_alpha, group.load)
     at = AtZero(slope, 0.0 if slopes.C_gamma is None else slopes.C_gamma.nominal_value, 0.0)
     declared = math.hypot(
         *(

@@ -14,11 +14,11 @@ from mffit.constants import (
     SAME_SIDESLIP,
     STRAIGHT,
     UPRIGHT,
-    USUAL_CORNERING_STIFFNESS,
     USUAL_U_FORCE,
     USUAL_U_MOMENT,
 )
 from mffit.measured import constants, wording
+from mffit.measured.axis import slope_at
 from mffit.measured.uncertain import combined, named, polynomial
 from mffit.points import Points, levels, main_pressure
 
@@ -100,7 +100,7 @@ def zeros_by_path(
     points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
 ) -> list[PathZeros]:
     """The zeros of every path and set-up with forward zeros at this load, the usual path first."""
-    slope, usual = _slope(C_alpha, group), path_curvature(config.rig)
+    slope, usual = slope_at(C_alpha, group.load), path_curvature(config.rig)
     phi_t, setup = points.phi_t[group.index], points.setup[group.index]
     paths = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
     found = []
@@ -133,11 +133,6 @@ def u_of(points: Points, channel: str) -> np.ndarray:
     """Standard uncertainty (n,) of Fy or Mz: as stated, else the usual one."""
     u = points.u(channel)
     return np.where(np.isfinite(u), u, USUAL_U[channel])
-
-
-def _slope(C_alpha: UFloat | None, group: LoadGroup) -> float:
-    """Cornering stiffness [N/rad]; the usual one if none was measured."""
-    return -USUAL_CORNERING_STIFFNESS * group.load if C_alpha is None else float(C_alpha.nominal_value)
 
 
 def _at_zero(
@@ -181,7 +176,9 @@ def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, confi
     u = math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
     out = []
     for direction, word in WAYS.items():
-        found = forces_of_sweeps(points, zeros(points, group, direction), direction, _slope(C_alpha, group))
+        found = forces_of_sweeps(
+            points, zeros(points, group, direction), direction, slope_at(C_alpha, group.load)
+        )
         readings = [named(force, u, "zero of a sweep", "N") for force in found.values()]
         if readings and combined(readings).chance < FALSE_ALARM:
             least, most = (f(found, key=lambda k: found[k]) for f in (min, max))
