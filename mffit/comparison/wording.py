@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
@@ -10,7 +11,7 @@ from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from mffit.rig_errors import words_of
-from tir.errors import listed, some
+from tir.errors import counted, listed, some
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -49,18 +50,25 @@ def differences(found: Comparison) -> str:
 
 
 def _significant(found: Comparison) -> str:
-    """A clause on the numbers that differ significantly, or else on the largest relative difference."""
-    limit = COVERAGE_FACTOR_95
-    rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
-    if rows:
-        names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"numbers that differ by more than {limit:.2g} standard uncertainties: {some(names)}"
+    """A clause on the numbers and coefficients that differ significantly, or else on the largest relative difference."""
+    beyond = f"by more than {COVERAGE_FACTOR_95:.2g} standard uncertainties"
+    names = list(dict.fromkeys(quantity(row).word for row in _beyond(found.numbers)))
+    known = [row for row in found.coefficients if row.z is not None]
+    keys = [row.key for row in _beyond(known)]
+    coefficients = f"; of {counted(len(known), 'coefficient')} these do: {some(keys)}" if keys else ""
+    if names:
+        return f"numbers that differ {beyond}: {some(names)}{coefficients}"
     if any(row.z is not None for row in found.numbers):
-        return f"no number differs by more than {limit:.2g} standard uncertainties"
+        return f"no stiffness, peak or other number at a load differs {beyond}{coefficients}"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
     if largest is None or not largest.relative:
         return "all numbers are equal"
     return f"the largest relative difference is that of the {quantity(largest).word}, {100.0 * largest.relative:.3g} %"
+
+
+def _beyond(rows: Iterable[Difference]) -> list[Difference]:
+    """The differences that are significant."""
+    return [row for row in rows if row.z is not None and abs(row.z) > COVERAGE_FACTOR_95]
 
 
 def place(row: Difference) -> str:

@@ -16,6 +16,7 @@ import pytest
 from small_rigs import SAMPLE, built, disc, simulated, truth
 
 import mffit
+import tir
 from mffit import fleet
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
@@ -209,6 +210,16 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     for gap in wrong.sweeps:
         rows = np.array([wrong.points.sweep_names[k] == gap.sweep for k in wrong.points.sweep])
         assert gap.bias == pytest.approx(np.nanmean(apart[gap.channel][rows]))
+
+
+def test_a_coefficient_that_moves_no_number_is_named(folder, tmp_path):
+    """QDZ8 acts with camber alone, and no number of the comparison is of a moment under camber."""
+    tyre, known = tir.read(folder / "out" / "small.tir"), json.loads((folder / "out" / "result.json").read_text())
+    u = known["fit"]["coefficients"]["QDZ8"]["stderr"]
+    tyre.replace(QDZ8=tyre["QDZ8"] + 5.0 * u).write(tmp_path / "small.tir")
+    said = wording.headline(mffit.compare(folder / "out", tmp_path / "small.tir"))
+    assert "no stiffness, peak or other number at a load differs by more than 2 standard uncertainties" in said
+    assert said.endswith(" these do: QDZ8.")
 
 
 def test_two_sets_of_data_are_refused(folder):
