@@ -295,7 +295,7 @@ def loaded_radius(
     growth = p["Q_CAM2"] / p["Q_CAM1"] if p["Q_CAM1"] else np.inf
     steepness = 2.0 if np.isinf(growth) else 1.0
     lower, upper = 0.0 * free, free + edge
-    for _ in range(60):  # down to rounding
+    for _ in range(40):  # to a picometre
         radius = 0.5 * (lower + upper)
         ratio = (radius / free) ** steepness
         if np.isfinite(growth):
