@@ -150,8 +150,8 @@ class FinishedFit(JudgedMeasurement):
             k in self.points.sweep[one.index] and channel in one.channels for one in self.against
         )
 
-    def of_the_formula(self, channel: str) -> bool:
-        """Whether smooth model error, rather than noise, dominates the misfit of a channel."""
+    def beyond_scatter(self, channel: str) -> bool:
+        """Whether the misfit of a channel exceeds the noise although its readings hardly scatter within a sweep."""
         if self.linear is None or channel not in self.linear.channels:
             return False
         seen = self.linear.channels[channel]
@@ -453,6 +453,20 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             yield {**facts, "unit": CHANNELS[name].unit}
 
 
+@of_model(
+    id="sweeps-differ",
+    outcome=Outcome.WARNED,
+    sentence="sweeps differ in {channel} from what is common to all, each in its own way, by {ratio:.3g} times the stated "
+    "uncertainty, most in {carriers}; state in which condition they differ, such as pressure (p_kPa) or temperature "
+    "(T_degC), repeat them, or state an uncertainty that holds from run to run",
+)
+def sweeps_differ(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
+    for name in fit.used:
+        if fit.misfit(name).n and fit.beyond_scatter(name) and not fit.linear.channels[name].is_proven:
+            yield {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
+
+
 @of_model(id="model-of-another-tyre", outcome=Outcome.DISTRUSTED, sentence="{why}")
 def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of a given model that is none of this tyre; no other rule is applied then."""
@@ -481,7 +495,7 @@ def judge(found: JudgedMeasurement) -> Trust:
         return Trust(reasons=strange, over_noise=found.over_noise)
     reasons = said(*OF_TRUST, doubtful=False)
     doubts = said(*OF_TRUST, doubtful=True)
-    limited = tuple(name for name in found.used if found.of_the_formula(name))
+    limited = tuple(name for name in found.used if found.beyond_scatter(name))
     return Trust(reasons, doubts, over_noise=found.over_noise, limited=limited)
 
 
@@ -503,6 +517,7 @@ OF_TRUST = (
     far_below_noise,
     effect_left,
     structure_left,
+    sweeps_differ,
 )
 """All rules of trust, the most serious first."""
 
@@ -521,7 +536,7 @@ def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
 def _noise_is_stated(fit: FinishedFit) -> bool:
     """Whether residuals can be judged by stated noise: a channel states it, and model error dominates no such channel."""
     stated = [name for name in fit.used if fit.misfit(name).n]
-    return bool(stated) and not any(fit.of_the_formula(name) for name in stated)
+    return bool(stated) and not any(fit.beyond_scatter(name) for name in stated)
 
 
 def _cause(fit: FinishedFit) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shutil
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from small_rigs import FY, flat, simulated
+from small_rigs import FY, SAMPLE, flat, simulated
 
 import mffit
 from mffit.report import text
@@ -136,3 +137,18 @@ def test_a_channel_without_anything_to_explain_is_no_reason(tmp_path):
         table.assign(Mx_Nm=noise).to_csv(path, index=False)
     result = mffit.build(tmp_path / "tyre.toml")
     assert not any("variance of Mx" in reason for reason in result.reasons)
+
+
+def test_sweeps_of_pressures_that_nobody_states_are_in_doubt(tmp_path):
+    """Those at 200 and 300 kPa count as nominal without their column: each is off in its own way, by more than its noise."""
+    shutil.copytree(SAMPLE.parent / "flat-track", tmp_path, dirs_exist_ok=True)
+    for path in tmp_path.glob("*.csv"):
+        pd.read_csv(path).drop(columns="p_kPa").to_csv(path, index=False)
+    found = mffit.build(tmp_path / "tyre.toml")
+    doubts = [one for one in found.trust.doubts if one.startswith("sweeps differ in")]
+    assert [one.split()[3] for one in doubts] == ["Fy", "Mz"]
+    assert all("pressure (p_kPa)" in one for one in doubts)
+    for one in doubts:
+        named = re.findall(r"sideslip\w+", one)
+        assert named
+        assert all("kPa" in name for name in named)
