@@ -201,7 +201,7 @@ def test_folds_show_when_opened_and_on_paper_what_is_decided_by(browser):
         script = "return [...document.querySelectorAll(arguments[0])].some(one => one.checkVisibility())"
         return browser.execute_script(script, css)
 
-    for css in (".screen-only img", ".screen-only table"):
+    for css in (".screen-only img", ".screen-only summary"):
         assert shown(css)
     assert not shown(".paper-only")
 
