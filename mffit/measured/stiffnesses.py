@@ -172,7 +172,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
         without, share = _camber_estimates(evidence, group, None, 1), assumed / assumed.nominal_value - 1.0
         slope = _with_play(slope, camber.slope, without.slope, share)
         secant = _with_play(secant, camber.secant, without.secant, share)
-        guessed = slope is not None
+        guessed = slope is not None and evidence.rig is not None
     found = LoadSlopes(
         C_alpha=C_alpha,
         bend=_bend(evidence, group),

@@ -90,3 +90,13 @@ def test_without_a_sideslip_sweep_play_and_skew_are_corrected_by_the_usual_stiff
     assert fewer.epsilon_gamma.u > every.epsilon_gamma.u
     assert [one for one in fewer.warnings if "1400 N gives C_alpha" in one]
     assert not [one for one in every.warnings if "gives C_alpha" in one]
+
+
+def test_on_a_straight_path_nothing_is_said_of_eps_gamma():
+    config = configuration.load("samples/flat-track/tyre.toml")
+    points = read_points(config).points
+    rest = points.select((points.gamma != 0.0) | (points.alpha == 0.0))
+    found = measure(config, rest, split(rest), read_base(config))
+    assert found.C_alpha is None
+    assert found.C_gamma is not None
+    assert not [one for one in found.warnings if "gives C_alpha" in one]
