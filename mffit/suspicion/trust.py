@@ -462,8 +462,8 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def sweeps_differ(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
-    for name in fit.used:
-        if fit.misfit(name).n and fit.beyond_scatter(name) and not fit.linear.channels[name].is_proven:
+    for name, channel in fit.linear.channels.items() if fit.linear else ():
+        if fit.misfit(name).n and fit.beyond_scatter(name) and not channel.is_proven:
             yield {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
 
 
