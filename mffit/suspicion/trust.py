@@ -454,13 +454,13 @@ def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 
 @of_model(
-    id="sweeps-differ",
+    id="misfit-of-whole-sweeps",
     outcome=Outcome.WARNED,
-    sentence="sweeps differ in {channel} from what is common to all, each in its own way, by {ratio:.3g} times the stated "
-    "uncertainty, most in {carriers}; state in which condition they differ, such as pressure (p_kPa) or temperature "
-    "(T_degC), repeat them, or state an uncertainty that holds from run to run",
+    sentence="the model misses whole sweeps of {channel}, by {ratio:.3g} times the stated uncertainty, most {carriers}: they "
+    "differ in a condition that is not stated, such as pressure (p_kPa) or temperature (T_degC), or the formula misses them, "
+    "and these sweeps do not tell which; state the condition, or repeat them",
 )
-def sweeps_differ(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+def whole_sweeps(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit over the stated noise that is neither noise within the sweeps nor proven to be common to all of them."""
     for name, channel in fit.linear.channels.items() if fit.linear else ():
         if fit.misfit(name).n and fit.beyond_scatter(name) and not channel.is_proven:
@@ -517,7 +517,7 @@ OF_TRUST = (
     far_below_noise,
     effect_left,
     structure_left,
-    sweeps_differ,
+    whole_sweeps,
 )
 """All rules of trust, the most serious first."""
 

@@ -205,6 +205,7 @@ def one_build(job: tuple[int, str, Any]) -> dict[str, Any]:
             value, u = result.fit.rig.get(NAMES[key], (0.0, 1.0))
             out["found"] = any(WORDS[NAMES[key]] in text for text in said) or abs(value) > SAFE * u
         out["blamed"] = len(result.fit.doubts)
+        out["open"] = any("misses whole sweeps" in text for text in result.trust.doubts)
         direct = result.measured.epsilon_gamma
         if direct is not None and isinstance(tyre, Brush):
             out["eps"] = (direct.value - tyre.reduction) / direct.u
@@ -240,8 +241,10 @@ def lines(world: str, rows: list[dict[str, Any]]) -> list[str]:
     """The page of one world."""
     sound = [row for row in rows if "refused" not in row]
     out = [f"\n## {world}: {len(rows)} builds, {len(rows) - len(sound)} refused"]
-    trusted, blamed = (sum(bool(row[key]) for row in sound) for key in ("trusted", "blamed"))
-    out.append(f"trusted {trusted}, with a doubted sweep {blamed}")
+    trusted, blamed, open_ = (sum(bool(row[key]) for row in sound) for key in ("trusted", "blamed", "open"))
+    out.append(
+        f"trusted {trusted}, with a doubted sweep {blamed}, with missed sweeps of unknown cause {open_}"
+    )
     out += [f"* {text[:200]}" for row in sound for text in row["reasons"]][:4]
     if ", " in world:
         out.append(f"what is wrong is named, or a number of the fit, in {sum(row['found'] for row in rows)}")
