@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -162,22 +163,24 @@ def _point(cell: str, dialect: Dialect) -> str:
 def _table(body: bytes, names: Sequence[str | int], dialect: Dialect, path: Path, above: int) -> pd.DataFrame:
     """The rows below the headings, a row per line; ``above`` is the number of lines above them."""
     try:
-        table = pd.read_csv(
-            io.BytesIO(body),
-            sep=r"\s+" if dialect.separator == BLANKS else dialect.separator,
-            decimal="," if dialect.has_comma else ".",
-            header=None,
-            names=list(names),
-            dtype=dict.fromkeys(LABELS.intersection(names), str),
-            index_col=False,
-            skip_blank_lines=False,
-            skipinitialspace=True,
-            keep_default_na=False,
-            na_values=[""],
-            encoding_errors="replace",
-            low_memory=False,
-        )
-    except ValueError as error:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # it would lose cells
+            table = pd.read_csv(
+                io.BytesIO(body),
+                sep=r"\s+" if dialect.separator == BLANKS else dialect.separator,
+                decimal="," if dialect.has_comma else ".",
+                header=None,
+                names=list(names),
+                dtype=dict.fromkeys(LABELS.intersection(names), str),
+                index_col=False,
+                skip_blank_lines=False,
+                skipinitialspace=True,
+                keep_default_na=False,
+                na_values=[""],
+                encoding_errors="replace",
+                low_memory=False,
+            )
+    except (ValueError, pd.errors.ParserWarning) as error:
         found = re.search(r"in line (\d+), saw (\d+)", str(error))
         if found:
             width = sum(isinstance(name, str) for name in names)

@@ -61,6 +61,14 @@ def test_a_header_outside_a_section_does_not_stop_the_reader():
     outcome("a.tdx", b"x**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1\n")
 
 
+def test_a_quotation_mark_that_joins_two_rows_is_one_sentence(tmp_path):
+    """pandas counts more cells in them than there are headings, and would drop some with a warning of its own."""
+    path = tmp_path / "a.csv"
+    path.write_bytes(b'0.0\t1.0\t:\n0.0\t0.0\t0.0\t"\n"\t0.0')
+    with pytest.raises(InputError, match="a quotation mark is not closed in its line"):
+        formats.read(path)
+
+
 @EXAMPLES
 @given(st.lists(st.lists(CELLS, max_size=6), max_size=8), st.sampled_from([",", ";", "\t", "|", " "]))
 def test_any_cells(rows, separator):
