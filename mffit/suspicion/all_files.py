@@ -11,6 +11,7 @@ from mffit.config import Config
 from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, STRAIGHT, UPRIGHT
 from mffit.points import Points, levels
 from mffit.suspicion import constants
+from mffit.suspicion.groups import readings_of
 from mffit.suspicion.rule import Finding, Outcome, rule
 from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning_slope, pooled, signatures
 
@@ -21,9 +22,7 @@ from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, line, overturning
 )
 def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
     """Readings of a sweep that are all in another sweep; its points would count twice."""
-    readings = np.column_stack(
-        [points.alpha, points.gamma, points.Fz, points.Fy, np.nan_to_num(points.Mz), points.direction]
-    )
+    readings = readings_of(points)
     seen: dict[bytes, int] = {}
     for k in np.unique(points.sweep):
         rows = np.flatnonzero(points.sweep == k)

@@ -29,6 +29,12 @@ def groups(points: Points) -> list[Group]:
     return [g for g in reversed(unique.values()) if constants.FEWEST <= len(g.index) <= 0.5 * len(points)]
 
 
+def readings_of(points: Points) -> np.ndarray:
+    """Conditions and readings (n, 6) by which one point is a copy of another."""
+    Mz = np.nan_to_num(points.Mz)
+    return np.column_stack([points.alpha, points.gamma, points.Fz, points.Fy, Mz, points.direction])
+
+
 def _sweeps(points: Points) -> Iterator[Group]:
     for k in np.unique(points.sweep):
         index = np.flatnonzero(points.sweep == k)

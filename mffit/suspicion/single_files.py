@@ -13,6 +13,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.points import Points
 from mffit.suspicion import constants
+from mffit.suspicion.groups import readings_of
 from mffit.suspicion.rereadings import MISTAKES
 from mffit.suspicion.rule import Finding, rule_of_files
 from mffit.suspicion.slopes import slope
@@ -45,10 +46,7 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 )
 def repeated_rows(part: Points, config: Config) -> Iterator[Finding]:
     """Rows with the readings of another row of the file, if they are half of it."""
-    readings = np.column_stack(
-        [part.alpha, part.gamma, part.Fz, part.Fy, np.nan_to_num(part.Mz), part.direction]
-    )
-    first = np.unique(readings, axis=0, return_index=True)[1]
+    first = np.unique(readings_of(part), axis=0, return_index=True)[1]
     copies = np.setdiff1d(np.arange(len(part)), first)
     if len(part) >= constants.FEWEST and 2 * len(copies) >= len(part) and np.ptp(part.Fy) > 0.0:
         yield Finding({"count": len(copies)}, line=int(part.line[copies[0]]) or None)
