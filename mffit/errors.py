@@ -78,6 +78,12 @@ def readable(
         raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
 
 
+def check_readable(path: Path) -> None:
+    """Raise :class:`InputError` if the file cannot be opened."""
+    with readable(path):
+        path.open("rb").close()
+
+
 def meant(word: str, known: Iterable[str], *, likeness: float = constants.LIKENESS_OF_MISSPELT) -> str:
     """The known word that a misspelt one probably is; empty if none is like it."""
     return next(iter(difflib.get_close_matches(word, list(known), n=1, cutoff=likeness)), "")

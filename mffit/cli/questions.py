@@ -8,7 +8,7 @@ import click
 
 from mffit.cli.console import Voice, told, voiced
 from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
-from mffit.errors import InputError, readable
+from mffit.errors import InputError, check_readable
 
 
 @click.command()
@@ -55,8 +55,7 @@ def align(
     from mffit.report import text
 
     if source.suffix != ".toml":
-        with readable(source):
-            source.open("rb").close()
+        check_readable(source)
         if axes is None or path_centre is None:
             raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
     finest = {} if resolution is None else {"resolution_deg": resolution}

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-from mffit.errors import InputError, readable, shortened
+from mffit.errors import InputError, check_readable, readable, shortened
 from mffit.sweeps import constants
 
 
@@ -33,8 +33,7 @@ def damaged(path: Path, kind: str, reason: object) -> InputError:
 @contextmanager
 def undamaged(path: Path, kind: str) -> Iterator[None]:
     """Turn any error within this block into an :class:`InputError`; a damaged file may raise any error in a library."""
-    with readable(path):
-        path.open("rb").close()
+    check_readable(path)
     try:
         yield
     except InputError:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from mffit.errors import readable
+from mffit.errors import check_readable
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
@@ -51,8 +51,7 @@ def read(path: Path) -> RawTable:
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
-    with readable(path):
-        path.open("rb").close()
+    check_readable(path)
     found = format_of(path).read(path)
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
