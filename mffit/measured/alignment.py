@@ -11,7 +11,7 @@ from uncertainties import UFloat, ufloat
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.errors import InputError
 from mffit.measured import constants, wording
-from mffit.measured.axis import guessed_stiffness
+from mffit.measured.axis import usual_stiffness
 from mffit.measured.result import Alignment, AlignmentStep
 from mffit.measured.zeros import WAYS, LoadGroup, force_at_zero, load_groups
 from mffit.points import Points, main_path
@@ -58,7 +58,7 @@ def _steps(
     points: Points, group: LoadGroup, axes: str, guess: float, measured: Quantity | None
 ) -> Iterator[AlignmentStep]:
     """The iterations at one load, on one path and in one set-up."""
-    guessed = guessed_stiffness(group.load, guess)
+    guessed = usual_stiffness(group.load, guess)
     known = [] if measured is None else [("measured", ufloat(measured.value, measured.u))]
     iteration = np.nan_to_num(points.iteration[group.index], nan=1.0).astype(int)
     before: tuple[UFloat, float] | None = None  # slip force, and the correction that was then applied [rad]

@@ -40,15 +40,15 @@ def slip_stiffness(C_alpha: UFloat | None, bend: UFloat | None, load: float) -> 
     """The measured slope and bend, else the usual slope at a load [N] without a bend."""
     if C_alpha is not None:
         return SlipStiffness(C_alpha, bend)
-    return SlipStiffness(guessed_stiffness(load), None)
+    return SlipStiffness(usual_stiffness(load), None)
 
 
 def slope_at(C_alpha: UFloat | None, load: float) -> float:
     """The measured cornering stiffness [N/rad], else the usual one at a load [N]."""
-    return float((guessed_stiffness(load) if C_alpha is None else C_alpha).nominal_value)
+    return float((usual_stiffness(load) if C_alpha is None else C_alpha).nominal_value)
 
 
-def guessed_stiffness(load: float, of_load: float = USUAL_CORNERING_STIFFNESS) -> UFloat:
+def usual_stiffness(load: float, of_load: float = USUAL_CORNERING_STIFFNESS) -> UFloat:
     """A cornering stiffness [N/rad] that was not measured, from its size ``of_load`` [1/rad] per load [N]."""
     size = of_load * load
     return named(-size, constants.GUESSED_STIFFNESS_U * size, "usual cornering stiffness", "N/rad")

@@ -17,7 +17,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
 from mffit.measured import constants, wording
-from mffit.measured.axis import guessed_stiffness
+from mffit.measured.axis import usual_stiffness
 from mffit.measured.evidence import DirectEvidence, rest_of_play
 from mffit.measured.uncertain import named, polynomial
 from mffit.measured.zeros import LoadGroup, u_of
@@ -199,7 +199,7 @@ def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | 
 
 def assumed_stiffness(evidence: DirectEvidence, group: LoadGroup, C_alpha: UFloat | None) -> UFloat | None:
     """The cornering stiffness, or else the usual one [N/rad]; None in the published procedure, which does without."""
-    return C_alpha if C_alpha is not None or evidence.published else guessed_stiffness(group.load)
+    return C_alpha if C_alpha is not None or evidence.published else usual_stiffness(group.load)
 
 
 def _with_play(
