@@ -37,10 +37,10 @@ def code_of(
     is_taken: Callable[[str], bool],
     **switches: bool,
 ) -> CodeOfFile:
-    """The code of a property file in a language, with a ``given`` name or one made from that of the file.
+    """The code of a property file in a language; its name is the ``given`` one, or is made from the name of the file.
 
-    Other characters become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is not as the file's
-    USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
+    Characters that a name cannot have become underscores. The name gets ``_turn_slip`` or ``_normal`` behind it if turn slip is
+    not as the file's USE_MODE says, and ``tyre_`` in front if it does not begin with a letter or is a word of the language.
     """
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip

@@ -108,7 +108,7 @@ class ChainedErrors:
         out = np.empty_like(x)
         for table in self.tables:
             n, own = len(table), x[table]
-            out[table] = (matrix[:n, :n] @ own.reshape(n, own[:1].size)).reshape(own.shape)
+            out[table] = (matrix[:n, :n] @ own.reshape(n, -1)).reshape(own.shape)
         return out[:-1]
 
     def products(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -99,11 +99,8 @@ def headline(found: Fleet) -> str:
     """A sentence: in which numbers the tyres differ, and in which they agree within their uncertainty."""
     best = [key for key in EPSILON if found.scatter(key) is not None][
         -1:
-    ]  # the estimates are listed from the worst to the best
-    words = {
-        **dict.fromkeys(best, DIRECT["epsilon_gamma"].word),
-        **{key: q.word for key, q in COMPARED.items()},
-    }
+    ]  # listed from the worst to the best
+    words = dict.fromkeys(best, DIRECT["epsilon_gamma"].word) | {key: q.word for key, q in COMPARED.items()}
     scatters = {word: s for key, word in words.items() if (s := found.scatter(key)) is not None}
     apart = [word for word, s in scatters.items() if s.beyond > 0.0]
     alike = [word for word in scatters if word not in apart]

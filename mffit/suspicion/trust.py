@@ -176,7 +176,7 @@ class Trust:
     reasons: tuple[str, ...] = ()  #: reasons against trust; empty for a sound result
     doubts: tuple[str, ...] = ()  #: points that the engineer should check
     remarks: tuple[str, ...] = ()  #: limits of a sound result
-    limited: tuple[str, ...] = ()  #: channels in which smooth model error dominates the misfit
+    limited: tuple[str, ...] = ()  #: channels that are missed beyond the scatter within their sweeps
     over_noise: Mapping[str, float] = field(default_factory=dict)
     """By channel, misfit over stated noise; NaN if no noise is stated."""
 
@@ -534,7 +534,7 @@ def _blamed_by(rule: Rule, fit: FinishedFit) -> bool:
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
-    """Whether residuals can be judged by stated noise: a channel states it, and model error dominates no such channel."""
+    """Whether residuals can be judged by stated noise: a channel states it, and no such channel is missed beyond its scatter."""
     stated = [name for name in fit.used if fit.misfit(name).n]
     return bool(stated) and not any(fit.beyond_scatter(name) for name in stated)
 
