@@ -24,6 +24,7 @@ from tir.equations.forces import Forces, State
 SWITCH = "turn_slip"
 LAG = "relaxation_m"
 """The rig error that makes a point depend on all previous points of its sweep."""
+PLAY, SIDESLIP_ZERO, MOMENT_ZERO = "backlash_deg", "alpha_0_deg", "M0_Nm"
 SIMULATED = tuple(name for name in CHANNELS if name in (*Forces._fields, *State._fields))
 """Channels that tir computes, under the same names."""
 
@@ -97,6 +98,24 @@ class Simulation(Brief):
         rig = self.readings(points, channels)
         tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt, channels)
         return felt.replace(**{name: points.channel(name) - (rig[name] - tyre[name]) for name in channels})
+
+    def floats(self, points: Points) -> np.ndarray:
+        """Mask (n,) of the points at which the moment changes sign within the play of the steering axis.
+
+        There, the friction of the axis decides where between its stops the wheel rests, which no reading shows.
+        """
+        play = float(self.faults[PLAY])
+        if not play > 0.0:
+            return np.zeros(len(points), dtype=bool)
+        of_parts = {n: x for n, x in self.of_parts.items() if n.partition(OF_RUN)[0] != MOMENT_ZERO}
+        tight = replace(self, of_parts=of_parts).with_numbers({PLAY: 0.0, MOMENT_ZERO: 0.0})
+        low, high = (
+            tight.with_numbers({SIDESLIP_ZERO: self.faults[SIDESLIP_ZERO] + end * play}).readings(
+                points, ("Mz",)
+            )["Mz"]
+            for end in (-0.5, 0.5)
+        )
+        return np.asarray(low * high < 0.0)
 
     def predict(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
         """The simulated readings (c n,), channel by channel."""
