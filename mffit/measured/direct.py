@@ -231,7 +231,9 @@ def _assembled(
     nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
     nearest = min(rows, key=lambda found: abs(found.row.load - nominal_load), default=None)
-    steering = [] if nearest is None else _if_steering_yields(evidence.config, nearest)
+    of_slopes = [] if nearest is None else _if_steering_yields(evidence.config, nearest)
+    if nearest is not None and not np.any(np.isfinite(evidence.points.T)):
+        of_slopes.append(wording.UNKNOWN_WARMTH)
     known = [(found, found.epsilon) for found in rows if found.epsilon is not None]
     measured = Measured(
         per_load=per_load,
@@ -241,7 +243,7 @@ def _assembled(
         u_pecp2=None,
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=False,
-        notes=(*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *steering),
+        notes=(*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *of_slopes),
         warnings=(),
         camber_skew=skew,
     )
@@ -258,7 +260,7 @@ def _assembled(
     nominal = known[at][0]
     left = evidence.config.rig.u("alpha_0_deg")
     said, off = wording.alignment(nominal.row, left), nominal.row.axis_off(left)
-    notes = (*_notes(evidence, nominal.row, skew, law.note), *steering)
+    notes = (*_notes(evidence, nominal.row, skew, law.note), *of_slopes)
     measured = replace(
         measured,
         nominal=nominal.row,

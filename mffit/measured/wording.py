@@ -218,6 +218,13 @@ def steering(compliance: float, change: float) -> str:
     )
 
 
+UNKNOWN_WARMTH = (
+    "C_alpha and C_gamma are of the tyre as warm as its sweeps leave it at zero: no temperature (T_degC) was recorded, and a "
+    "tyre that loses 6 % along each sweep is 3 % stiffer when cold."
+)
+"""Which tyre the stiffnesses are of, where temperatures are unknown."""
+
+
 def expanded(measured: Measured) -> str:
     """The expanded uncertainty with its coverage factor, in words; empty without a budget."""
     found = measured.nominal.expanded if measured.nominal else None
