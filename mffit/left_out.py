@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtrc, ndtri
+from scipy.special import ndtri
 
 from mffit import constants
 
@@ -30,19 +30,6 @@ class Predicted:
         """Mean improvement by ``other`` in standard errors over the groups, for all channels or the index ``channel``."""
         change = self.chi2 - other.chi2
         return over_scatter(np.sum(change, axis=1) if channel is None else change[:, channel])
-
-    def raised(self, other: Predicted, loss: np.ndarray | float = 0.0) -> bool:
-        """Whether ``other`` predicts a channel significantly worse, and by more than ``loss``.
-
-        ``loss`` is an allowed rise of chi-square, for each channel (c,) or one for all. A rise is significant if it is large in
-        standard errors over the groups, or if an F-test finds the misfit larger; the F-test also detects a rise in one group.
-        """
-        allowed = np.broadcast_to(loss, self.chi2.shape[1])
-        return any(
-            float(np.sum(there - here)) > allowed[k]
-            and (over_scatter(here - there) < -constants.WORSE_PREDICTION or _larger(here, there))
-            for k, (here, there) in enumerate(zip(self.chi2.T, other.chi2.T, strict=True))
-        )
 
 
 def left_out_errors(
@@ -79,12 +66,6 @@ def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, chan
 def needed_fall(candidates: int) -> float:
     """Improvement in standard errors that is significant for the best of several candidates."""
     return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
-
-
-def _larger(before: np.ndarray, after: np.ndarray) -> bool:
-    """Whether the misfits ``after`` (s,) are significantly larger by an F-test with one degree of freedom per group."""
-    ratio = float(np.sum(after)) / max(float(np.sum(before)), np.finfo(float).tiny)
-    return bool(fdtrc(len(before), len(before), ratio) < constants.PREDICTION_FALSE_ALARM)
 
 
 def over_scatter(change: np.ndarray) -> float:

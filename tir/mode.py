@@ -22,6 +22,11 @@ def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:
     return bool(abs(values["USE_MODE"]) % 10.0 // 1.0 == 5.0)
 
 
+def with_turn_slip(mode: float) -> float:
+    """The USE_MODE with 5 as units digit, so that spin acts."""
+    return mode // 10.0 * 10.0 + 5.0
+
+
 def words(turn_slip: bool) -> str:
     """The mode as it is written into exported files."""
     return f"turn slip {'on' if turn_slip else 'off'}"

@@ -85,7 +85,7 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    voice.written(out, "diagnosis.html", "diagnosis.json", text.models_written(diagnosis))
+    voice.written(out, "diagnosis.html", "diagnosis.json", *text.models_written(diagnosis))
     voice.give(diagnosis)
     if not diagnosis.trusted:
         voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")

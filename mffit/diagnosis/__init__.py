@@ -6,12 +6,13 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 2. ``stated``, ``noise``: stated covariance of the readings. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.
 4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
-5. ``explain``: the rounds. ``learning``, ``scatter``, ``tails`` estimate the real noise, its autocorrelation and offsets of
-   runs; ``selection`` selects effects, which compete with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges
-   effects by left-out sweeps.
-6. ``validation``: the gap on left-out sweeps.
-7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are excluded.
-8. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.
+5. ``explain``: all effects fitted together, then the noise around them: ``learning``, ``scatter``, ``tails`` estimate its size,
+   its autocorrelation and offsets of runs. ``selection`` finds the most probable set of effects from the evidence of all sets
+   (``subsets``), in competition with unnamed structure (``smooth``, ``bumps``); ``prediction`` judges effects by left-out sweeps.
+6. ``rest``: what remains with the effects, and the four answers.
+7. ``validation``, ``repair``: the gap on left-out sweeps, and the effects and the file that are corrected.
+8. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are excluded.
+9. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.
 
 Every build uses ``remains`` on the linear model of its own fit, to test every effect together with all fitted numbers.
 """

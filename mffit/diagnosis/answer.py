@@ -16,20 +16,22 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import DiagnosisNote, HardlyThisTyre, NoiseBeyondStated
-from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.notes import DiagnosisNote
+from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.repair import Repair
-from mffit.diagnosis.result import AcceptedEffect, Diagnosis
-from mffit.diagnosis.selection import ForwardStep
+from mffit.diagnosis.rest import Answer, Rest
+from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
+from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.validation import Gap, gap
+from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.rig import Readings, Simulation
+from mffit.rig import Readings
 from mffit.suspicion import Outlier, outliers
 from tir import Tyre
+from tir.mode import with_turn_slip
 from tir.parameters import BY_NAME
 
 
@@ -38,9 +40,23 @@ def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[Accepted
     return tuple(_found(found, effect, given) for effect in found.chosen.effects)
 
 
+def answered(
+    rest: Sequence[Rest], named: Sequence[AcceptedEffect], alternatives: Mapping[str, float]
+) -> Answer:
+    """The answer: what remains decides first, then ties and confidences of what is named."""
+    if rest:
+        return Answer.UNKNOWN
+    if not named:
+        likely = max(alternatives.values(), default=0.0) > constants.LIKELY_ANSWER
+        return Answer.UNDECIDED if likely else Answer.NOTHING
+    open_ = any(one.tied for one in named) or not any(one.repaired for one in named)
+    return Answer.UNDECIDED if open_ else Answer.FOUND
+
+
 def answer(
     found: Explanation,
     named: Sequence[AcceptedEffect],
+    rest: Sequence[Rest],
     repair: Repair,
     given: DiagnosisProblem,
     tyre: Tyre,
@@ -49,23 +65,29 @@ def answer(
     candidates: Sequence[Effect],
     alternatives: Mapping[str, float],
     gap_before: Gap,
+    seen: bool,
 ) -> Diagnosis:
     """The record of an explanation.
 
-    ``found`` is the explanation that left-out sweeps confirm, with the ``named`` effects and the confidence of the
-    ``alternatives`` by id; ``given`` is the problem of the given model; ``gap_before`` is the gap of all uncorrected readings.
+    ``found`` is the explanation that left-out sweeps confirm, with the ``named`` effects, what it leaves (``rest``) and the
+    confidence of the ``alternatives`` by id; ``given`` is the problem of the given model; ``gap_before`` is the gap of all
+    uncorrected readings.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before = given.predict(given.start)
     explained = given.predict(found.refined.state) if chosen.effects or found.coefficients else before
     done = repair.explanation
     after = given.predict(done.refined.state) if done.chosen.effects or done.coefficients else before
-    hardly = any(isinstance(note, HardlyThisTyre | NoiseBeyondStated) for note in notes)
-    unexplained = found.bump.found or found.smooth.found or hardly
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
     corrected = _corrected(tyre, done)
+    delivers = any(effect.kind == "tyre" and _in_file(effect) for effect in done.chosen.effects)
+    again = bool(done.chosen.effects) and any(name in BY_NAME for name in done.coefficients)
     diagnosis = Diagnosis(
         headline="",
+        reasons=(),
+        answer=answered(rest, named, alternatives),
+        rest=tuple(rest),
+        name=config.tyre.name,
         points=points,
         noise=scatter,
         before=before,
@@ -77,9 +99,8 @@ def answer(
         where=where(points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done) for one in named),
         alternatives=alternatives,
-        steps=tuple(found.steps),
-        unexplained=unexplained,
-        unexplained_where=_remaining(found, given.measured - explained) if unexplained else (),
+        contests=found.contests or ((found.further,) if found.further else ()),
+        unexplained_where=_remaining(found, given.measured - explained) if rest else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
         outliers=_outliers(points, explained, scatter),
@@ -88,12 +109,19 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
-        tyre=tyre if repair.keeps_file else corrected,
-        with_terms=corrected if repair.keeps_file else None,
+        delivers=delivers,
+        tyre=corrected if delivers else tyre,
+        with_terms=corrected if again and not delivers else None,
         notes=tuple(notes),
-        model_after=f"{config.tyre.name}.tir",
+        apart=apart(points, given.start, done.refined.state, scatter.channels) if delivers else (),
+        seen=seen,
     )
-    return replace(diagnosis, headline=wording.headline(diagnosis))
+    return replace(diagnosis, headline=wording.headline(diagnosis), reasons=wording.reasons(diagnosis))
+
+
+def _in_file(effect: Effect) -> bool:
+    """Whether a property file can hold a number of the effect."""
+    return effect.switches or any(name in BY_NAME for name in effect.parameters)
 
 
 def _with_repair(named: AcceptedEffect, done: Explanation) -> AcceptedEffect:
@@ -132,16 +160,12 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
 
 def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:
     """The record of one accepted effect, judged together with all other accepted ones."""
-    problem, chosen, steps = found.problem, found.chosen, found.steps
-    alone = len(chosen.effects) == 1
-    step = next(
-        (s for s in steps if s.best.effects[-1].id == effect.id),
-        steps[min(len(steps), len(chosen.effects)) - 1],
-    )
+    problem, chosen = found.problem, found.chosen
+    step = found.contests[chosen.effects.index(effect)]
     tied, confidence, together = _judged(found, effect, step)
     noise = {name: problem.noise.typical(name) for name in problem.channels}
     separations = [separation(problem.points, chosen, t, noise) for t in tied]
-    with_it = found.refined.state if alone else _without_later(found, effect, step)
+    with_it = _with_earlier(found, effect)
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return AcceptedEffect(
         effect=effect,
@@ -149,21 +173,23 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
         together=together,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
-        gap_after=gap(problem.measured - problem.predict(with_it), found.scatter),
+        gap_after=gap(problem.measured - problem.predict(with_it.state), found.scatter),
+        held_out=validate(given, with_it).gap_after,
         tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
         T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,
     )
 
 
-def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Simulation:
-    """The simulation with an effect and the effects accepted before it."""
-    if not found.coefficients:
-        return step.best.state
-    start, points = found.problem.start, found.problem.points
-    later = found.chosen.effects[found.chosen.effects.index(effect) + 1 :]
-    given = {name: start.number(name, points) for one in later for name in one.parameters}
-    return found.refined.state.with_numbers(given)
+def _with_earlier(found: Explanation, effect: Effect) -> Hypothesis:
+    """The hypothesis with an effect and those that explain more than it, fitted without the others."""
+    chosen = found.chosen
+    count = chosen.effects.index(effect) + 1
+    return (
+        found.refined
+        if count == len(chosen.effects)
+        else refitted(found.plain, chosen, chosen.effects[:count])
+    )
 
 
 class Judgement(NamedTuple):
@@ -174,12 +200,12 @@ class Judgement(NamedTuple):
     together: float  #: confidence in this effect or one of the tied ones that are not likelier
 
 
-def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> Judgement:
+def _judged(found: Explanation, effect: Effect, step: Contest) -> Judgement:
     """The confidence in an effect, and its ties."""
     if effect.id in found.predicted:  # unnamed structure leaves evidence too weak to decide
         tied, known = found.predicted[effect.id].tied, found.confidence(effect)
         return Judgement(tied, known / (1.0 + len(tied)), known)
-    rivals = _rivals(found.problem, found.chosen, effect, step)
+    rivals = [trial for trial in step.fitted if trial.effects[-1].id not in found.chosen.ids]
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     weight = {rival.ids: math.exp(min(-_lead(found.chosen, rival, rival in tied), 50.0)) for rival in rivals}
     known, total = found.confidence(effect), 1.0 + sum(weight.values())
@@ -205,34 +231,23 @@ def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
     return min(lead, max(chosen.ahead(rival), 0.0)) if tied else lead
 
 
-def _rivals(
-    problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: ForwardStep
-) -> list[Hypothesis]:
-    """Refitted explanations in which another of a step's best candidates replaces one effect."""
-    others = chosen.others(effect)
-    kept = chosen.numbers_of(others)
-    return [
-        problem.fit((*others, trial.effects[-1]), kept)
-        for trial in step.trials[: constants.CANDIDATES_FITTED]
-        if trial.effects[-1].id not in chosen.ids
-    ]
+def not_accepted(found: Explanation) -> dict[str, float]:
+    """Weights of the effects that explain something and were not accepted, the largest of all places.
 
-
-def not_accepted(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
-    """Weights of the effects that were not accepted, from the first step if an effect was accepted, else from the last.
-
-    Empty if left-out sweeps decided otherwise than the evidence.
+    A place is left out if left-out sweeps decided otherwise than the evidence.
     """
-    if not steps:
-        return {}
-    weights = steps[0 if chosen.effects else -1].weights()
-    if chosen.effects and max(weights, key=weights.__getitem__) not in chosen.ids:
-        return {}
-    return {
-        name: weight
-        for name, weight in weights.items()
-        if name not in chosen.ids and name != "none" and weight > constants.LEAST_ALTERNATIVE
-    }
+    chosen, out = found.chosen, dict[str, float]()
+    assert found.further is not None
+    for one in (*found.contests, found.further):
+        weights = one.weights()
+        if one is not found.further and max(weights, key=weights.__getitem__) not in chosen.ids:
+            continue
+        for trial in one.trials:
+            name = trial.effects[-1].id
+            explains = trial.log_evidence > one.before.log_evidence
+            if name not in chosen.ids and explains and weights[name] > constants.LEAST_ALTERNATIVE:
+                out[name] = max(weights[name], out.get(name, 0.0))
+    return out
 
 
 def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
@@ -246,6 +261,8 @@ def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
                 changes[name] = found.refined.numbers[name]
                 error = found.refined.stderr.get(name, 0.0)
                 status[name] = wording.status(effect, float(tyre[name]), error)
+    if any(effect.switches for effect in found.chosen.effects):
+        changes["USE_MODE"] = with_turn_slip(float(tyre["USE_MODE"]))
     return tyre.replace(**changes).annotate(status=status) if changes else tyre
 
 

@@ -90,6 +90,11 @@ MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coe
 SCATTER_SETTLED = Real(
     0.1, "-", "Relative change of the noise, of any reading or in the median, that ends the search."
 )
+NOISE_MOVED = Real(
+    1.0,
+    "-",
+    "Rms change of the readings of all effects together, over the noise, up to which the noise stays the same.",
+)
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
 # Where the misfit is
 FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
@@ -104,13 +109,15 @@ MOST_HYPOTHESIS_STEPS = Count(
     12, "-", "Most steps of the fit of an explanation; nearly linear ones need fewer."
 )
 HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 that ends this fit.")
+HARDLY_MOVED = Real(
+    0.01,
+    "-",
+    "Distance of a number from its prior mean, in standard deviations, below which an effect counts as absent.",
+)
 ZERO_COEFFICIENT_SCALE = Real(0.2, "-", "Scale of a coefficient at zero over the width of its range.")
 RIGS_WORSE_THAN_DECLARED = Real(0.05, "-", "Share of rigs whose errors exceed their declaration.")
 
 # Selection
-MOST_EFFECTS_PER_CHANNEL = Count(
-    2, "-", "Most effects of one explanation, over the channels; more are structure without a name."
-)
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/evidence-diagnosis.md",
@@ -126,6 +133,11 @@ UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
 CANDIDATES_FITTED = Count(6, "-", "Best candidates of a step, to first order, that are fitted in full.")
+WORTH_FITTING = Real(
+    0.5,
+    "-",
+    "Gain of a candidate to first order, over that of the best one, from which it is fitted in full.",
+)
 STRUCTURE_EVIDENCE = Real(
     8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
 )

@@ -15,19 +15,14 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import HELD_AT, possible, without
-from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff
+from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff, WithinPlay
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import checked, repair
+from mffit.diagnosis.rest import hardly_this_tyre, remaining
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.strangers import (
-    named_of_this_tyre,
-    noise_beyond_stated,
-    offsets_or_memory,
-    refuse_strangers,
-    without_noise,
-)
+from mffit.diagnosis.strangers import offsets_or_memory, refuse_strangers, without_noise
 from mffit.diagnosis.validation import Validation, raw_gap
 from mffit.effects import CATALOG, Effect
 from mffit.fit.plan import channels_of
@@ -82,8 +77,8 @@ def diagnose(
     inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
     noise = stated_noise(points, origin, channels)
     found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
-    found, stranger = named_of_this_tyre(found)
-    if wrong is not None and stranger is not None:
+    beyond = hardly_this_tyre(found)
+    if wrong is not None and beyond:
         return diagnose(
             given_points,
             tyre,
@@ -98,28 +93,36 @@ def diagnose(
             culprits=False,
             progress=progress,
         )
+    if beyond:
+        found = found.withdrawn()
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.independent)
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
-    exact = without_noise(found.scatter)
+    found = found if found.further is not None else found.contested()
     named = named_effects(found, given)
-    rivals = not_accepted(found.steps, found.chosen)
+    rivals = not_accepted(found)
     done = repair(found, named, given, inexact, validation, rivals, seen=seen, every=repair_all)
+    rest = (*beyond, *remaining(found))
     memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
     remarks = (
         *(TakenOff(sentence) for sentence in taken_off),
         wrong,
-        exact,
-        *noise_beyond_stated(found),
+        without_noise(found.scatter),
         *memories,
+        _within_play(done.explanation),
         *notes,
-        stranger,
         refused,
         done.refused,
     )
     notes = [note for note in remarks if note is not None]
     before = raw_gap(every, given_start, kept, found.scatter)
-    return answer(found, named, done, given, tyre, config, notes, candidates, rivals, before)
+    return answer(found, named, rest, done, given, tyre, config, notes, candidates, rivals, before, seen)
+
+
+def _within_play(found: Explanation) -> WithinPlay | None:
+    """The note on readings at which friction decides where the wheel rests; None without any."""
+    count = int(np.sum(found.refined.state.floats(found.problem.points)))
+    return WithinPlay(count) if count else None
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:

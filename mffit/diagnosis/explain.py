@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import imitations
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
-from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import select
 from mffit.diagnosis.smooth import StructureBeside, smooth_basis
 from mffit.effects import Effect
@@ -40,66 +42,164 @@ def explain(
     ``declared`` has the value and standard uncertainty of each declared rig error. ``seen``: the model was fitted to these
     points, so model error remains as smooth structure, which is no evidence against an effect.
     """
-    channels = stated.channels
-    simulated = start.readings(points, channels)
-    coarse, basis = smooth_basis(points, simulated), smooth_basis(points, simulated, DIVISIONS_OF_A_SWEEP)
-    measured = np.concatenate([points.channel(name) for name in channels])
-    misfit = measured - start.predict(points, channels)
-    found: Explanation | None = None
-    at, noise, without_offsets = start, stated, False
-    for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-        lost = found is not None and bool(noise.offset) and not noise.offset & found.chosen.ids
-        if (
-            found is not None
-            and not (lost or inexact)
-            and all(e.differs_by_run for e in found.chosen.effects)
-        ):
-            break  # the scatter was already estimated from these residuals
-        # Offsets of runs were assumed in the noise but not selected as effects: re-estimate the noise without them.
-        without_offsets = without_offsets or lost
-        before, state = noise, start if found is None else found.without_run_offsets
-        noise = learned_noise(
-            stated, before, points, state, candidates, inexact, coarse, without_offsets=without_offsets
-        )
-        around_start = bool(inexact) and at is start
-        if found is not None and settled(before, noise) and not (around_start or lost):
-            break
-        offset = None
-        if found is not None and inexact:
-            # The influence of a coefficient depends on the rest of the model: linearise again at the last estimate.
-            at = start.with_numbers({name: value for name, (value, _) in found.coefficients.items()})
-            offset = inexact.moved(points, found.refined.state, at, channels)
-        columns = inexact.columns(points, start if found is None else found.refined.state, channels)
-        noise_of_all = noise.sharing(columns)
-        # Coefficients linearised at the start leave errors like unnamed structure, so it competes from the second round on.
-        beside = None if found is None and inexact and not seen else StructureBeside.over(basis, noise_of_all)
-        problem = DiagnosisProblem(points, at, noise_of_all, declared, offset, beside)
-        last = found
-        visible = beyond_memory(noise, candidates)
-        found = _selected(problem, visible)
-        if seen and rms(misfit / noise.u) > constants.MISFIT_AT_NOISE:
-            found = replace(found, misfit=misfit)
-        found = found.with_coefficients(inexact)
-        if seen and found.smooth.found:
-            break  # left-out sweeps decide; the noise hardly matters against the misfit of the given model
-        if last is not None and found.chosen.ids == last.chosen.ids:
-            break
-    assert found is not None
+    search = Search(points, start, stated, tuple(candidates), inexact, declared)
+    found = _of_fitted_model(search) if seen else _of_given_model(search)
     if found.chosen.effects and (found.bump.found or found.smooth.found):
         found = replace(found, imitated=imitations(found.problem, candidates))
-    return (
-        _predicting(found, beyond_memory(noise, candidates), inexact)
-        if seen and found.smooth.found
-        else found
-    )
+    if seen and found.smooth.found:
+        found = _predicting(found, inexact)
+    return found.contested()
 
 
-def _selected(given: DiagnosisProblem, candidates: Sequence[Effect]) -> Explanation:
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Everything that stays the same while noise, effects and coefficients are estimated."""
+
+    points: Points
+    start: Simulation  #: the given model
+    stated: Noise
+    candidates: tuple[Effect, ...]
+    inexact: Inexactness
+    declared: Mapping[str, tuple[float, float]]
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        return self.stated.channels
+
+    @cached_property
+    def misfit(self) -> np.ndarray:
+        """Measured minus simulated (c n,) of the given model."""
+        measured = np.concatenate([self.points.channel(name) for name in self.channels])
+        return measured - self.start.predict(self.points, self.channels)
+
+    @cached_property
+    def coarse(self) -> np.ndarray:
+        """Smooth structure (c n, k) that noise may not be taken for."""
+        return smooth_basis(self.points, self.start.readings(self.points, self.channels))
+
+    @cached_property
+    def structure(self) -> np.ndarray:
+        """Smooth structure (c n, k) that competes with the effects."""
+        simulated = self.start.readings(self.points, self.channels)
+        return smooth_basis(self.points, simulated, DIVISIONS_OF_A_SWEEP)
+
+    def noise_around(self, state: Simulation, before: Noise, *, without_offsets: bool = False) -> Noise:
+        """The noise that remains around a simulation; the search for it starts at the noise ``before``."""
+        return learned_noise(
+            self.stated.without(state.floats(self.points)),
+            before,
+            self.points,
+            state,
+            self.candidates,
+            self.inexact,
+            self.coarse,
+            without_offsets=without_offsets,
+        )
+
+    def problem(self, state: Simulation, noise: Noise, effects: Sequence[Effect]) -> DiagnosisProblem:
+        """The readings with coefficients linearised at a simulation and integrated out, in addition to smooth structure.
+
+        The coefficients that ``effects`` have changed in the simulation are those of the given model.
+        """
+        changed = {name for effect in effects for name in effect.parameters}
+        names = [name for name in self.inexact.names if name not in changed]
+        numbers = {name: state.number(name, self.points) for name in names}
+        at = self.start.with_numbers(numbers) if numbers and state is not self.start else self.start
+        moved = None if at is self.start else self.inexact.moved(self.points, state, at, self.channels)
+        shared = noise.sharing(self.inexact.columns(self.points, state, self.channels))
+        beside = StructureBeside.over(self.structure, shared)
+        return DiagnosisProblem(self.points, at, shared, self.declared, moved, beside)
+
+    def all_at_once(self) -> tuple[Simulation, Noise]:
+        """The simulation with all effects and coefficients fitted together, each held by its prior, and the noise around it.
+
+        Whatever the library contains explains the readings there, so that nothing of it counts as noise.
+        """
+        alike = [e for e in self.candidates if not e.differs_by_run]  # the others are rivals of the noise
+        state, noise = self.start, self.stated
+        read: np.ndarray | None = None
+        for _ in range(constants.MOST_EXPLANATION_ROUNDS):
+            shared = noise.sharing(self.inexact.columns(self.points, state, self.channels))
+            at: dict[str, float] = (
+                {} if read is None else {n: state.number(n, self.points) for e in alike for n in e.parameters}
+            )
+            together = DiagnosisProblem(self.points, self.start, shared, self.declared).fit_together(
+                alike, at
+            )
+            if self.inexact:
+                plain = DiagnosisProblem(self.points, self.start, noise.alone(), self.declared)
+                together, _ = plain.refine(together, self.inexact)
+            before, state = read, together.state
+            read = state.predict(self.points, self.channels)
+            if before is not None:
+                moved = rms(((read - before) / noise.u)[noise.used])
+                if moved < constants.NOISE_MOVED:
+                    break
+            noise = self.noise_around(state, noise)
+        return state, noise
+
+    def selected(self, state: Simulation, noise: Noise, known: Hypothesis | None = None) -> Explanation:
+        """The effects selected from nothing and from all effects at once, or from a ``known`` set; coefficients estimated."""
+        visible = beyond_memory(noise, self.candidates)
+        problem = self.problem(state, noise, self.candidates if known is None else known.effects)
+        places = [problem.null]
+        if known is None:
+            places.append(problem.fit_together(visible))
+        else:
+            places.append(refitted(problem, known, [e for e in visible if e.id in known.ids]))
+        return _selected(problem, visible, places).with_coefficients(self.inexact)
+
+
+def _of_given_model(search: Search) -> Explanation:
+    """The explanation of the gap of a model that was not fitted to these points."""
+    state, noise = search.all_at_once()
+    found = search.selected(state, noise)
+    if noise.offset and not noise.offset & found.chosen.ids:
+        # Offsets of runs that were assumed in the noise but are not named are noise.
+        noise = search.noise_around(found.without_run_offsets, noise, without_offsets=True)
+        found = search.selected(found.refined.state, noise, found.chosen)
+    if search.inexact:  # coefficients act otherwise where only the named effects act with them
+        found = search.selected(found.refined.state, noise, found.chosen)
+    return found
+
+
+def _of_fitted_model(search: Search) -> Explanation:
+    """The explanation of the gap of a model that was fitted to these points."""
+    noise, found, without_offsets = search.noise_around(search.start, search.stated), None, False
+    for _ in range(constants.MOST_EXPLANATION_ROUNDS):
+        last, found = (
+            found,
+            search.selected(
+                search.start if found is None else found.refined.state,
+                noise,
+                None if found is None else found.chosen,
+            ),
+        )
+        if rms(search.misfit / noise.u) > constants.MISFIT_AT_NOISE:
+            found = replace(found, misfit=search.misfit)
+        if (
+            found.smooth.found
+        ):  # left-out sweeps decide; the noise hardly matters against the misfit of the given model
+            break
+        if last is not None and found.chosen.ids == last.chosen.ids:
+            break
+        lost = bool(noise.offset) and not noise.offset & found.chosen.ids
+        without_offsets, before = without_offsets or lost, noise
+        noise = search.noise_around(found.without_run_offsets, noise, without_offsets=without_offsets)
+        if last is not None and settled(before, noise) and not lost:
+            break
+    assert found is not None
+    return found
+
+
+def _selected(
+    given: DiagnosisProblem, candidates: Sequence[Effect], places: Sequence[Hypothesis]
+) -> Explanation:
     """The selected effects, in competition with unnamed structure, without those of low certainty."""
-    problem, chosen, steps = select(given, candidates)
+    problem, chosen = select(given, candidates, places)
     bumps = bump_scan(problem.points, problem.noise)
-    found = Explanation(problem, chosen, steps, bumps.best(chosen), bumps, refined=chosen)
-    while given.beside is not None and found.chosen.effects:
+    found = Explanation(problem, chosen, tuple(candidates), bumps.best(chosen), bumps, refined=chosen)
+    while found.chosen.effects:
         certainty = {effect: found.certainty(effect) for effect in found.chosen.effects}
         least = min(certainty, key=lambda effect: certainty[effect])
         if certainty[least] >= constants.LEAST_CERTAINTY:
@@ -108,12 +208,12 @@ def _selected(given: DiagnosisProblem, candidates: Sequence[Effect]) -> Explanat
     return found
 
 
-def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:
+def _predicting(found: Explanation, inexact: Inexactness) -> Explanation:
     """The explanation with effects chosen by prediction of left-out sweeps.
 
     For a model with smooth model error, next to which evidence can hardly decide between effects.
     """
-    prediction = LeftOutPrediction(found.plain, inexact, found.independent)
+    prediction, candidates = LeftOutPrediction(found.plain, inexact, found.independent), found.candidates
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     tied = [rival for one in support.values() for rival in one.tied]
@@ -144,5 +244,4 @@ def significant(found: Explanation, inexact: Inexactness) -> Explanation:
 
 def only_first(found: Explanation, inexact: Inexactness) -> Explanation:
     """The explanation with only the effect that explains most."""
-    chosen = found.problem.fit(found.steps[0].best.effects[:1])
-    return replace(found.choosing(chosen), steps=found.steps[:2]).with_coefficients(inexact)
+    return found.only(found.chosen.effects[:1]).with_coefficients(inexact)

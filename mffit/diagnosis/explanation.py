@@ -15,7 +15,7 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
-from mffit.diagnosis.selection import ForwardStep
+from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
 from mffit.rig import Simulation
@@ -27,7 +27,7 @@ class Explanation:
 
     problem: DiagnosisProblem  #: readings, model, and covariance including inexact coefficients
     chosen: Hypothesis
-    steps: list[ForwardStep]
+    candidates: tuple[Effect, ...]  #: the effects that competed
     bump: Bump  #: best local structure in the residual
     bumps: BumpScan
     refined: Hypothesis  #: the chosen effects, estimated together with the coefficients of the model
@@ -37,6 +37,9 @@ class Explanation:
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
     misfit: np.ndarray | None = None
     """Measured minus simulated (c n,) of the given model, if it was fitted to these points and its misfit exceeds the noise."""
+    nothing: Contest | None = None  #: all candidates as the only effect
+    further: Contest | None = None  #: all candidates in addition to the chosen effects
+    contests: tuple[Contest, ...] = ()  #: for each chosen effect, all candidates in its place
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """(n,) for each effect, the share of its misfit that the best other effect would explain, see :func:`imitations`."""
 
@@ -81,7 +84,8 @@ class Explanation:
 
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The explanation with other effects, without estimated coefficients."""
-        return replace(self, chosen=chosen, refined=chosen, bump=self.bumps.best(chosen))
+        best = self.bumps.best(chosen)
+        return replace(self, chosen=chosen, refined=chosen, bump=best, contests=(), further=None)
 
     def only(self, effects: tuple[Effect, ...]) -> Explanation:
         """The explanation with some of its effects only, refitted."""
@@ -92,6 +96,15 @@ class Explanation:
         bumps = bump_scan(problem.points, problem.noise)
         return replace(self, problem=problem, bumps=bumps).choosing(refitted(problem, chosen, effects))
 
+    def contested(self) -> Explanation:
+        """The explanation with all candidates tried alone, in addition to the chosen effects, and in the place of each."""
+        chosen, problem, candidates = self.chosen, self.problem, self.candidates
+        without = [refitted(problem, chosen, chosen.others(effect)) for effect in chosen.effects]
+        nothing, further, *contests = (
+            contest(problem, before, candidates) for before in (problem.null, chosen, *without)
+        )
+        return replace(self, nothing=nothing, further=further, contests=tuple(contests))
+
     def with_coefficients(self, inexact: Inexactness) -> Explanation:
         """The explanation with the model's coefficients estimated together with the effects."""
         refined, coefficients = self.plain.refine(self.chosen, inexact)
@@ -100,7 +113,7 @@ class Explanation:
     def withdrawn(self) -> Explanation:
         """The explanation without effects and repair; the unnamed structure is still that found with the effects."""
         null = replace(self.problem.null, smooth=self.smooth)
-        return replace(self, chosen=null, refined=null, coefficients={}, steps=self.steps[:1])
+        return replace(self, chosen=null, refined=null, coefficients={}, contests=(), further=self.nothing)
 
     def certainty(self, effect: Effect) -> float:
         """Probability of an effect against the best unnamed structure in its place.
@@ -126,9 +139,12 @@ class Explanation:
     def _weighed(self, effect: Effect) -> tuple[float, float]:
         """Log odds of an effect against unnamed structure in its place, and the share of the misfit that the effect explains."""
         chosen = self.chosen
-        without = refitted(self.problem, chosen, chosen.others(effect))
+        if self.contests:
+            without = self.contests[chosen.effects.index(effect)].before
+        else:
+            without = refitted(self.problem, chosen, chosen.others(effect))
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
-        against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
+        against = gain + left - self.left(without) - math.log(max(len(self.candidates), 1))
         if effect.id in self.problem.noise.offsets:  # autocorrelated errors are another rival
             against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)

@@ -243,6 +243,12 @@ class Noise:
         shared = 0.0 if self.shared is None else float(np.sum(self.shared[self.used[rows]].sum(axis=0) ** 2))
         return float(np.sqrt(alone + shared))
 
+    def without(self, points: np.ndarray) -> Noise:
+        """The noise in which the readings of some points (mask (n,)) count as not measured."""
+        rows = np.tile(points, len(self.channels))
+        u, stated = (np.where(rows, np.inf, values) for values in (self.u, self.stated))
+        return replace(self, u=u, stated=stated) if rows.any() else self
+
     def assumed(self, channels: Mapping[str, float]) -> Noise:
         """The noise with independent errors of the given size [N], [Nm] in some channels."""
         u, weight = self.u.copy(), np.ones(len(self.u)) if self.weight is None else self.weight.copy()

@@ -13,7 +13,7 @@ from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS
 from mffit.rounding import to_uncertainty
 from tir import Quantity
-from tir.errors import listed
+from tir.errors import counted, listed
 from tir.parameters import BY_NAME
 
 
@@ -108,21 +108,16 @@ class WithoutNoise:
 
 
 @dataclass(frozen=True, slots=True)
-class NoiseBeyondStated:
-    """The readings of a channel scatter far more than stated, and no effect explains it."""
+class WithinPlay:
+    """Points at which friction decides where within its play the wheel rests."""
 
-    channel: str
-    noise: float  #: typical noise [N] or [Nm]
-    stated: float  #: typical stated noise [N] or [Nm]
-    sweep: str = ""  #: the sweep with far larger residuals than all others, if any
+    points: int
 
     @property
     def sentence(self) -> str:
-        unit = CHANNELS[self.channel].unit
-        most = f" Most of it is in {self.sweep}: check that sweep first." if self.sweep else ""
         return (
-            f"Nothing explains why {self.channel} scatters by {short(self.noise)} {unit} where {short(self.stated)} {unit} are "
-            f"stated: what single sweeps do on their own looks like noise.{most}"
+            f"At {counted(self.points, 'point')} the aligning moment changes sign within the play of the steering axis: friction "
+            "decides where the wheel rests, so they may be far off and have no weight."
         )
 
 
@@ -158,21 +153,6 @@ class NotVisible:
 
 
 @dataclass(frozen=True, slots=True)
-class HardlyThisTyre:
-    """Even with the best effects the model is so wrong that naming one would be a guess."""
-
-    misfit: float  #: misfit in units of the noise
-    channel: str  #: the channel that fits best
-
-    @property
-    def sentence(self) -> str:
-        return (
-            f"No effect is named: even with the best effects the model misses the {CHANNELS[self.channel].word} by "
-            f"{self.misfit:.0f} times its noise. It hardly is a model of this tyre; fit it first (mffit build)."
-        )
-
-
-@dataclass(frozen=True, slots=True)
 class NoRepair:
     """The best explanation increases the gap on left-out sweeps, so no repair is written."""
 
@@ -190,18 +170,17 @@ class NoRepair:
 
 @dataclass(frozen=True, slots=True)
 class FileKept:
-    """The given property file is kept, because the corrected one is worse without its rig and environment terms."""
+    """The given property file is kept, because the corrected one predicts left-out sweeps worse."""
 
-    terms: tuple[str, ...]  #: names of the effects that a property file cannot contain
+    effects: tuple[str, ...]  #: names of the effects of the tyre
     validation: Validation
 
     @property
     def sentence(self) -> str:
+        check = self.validation
         return (
-            f"The property file is the given one: without {' and '.join(self.terms)}, which no property file contains, the "
-            "corrected one is worse on left-out sweeps "
-            f"({held_out(self.validation.gap_before, self.validation.gap_file)}). The corrected one, which is right only with "
-            "these terms, is written beside it."
+            f"The property file stays as given: with {listed(self.effects)} it would predict left-out sweeps worse, all channels "
+            f"together and the errors of the rig taken out ({held_out(check.gap_given_file, check.gap_after)})."
         )
 
 

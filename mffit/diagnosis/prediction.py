@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit import constants
-from mffit.diagnosis.constants import MOST_EFFECTS_PER_CHANNEL
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
@@ -65,13 +64,13 @@ class LeftOutPrediction:
 def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:
     """The effects found by forward selection: each step adds the one that predicts left-out sweeps best, if significantly.
 
-    An effect that predicts a channel clearly worse is never added. An effect that a later one makes superfluous is dropped.
+    All channels count together. An effect that a later one makes superfluous is dropped.
     """
     current, left = prediction.problem.null, list(candidates)
     needed = needed_fall(len(candidates))
     if prediction.sweeps < constants.FEWEST_SWEEPS_TO_PREDICT:
         return current
-    while len(current.effects) < MOST_EFFECTS_PER_CHANNEL * len(prediction.problem.channels):
+    while left:
         added = _best_addition(prediction, current, left, needed)
         if added is None:
             break
@@ -87,20 +86,14 @@ def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Eff
 def _best_addition(
     prediction: LeftOutPrediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
 ) -> Effect | None:
-    """The candidate that reduces the misfit of left-out sweeps most, if substantially and significantly; None without any.
-
-    A candidate is rejected if a channel's misfit grows significantly and by at least the smallest gain required. Significance
-    alone is not enough, because an effect of one channel changes the coefficients and thereby all sweeps of other channels
-    slightly and alike.
-    """
+    """The candidate that reduces the misfit of left-out sweeps most, if substantially and significantly; None without any."""
     before = prediction.of(current)
-    enough = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before)
-    most, best = float(enough.sum()), None
+    most, best = constants.LEAST_PREDICTED_SHARE * float(prediction.beyond_noise(before).sum()), None
     for effect, groups in prediction.problem.columns(current.state, candidates).items():
         for columns in groups:
             after = prediction.of(current, columns)
             gain = before.total - after.total
-            if gain > most and before.falls(after) > needed and not before.raised(after, loss=enough):
+            if gain > most and before.falls(after) > needed:
                 most, best = gain, effect
     return best
 

@@ -73,6 +73,13 @@ def starts(
     return trials
 
 
+def usual_start(free: Free, start: Simulation, points: Points) -> float:
+    """The value before if the readings change with the number there, else the step of the scan nearest its usual size."""
+    current, unit = anchor(free, start, points)
+    change = 0.0 if 0.0 in free.scan else min(free.scan, key=lambda step: abs(step - free.spread))
+    return float(np.clip(current + change * unit, free.lower, free.upper))
+
+
 def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, tuple[float, float]]) -> float:
     """Change of a rig error's log prior by its declaration; never positive, so a declaration never favours an effect."""
     if known.name not in declared:
@@ -116,3 +123,19 @@ def _cornering_stiffness(points: Points, start: Simulation) -> float:
     middle = points.select(np.array([np.argmin(np.abs(points.Fz - np.median(points.Fz)))]))
     _, slope = start.sensitivities(middle.replace(alpha=0.0, gamma=0.0), ["alpha_0_deg"])
     return float(np.degrees(slope.Fy[0, 0]))
+
+
+def log_prior(effect: Effect, start: Simulation) -> float:
+    """Log prior of an effect, which ranks effects that the data hardly separate.
+
+    A coefficient that is exactly zero in the given model was never identified, so it is more likely to be missing than others.
+    """
+    if effect.kind != "tyre" or not all(name in COEFFICIENTS for name in effect.parameters):
+        return effect.prior
+    unidentified = all(float(start.values[name]) == 0.0 for name in effect.parameters)
+    return effect.prior + (1.0 if unidentified else -1.0) * constants.UNIDENTIFIED_LOG_ODDS
+
+
+def price(candidates: int) -> float:
+    """Log evidence that an effect must add to be accepted and kept: a penalty for the number of candidates, and a margin."""
+    return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN

@@ -13,7 +13,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched
+from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched, usual_start
 from mffit.diagnosis.smooth import Smooth, StructureBeside
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve, touches
@@ -123,6 +123,17 @@ class DiagnosisProblem:
         """The best fit of all numbers of the effects; the last effect starts from every value of its scan."""
         trials = starts(effects[-1], start or {}, self.start, self.points)
         return max((self._fitted(effects, trial) for trial in trials), key=lambda found: found.log_evidence)
+
+    def fit_together(self, effects: Sequence[Effect], at: Mapping[str, float] | None = None) -> Hypothesis:
+        """The fit of all effects at once, each held to its usual size by its prior; ``at`` has starting values.
+
+        Effects that end at a bound are left out: there, an infinite derivative can keep all other numbers from moving.
+        """
+        usual = {free.name: usual_start(free, self.start, self.points) for free in moving(effects)}
+        found = self._fitted(tuple(effects), usual | dict(at or {}))
+        at_bound = {f.name for f in moving(effects) if touches(found.numbers[f.name], f.lower, f.upper)}
+        others = [effect for effect in effects if at_bound.isdisjoint(effect.parameters)]
+        return found if len(others) == len(effects) else self.fit_together(others, at)
 
     def refine(
         self, chosen: Hypothesis, inexact: Inexactness = EXACT
@@ -289,10 +300,7 @@ class DiagnosisProblem:
         The whitening for changes that readings share is undone in both.
         """
         away = np.array([(fitted.numbers[n.name] - n.expected) / n.spread for n in numbers])
-        columns = fitted.jacobian * np.array([n.spread for n in numbers])
-        # Limit nearly infinite derivatives, such as that of a square root at zero.
-        size = np.linalg.norm(columns, axis=0)
-        columns = columns * np.where(size > STEEPEST, STEEPEST / np.maximum(size, STEEPEST), 1.0)
+        columns = not_too_steep(fitted.jacobian * np.array([n.spread for n in numbers]))
         at_centre = fitted.residual - columns @ away
         found = self.noise.unshared(np.column_stack([at_centre, columns]))
         return found[:, 1:], found[:, 0]
@@ -322,6 +330,12 @@ class DiagnosisProblem:
             return Linear(white[:, 0], white[:, 1:], nothing, np.zeros((0, len(names))))
 
         return LeastSquaresProblem(residual, linear)
+
+
+def not_too_steep(columns: np.ndarray) -> np.ndarray:
+    """Columns (m, k) with nearly infinite derivatives, such as that of a square root at zero, limited to ``STEEPEST``."""
+    size = np.linalg.norm(columns, axis=0)
+    return columns * np.where(size > STEEPEST, STEEPEST / np.maximum(size, STEEPEST), 1.0)
 
 
 def refitted(problem: DiagnosisProblem, chosen: Hypothesis, effects: Sequence[Effect]) -> Hypothesis:

@@ -50,7 +50,8 @@ class BestEffect:
     rivals: tuple[OneStep, ...]  #: effects that explain them equally well
     tried: int
     gain: float = -math.inf
-    """Gain of log evidence if the best effect is added to a model with smooth model error and scatter of runs."""
+    """Gain of log evidence if the best effect is added to a model with smooth model error and scatter of runs, less half the
+    logarithm of the number of readings for every number after the first."""
     missed: float = 0.0  #: log evidence for the smooth model error that remains with the effect
 
     @property
@@ -64,10 +65,16 @@ class BestEffect:
         return _sigma(self.best.log_chance + math.log(self.tried))
 
     @property
+    def possible(self) -> bool:
+        """Whether neither chance nor scatter of runs explains it; model error may."""
+        return self.chance < PREDICTION_FALSE_ALARM and self.gain > math.log(
+            self.tried / PREDICTION_FALSE_ALARM
+        )
+
+    @property
     def significant(self) -> bool:
-        """Whether chance and scatter of runs do not explain it, and it explains more than the remaining model error does."""
-        enough = math.log(self.tried / PREDICTION_FALSE_ALARM)
-        return self.chance < PREDICTION_FALSE_ALARM and self.gain > max(enough, self.missed)
+        """Whether it explains more than the remaining model error does as well."""
+        return self.possible and self.gain > self.missed
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +200,7 @@ class _Test(NamedTuple):
 
 
 def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect | None:
-    """The effect with the smallest p-value; None if no effect is visible beyond the fitted numbers.
+    """The effect that gains most log evidence, of those with the smallest p-values; None if no effect is visible.
 
     Each effect's change of the readings, less the part that fitted numbers follow, is compared with the residuals. A rig error
     that is a number of the fit is compared with its declaration. Model error counts as noise.
@@ -203,15 +210,23 @@ def best_effect(left: Left, effects: Sequence[Effect] = CATALOG) -> BestEffect |
         best_of.setdefault(step.effect.id, step)
     if not best_of:
         return None
-    best, *others = best_of.values()
-    near = [other for other in others if _as_good(other, best)]
     # All starts of one effect change the readings in nearly the same direction, so each effect counts as one trial.
-    found = BestEffect(best, tuple(near[: constants.MOST_RIVALS_NAMED]), len(best_of))
+    likely = list(best_of.values())[: constants.CANDIDATES_FITTED]
+    found = [_weighed(left, step, len(best_of)) for step in likely]
+    best = max(found, key=lambda one: (one.gain, -one.best.log_chance))
+    near = [step for step in best_of.values() if step is not best.best and _as_good(step, best.best)]
+    return replace(best, rivals=tuple(near[: constants.MOST_RIVALS_NAMED]))
+
+
+def _weighed(left: Left, step: OneStep, tried: int) -> BestEffect:
+    """An effect with its evidence in addition to model error and scatter of runs, if chance does not explain it."""
+    found = BestEffect(step, (), tried)
     if found.chance >= PREDICTION_FALSE_ALARM:
         return found
-    acts = {name: part for name, part in left.by_channel(best.change).items() if np.any(part)}
+    acts = {name: part for name, part in left.by_channel(step.change).items() if np.any(part)}
     gains, missed = zip(*(left.linear.channels[name].gain(part) for name, part in acts.items()), strict=True)
-    return replace(found, gain=sum(gains), missed=sum(max(one, 0.0) for one in missed))
+    freedom = 0.5 * max(len(step.numbers) - 1, 0) * math.log(max(len(step.change), 1))
+    return replace(found, gain=sum(gains) - freedom, missed=sum(max(one, 0.0) for one in missed))
 
 
 def _as_good(other: OneStep, best: OneStep) -> bool:

@@ -1,4 +1,4 @@
-"""The repaired part of an explanation: likely effects that left-out sweeps confirm."""
+"""The repaired part of an explanation: likely effects that left-out sweeps confirm, and the property file that follows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from mffit.diagnosis.notes import FileKept, NoRepair
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import AcceptedEffect
 from mffit.diagnosis.validation import Validation, validate
-from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,9 +20,7 @@ class Repair:
 
     explanation: Explanation
     validation: Validation  #: validation of the repair, not of all named effects
-    refused: NoRepair | FileKept | None
-    keeps_file: bool
-    """Whether the given property file is kept, because the corrected one without its rig and environment terms is worse."""
+    refused: NoRepair | FileKept | None = None
 
 
 def checked(
@@ -38,7 +35,7 @@ def checked(
         found = found.withdrawn()
     coefficients = inexact if found.coefficients else EXACT
     validation = validate(given, found.refined, coefficients, weights=found.plain.noise, seen=seen)
-    if not (found.chosen.effects or found.coefficients) or validation.helps:
+    if not (found.chosen.effects or found.coefficients) or validation.gain > 0.0:
         return found, validation, None
     refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
     return found.withdrawn(), validation.without_repair(), refused
@@ -58,20 +55,24 @@ def repair(
     """The repair of the ``named`` effects that are likely, or of ``every`` one.
 
     Tied effects are one answer, with the confidence of the whole tie. ``validation`` belongs to all named effects together,
-    ``alternatives`` has the confidences of other effects by id. ``seen``: the model was fitted to these points.
+    ``alternatives`` has the confidences of other effects by id. ``seen``: the model was fitted to these points. Effects of the
+    tyre are repaired only if the corrected property file predicts left-out sweeps better than the given one, judged by all
+    channels together, with the errors of rig and environment taken out of the readings.
     """
     likely = tuple(
         one.effect for one in named if every or one.confidence_of_tie(alternatives) >= constants.LIKELY_ANSWER
     )
-    refused = None
+    refused: NoRepair | FileKept | None = None
     if len(likely) < len(named):
         found, validation, refused = checked(
             found.only(likely).with_coefficients(inexact), given, inexact, seen=seen
         )
-    terms = tuple(effect.name for effect in found.chosen.effects if effect.kind != "tyre")
-    changed = any(n in BY_NAME for n in found.coefficients) or any(
-        e.kind == "tyre" for e in found.chosen.effects
+    of_tyre = tuple(effect for effect in found.chosen.effects if effect.kind == "tyre")
+    if not of_tyre or validation.gain_of_file > 0.0:
+        return Repair(found, validation, refused)
+    kept = FileKept(tuple(effect.name for effect in of_tyre), validation)
+    others = tuple(effect for effect in found.chosen.effects if effect not in of_tyre)
+    found, validation, refused = checked(
+        found.only(others).with_coefficients(inexact), given, inexact, seen=seen
     )
-    if not terms or not changed or validation.file_helps:
-        return Repair(found, validation, refused, keeps_file=False)
-    return Repair(found, validation, FileKept(terms, validation), keeps_file=True)
+    return Repair(found, validation, refused or kept)

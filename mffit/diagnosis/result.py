@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import DiagnosisNote
-from mffit.diagnosis.selection import ForwardStep
+from mffit.diagnosis.rest import Answer, Rest
+from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation, gap
@@ -25,11 +27,21 @@ from mffit.points.left_out import LeftOut
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
-from mffit.suspicion import SOUND, Outlier, Trust
+from mffit.scatter import rms
+from mffit.suspicion import Outlier
 from tir import Tyre
 
 WITH_TERMS = "-with-terms.tir"
-"""Ending of the name of the property file that is right only together with rig and environment terms."""
+"""Ending of the name of the given property file with its coefficients estimated anew, next to the errors found."""
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """How far the given and the delivered property file are apart, over some conditions."""
+
+    where: str  #: the conditions in words
+    rms: Mapping[str, float]  #: by channel, in its unit
+    largest: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +53,7 @@ class AcceptedEffect:
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
     before: Mapping[str, float]  #: name -> value in the given model
     gap_after: Gap  #: gap with this and all earlier effects
+    held_out: Gap  #: the same gap on left-out sweeps
     tied: tuple[Effect, ...]  #: effects that explain the data equally well in its place
     separation: Separation | None  #: the run that separates them; None without a tie
     T_ref: float | None = None  #: reference temperature of an effect of temperature [degC]
@@ -58,11 +71,24 @@ class AcceptedEffect:
         return max(listed, self.together)
 
 
+class GapStep(NamedTuple):
+    """The gap after a correction and all those before it."""
+
+    id: str  #: of the effect
+    name: str
+    gap: Gap
+    held_out: Gap
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Diagnosis(Brief):
     """Where simulation and measurement disagree, what explains it, and what remains."""
 
     headline: str = field()  #: the answer in one sentence; replaces the property of Brief
+    reasons: tuple[str, ...]  #: why the corrected model is not to be trusted, as sentences; empty if it is
+    answer: Answer
+    rest: tuple[Rest, ...]  #: what remains beyond chance, the most certain first
+    name: str  #: name of the tyre, stem of the file names
     points: Points
     noise: Noise
     before: np.ndarray  #: readings of the given model (c n,), in the channels of ``noise``
@@ -74,8 +100,7 @@ class Diagnosis(Brief):
     where: tuple[Region, ...]
     effects: tuple[AcceptedEffect, ...]
     alternatives: Mapping[str, float]  #: id -> confidence of effects that were not accepted
-    steps: tuple[ForwardStep, ...]
-    unexplained: bool
+    contests: tuple[Contest, ...]  #: all candidates in the place of each effect, or alone
     unexplained_where: tuple[Region, ...]
     bump: Bump | None
     smooth: Smooth | None  #: unnamed smooth structure
@@ -86,25 +111,54 @@ class Diagnosis(Brief):
     given: Simulation  #: the given simulation
     state: Simulation  #: the simulation after all corrections
     signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
-    tyre: Tyre  #: the corrected property file, or the given one if it is better without further terms
+    delivers: (
+        bool  #: whether a corrected property file is written, because an effect of the tyre was accepted
+    )
+    tyre: Tyre  #: the corrected property file if an effect of the tyre was accepted, else the given one
     notes: tuple[DiagnosisNote, ...]
-    model_after: str  #: file name of the corrected model in the output folder
+    apart: tuple[
+        Apart, ...
+    ] = ()  #: given and corrected property file, at conditions measured and not measured
     with_terms: Tyre | None = None
-    """The corrected property file if it is right only with rig and environment terms; ``tyre`` is then the given one."""
+    """The given property file with coefficients estimated together with errors of rig and environment, if no effect of the
+    tyre was accepted."""
+    given_file: str = (
+        "the given file"  #: name of the given property file, from the output folder; set by the command
+    )
+    written_anyway: bool = False  #: whether the given model exists only here, and is written as well
+    seen: bool = False  #: whether the model was fitted to these points
     made: Made | None = None  #: set by the command
     lab: LabTable = field(default_factory=LabTable)  #: set by the command
     left_out: tuple[LeftOut, ...] = ()  #: readings left out by hand and by rules; set by the command
-    trust: Trust = SOUND  #: the judgement of the corrected model
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether something is missing that no effect of the library is."""
+        return self.answer is Answer.UNKNOWN
 
     @property
     def trusted(self) -> bool:
-        """Whether there is no reason against trusting the corrected model."""
-        return self.trust.trusted
+        """Whether there is no reason against relying on the corrected model."""
+        return not self.reasons
 
     @property
-    def reasons(self) -> tuple[str, ...]:
-        """Reasons against trust, as sentences; empty for a sound model."""
-        return self.trust.reasons
+    def model_after(self) -> str:
+        """Path of the property file to use, relative to the output folder."""
+        return f"{self.name}.tir" if self.delivers or self.written_anyway else self.given_file
+
+    @property
+    def steps(self) -> tuple[GapStep, ...]:
+        """The gap as given, with one repaired effect after the other, and with the coefficients estimated with them."""
+        check = self.validation
+        found = [GapStep("given", "as given", self.gap_examined, check.gap_before)]
+        found += [
+            GapStep(one.effect.id, one.effect.name, one.gap_after, one.held_out) for one in self.repaired
+        ]
+        if self.coefficients:
+            found.append(
+                GapStep("coefficients", "coefficients estimated anew", self.gap_after, check.gap_after)
+            )
+        return tuple(found)
 
     @property
     def gap_examined(self) -> Gap:
@@ -134,8 +188,8 @@ class Diagnosis(Brief):
 
     @property
     def model_with_terms(self) -> str | None:
-        """Name of the property file that is right only with rig and environment terms; None without one."""
-        return None if self.with_terms is None else self.model_after.removesuffix(".tir") + WITH_TERMS
+        """Name of the property file with coefficients estimated anew; None without one."""
+        return None if self.with_terms is None else f"{self.name}{WITH_TERMS}"
 
     @property
     def faults(self) -> Faults:
@@ -157,4 +211,49 @@ def corrected_points(points: Points, state: Simulation, channels: Iterable[str] 
     faulty, faultless = state.readings(points, channels), state.faultless.readings(points, channels)
     return points.replace(
         **{name: points.channel(name) - (faulty[name] - faultless[name]) for name in faulty}
+    )
+
+
+def apart(
+    points: Points, given: Simulation, corrected: Simulation, channels: Iterable[str]
+) -> tuple[Apart, ...]:
+    """How far two property files are apart on a perfect rig: at the conditions of the points, and where none was measured."""
+    channels = tuple(channels)
+    over = {"at the conditions measured": points}
+    if np.any(points.phi_t):
+        over["at the same on a straight path"] = points.replace(phi_t=0.0)
+    over["over the tested ranges" + (" on a straight path" if np.any(points.phi_t) else "")] = _over_ranges(
+        points
+    )
+    out = []
+    for where, at in over.items():
+        before, after = (one.faultless.readings(at, channels) for one in (given, corrected))
+        change = {name: np.abs(after[name] - before[name]) for name in channels}
+        out.append(
+            Apart(
+                where, {n: rms(x) for n, x in change.items()}, {n: float(x.max()) for n, x in change.items()}
+            )
+        )
+    return tuple(out)
+
+
+def _over_ranges(points: Points) -> Points:
+    """A grid over the ranges of sideslip, camber, load and pressure of the points, on a straight path."""
+    ranges = [
+        np.linspace(x.min(), x.max(), n)
+        for x, n in ((points.alpha, 9), (points.gamma, 7), (points.Fz, 3), (points.p, 3))
+    ]
+    alpha, gamma, Fz, p = (np.ravel(x) for x in np.meshgrid(*map(np.unique, ranges)))
+    start = points.select(np.zeros(len(alpha), dtype=int))
+    return start.replace(
+        alpha=alpha,
+        gamma=gamma,
+        Fz=Fz,
+        p=p,
+        phi_t=0.0,
+        kappa=0.0,
+        direction=1,
+        mount=1,
+        continuous=False,
+        time=np.nan,
     )

@@ -306,31 +306,37 @@ def _of_channel(
     ``needed`` is the log Bayes factor that offsets need. Offsets are considered only if the errors are autocorrelated, because
     only autocorrelation resembles them.
     """
+    plain = channel
     found, channel, tails = _weighted(channel)
     offsets: dict[str, RunOffsets] = {}
-    if found[0].by.span is None:
+    span = found[0].by.span
+    if span is None:
         return found[0], channel, tails, offsets
-    every = found if math.isinf(tails) else _descriptions(channel, offsets=False)
-    alone, most, best = _log_sum(every), needed, None
+    # The weights of outliers follow from a description without offsets, so offsets must be likelier without weights, too.
+    weighing = [plain] if math.isinf(tails) else [plain, channel]
+    rivals = [(one, _descriptions(one, offsets=False, only=span)) for one in weighing]
+    most, best = needed, None
     for effect, columns in runs.items():
         if columns.shape[1]:
-            shifted = channel.with_runs(columns)
-            beside = _descriptions(shifted, offsets=True)
-            odds = _log_sum(beside) - alone
-            size = shifted.numbers(beside[0].x, beside[0].by).offsets
+            odds, size = math.inf, 0.0
+            for one, alone in rivals:
+                shifted = one.with_runs(columns)
+                beside = _descriptions(shifted, offsets=True, only=span)
+                size = shifted.numbers(beside[0].x, beside[0].by).offsets
+                odds = min(odds, _log_sum(beside) - _log_sum(alone))
             offsets[effect] = RunOffsets(odds, needed, size, frozenset())
             if odds > most:
                 most, best = odds, columns
     if best is not None:
-        found, channel, tails = _weighted(channel.with_runs(best), offsets=True)
+        found, channel, tails = _weighted(plain.with_runs(best), offsets=True, only=span)
     return found[0], channel, tails, offsets
 
 
 def _weighted(
-    channel: ScatterOfChannel, *, offsets: bool = False
+    channel: ScatterOfChannel, *, offsets: bool = False, only: MemorySpan | None = None
 ) -> tuple[list[Described], ScatterOfChannel, float]:
     """The descriptions, most likely first, the weighted channel, and the degrees of freedom of its tails, by iteration."""
-    found, tails = _descriptions(channel, offsets=offsets), math.inf
+    found, tails = _descriptions(channel, offsets=offsets, only=only), math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
         z = channel.standardised(found[0])
         tails, width = heavy_tails(z)
@@ -343,10 +349,13 @@ def _weighted(
     return found, channel, tails
 
 
-def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described]:
+def _descriptions(
+    channel: ScatterOfChannel, *, offsets: bool, only: MemorySpan | None = None
+) -> list[Described]:
     """All descriptions of the errors, the chosen one first: autocorrelation only if proven, along the shortest likely chains.
 
-    The possible chains have equal prior probabilities. An additional independent part is tried for the most likely chains only.
+    The possible chains, or the ``only`` ones, have equal prior probabilities. An additional independent part is tried for the
+    most likely chains only.
     """
     some = channel.sample
     never, with_memory, with_both = constants.MEMORY_MODEL_PROBABILITIES
@@ -357,7 +366,7 @@ def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described
     share = 1.0 / len(some.chains)
     found = [
         some.likeliest(replace(first.by, span=span, probability=with_memory * share), first.x)
-        for span in some.chains
+        for span in ((only,) if only else some.chains)
     ]
     best = max(found, key=lambda one: one.log_probability)
     both = replace(best.by, independent=True, probability=with_both * share)
@@ -370,7 +379,7 @@ def _descriptions(channel: ScatterOfChannel, *, offsets: bool) -> list[Described
         one for one in found if one.by.independent == found[0].by.independent and one.by.span is not None
     ]
     spans = [one.by.span for one in alike if one.log_probability > proven]
-    shortest = next(span for span in some.chains if span in spans)
+    shortest = next((span for span in some.chains if span in spans), alike[0].by.span)
     chosen = first if first.log_probability > proven else next(x for x in alike if x.by.span is shortest)
     found.insert(0, found.pop(found.index(chosen)))
     return found

@@ -1,26 +1,25 @@
-"""Selection of effects by evidence: forward steps, each followed by a backward check."""
+"""Selection of effects by evidence: the best set that is reached from no effect, and from all effects at once."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.priors import log_prior, price
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.diagnosis.subsets import LinearSets
 from mffit.effects import Effect
 from mffit.rig import Simulation
-from tir.parameters import BY_NAME
-
-Ids = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
-class ForwardStep:
-    """One forward step: every candidate in addition to the effects accepted before."""
+class Contest:
+    """Every candidate for one place in an explanation, in addition to the effects that fill the other places."""
 
-    before: Hypothesis
+    before: Hypothesis  #: with the place empty
     trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
     threshold: float  #: required gain of log evidence
     start: Simulation  #: the given simulation
@@ -37,6 +36,11 @@ class ForwardStep:
     def passes(self) -> bool:
         return self.gain > self.threshold
 
+    @property
+    def fitted(self) -> tuple[Hypothesis, ...]:
+        """The trials that were fitted in full."""
+        return tuple(one for one in self.trials if one.state is not self.before.state)
+
     def weights(self) -> dict[str, float]:
         """Posterior weight by effect id, "none" included; the prior probability is divided equally among the effects."""
         logs = {}
@@ -49,77 +53,62 @@ class ForwardStep:
         return {name: math.exp(v - top) / total for name, v in logs.items()}
 
 
-def log_prior(effect: Effect, start: Simulation) -> float:
-    """Log prior of an effect, which ranks effects that the data hardly separate.
-
-    A coefficient that is exactly zero in the given model was never identified, so it is more likely to be missing than others.
-    """
-    if effect.kind != "tyre" or not all(name in BY_NAME for name in effect.parameters):
-        return effect.prior
-    unidentified = all(float(start.values[name]) == 0.0 for name in effect.parameters)
-    return effect.prior + (1.0 if unidentified else -1.0) * constants.UNIDENTIFIED_LOG_ODDS
-
-
-def price(candidates: int) -> float:
-    """Log evidence that an effect must add to be accepted and kept: a penalty for the number of candidates, and a margin."""
-    return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN
-
-
 def select(
-    problem: DiagnosisProblem, candidates: Sequence[Effect]
-) -> tuple[DiagnosisProblem, Hypothesis, list[ForwardStep]]:
-    """The problem, the selected effects, and the steps: forward selection, dropping an effect that became superfluous.
+    problem: DiagnosisProblem, candidates: Sequence[Effect], places: Iterable[Hypothesis]
+) -> tuple[DiagnosisProblem, Hypothesis]:
+    """The most probable set of effects that is reached from any of the ``places``, its effects in the order of their weight.
 
-    A fit may end in a local optimum, so a set of effects may get different evidence when it is fitted again. A set that was
-    replaced is therefore never entered again, which makes the search end. The covariance of the returned problem contains the
-    most likely smooth structure for the selected effects.
+    The covariance of the returned problem contains the most likely smooth structure in addition to these effects.
     """
-    problem = problem.at_amplitude(problem.null.smooth)
-    current, steps, left = problem.null, [], set[Ids]()
-    most = min(constants.MOST_EFFECTS_PER_CHANNEL * len(problem.channels), len(candidates))
-    while len(current.effects) < most:
-        step = forward_step(problem, current, candidates)
-        steps.append(step)
-        left.add(current.ids)
-        if not step.passes or step.best.ids in left:
-            break
-        current = _without_needless(problem, step.best, step.threshold, left)
-        beside = problem.at_amplitude(current.smooth)
-        if beside is not problem:
-            problem, current = beside, refitted(beside, current, current.effects)
-    return problem, current, steps
+    found = (_climbed(problem, candidates, place) for place in places)
+    return max(found, key=lambda one: _posterior(one[0], one[1], candidates))
 
 
-def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> ForwardStep:
-    """Every candidate in addition to the accepted effects; the best ones to first order are fitted in full."""
+def contest(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> Contest:
+    """Every candidate in addition to the effects of ``before``; those that gain much to first order are fitted in full."""
     trials = []
-    ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
-    for rank, (effect, gain) in enumerate(ranked):
+    ranked = _at_own_structure(problem, before)
+    gains = ranked[0].promising(ranked[1], [e for e in candidates if e.id not in before.ids])
+    for rank, (effect, gain) in enumerate(gains):
         effects = (*before.effects, effect)
-        if rank < constants.CANDIDATES_FITTED:
+        if rank < constants.CANDIDATES_FITTED and gain >= constants.WORTH_FITTING * gains[0][1]:
             trials.append(problem.fit(effects, before.numbers))
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
-    return ForwardStep(
-        before=before, trials=tuple(trials), threshold=price(len(candidates)), start=problem.start
-    )
+    return Contest(before, tuple(trials), price(len(candidates)), problem.start)
 
 
-def _without_needless(
-    problem: DiagnosisProblem, current: Hypothesis, needed: float, left: set[Ids]
-) -> Hypothesis:
-    """The hypothesis without the first effect that adds less than ``needed``; adds a replaced set to ``left``."""
-    for effect in current.effects if len(current.effects) > 1 else ():
-        rest = current.others(effect)
-        if _ids(*rest) in left:
-            continue
-        without = refitted(problem, current, rest)
-        if current.log_evidence - without.log_evidence < needed:
-            left.add(current.ids)
-            return without
-    return current
+def _climbed(
+    problem: DiagnosisProblem, candidates: Sequence[Effect], at: Hypothesis
+) -> tuple[DiagnosisProblem, Hypothesis]:
+    """The best set reached from a hypothesis: the readings are linearised there, the best set is fitted, and so on.
+
+    A fit may end in a local optimum, so a set may look different at every visit; the search ends when it meets a set again.
+    """
+    met, best = {at.ids}, None
+    while True:
+        here = problem.at_amplitude(at.smooth)
+        sets = LinearSets(here, at, candidates)
+        ends = [sets.best(sets.of(at.effects)), sets.best(sets.taken_away(sets.of(candidates)))]
+        members = max(ends, key=sets.weight)
+        effects = sets.effects(sets.in_order(members))
+        at = here.fit(effects, sets.numbers(members)) if effects else here.null
+        found = _at_own_structure(here, at)
+        if best is None or _posterior(*found, candidates) > _posterior(*best, candidates):
+            best = found
+        if at.ids in met:
+            return best
+        met.add(at.ids)
 
 
-def _ids(*effects: Effect) -> Ids:
-    return frozenset(effect.id for effect in effects)
+def _at_own_structure(problem: DiagnosisProblem, found: Hypothesis) -> tuple[DiagnosisProblem, Hypothesis]:
+    """The hypothesis with its own most likely smooth structure in the covariance."""
+    own = problem.at_amplitude(found.smooth)
+    return own, found if own is problem else refitted(own, found, found.effects)
+
+
+def _posterior(problem: DiagnosisProblem, found: Hypothesis, candidates: Sequence[Effect]) -> float:
+    """Log posterior of a set up to a constant: its evidence, less the price of every effect."""
+    priors = [log_prior(effect, problem.start) - price(len(candidates)) for effect in found.effects]
+    return found.log_evidence + sum(priors)

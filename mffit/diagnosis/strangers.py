@@ -7,23 +7,14 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import ODD_SWEEP_RATIO
 from mffit.diagnosis import constants
-from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.noise import Noise, Origin
-from mffit.diagnosis.notes import (
-    AnotherTyre,
-    HardlyThisTyre,
-    NoiseBeyondStated,
-    OffsetsOrMemory,
-    WithoutNoise,
-)
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.notes import AnotherTyre, OffsetsOrMemory, WithoutNoise
 from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
-from mffit.scatter import rms, robust
 from tir import Tyre
 
 
@@ -83,26 +74,6 @@ def without_noise(noise: Noise) -> WithoutNoise | None:
     return WithoutNoise(assumed) if assumed else None
 
 
-def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
-    """The channels that scatter far more than stated even with the explanation, each with the sweep that scatters most."""
-    noise, points = found.scatter, found.problem.points
-    if noise.origin is not Origin.STATED:
-        return []
-    left = noise.by_channel(found.problem.measured - found.problem.predict(found.refined.state))
-    out = []
-    for channel, residual in left.items():
-        u = noise.of_channel(noise.u, channel)
-        known = np.isfinite(u)
-        if rms(u[known] / noise.of_channel(noise.stated, channel)[known]) > constants.STATED_NOISE_FACTOR**2:
-            off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
-            off = {name: size for name, size in off.items() if np.isfinite(size)}
-            worst = max(off, key=off.__getitem__)
-            odd = off[worst] > ODD_SWEEP_RATIO * float(np.median(list(off.values())))
-            typical, stated = noise.typical(channel), noise.typically_stated(channel)
-            out.append(NoiseBeyondStated(channel, typical, stated, worst if odd else ""))
-    return out
-
-
 def offsets_or_memory(
     noise: Noise, candidates: Sequence[Effect], named: Collection[str]
 ) -> list[OffsetsOrMemory]:
@@ -120,26 +91,3 @@ def offsets_or_memory(
         if scatter.memory and near and not any(effect.id in named for effect in near):
             found.append(OffsetsOrMemory(channel, scatter.memory, noise.typical(channel), near))
     return found
-
-
-def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:
-    """The explanation, without effects if even the best ones leave a misfit far beyond the noise."""
-    misfit, channel = _misfit(found)
-    judged = found.chosen.effects or found.scatter.origin is Origin.STATED
-    if judged and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
-        return found.withdrawn(), HardlyThisTyre(misfit, channel)
-    return found, None
-
-
-def _misfit(found: Explanation) -> tuple[float, str]:
-    """Robust misfit of the explanation in units of the stated noise, for the channel that fits better.
-
-    If one channel is mostly noise, the misfit of the other channel decides.
-    """
-    points, noise = found.problem.points, found.scatter
-    measured = np.concatenate([points.channel(name) for name in noise.channels])
-    residual = measured - found.problem.predict(found.refined.state)
-    z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
-    misfit = {name: robust(rows) for name, rows in noise.by_channel(z).items()}
-    better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
-    return misfit[better], better

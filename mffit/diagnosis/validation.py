@@ -37,36 +37,26 @@ class Validation:
     folds: int  #: number of groups left out in turn: sweeps, or parts of every run
     gap_before: Gap
     gap_after: Gap
-    gap_file: Gap
-    """Gap of the corrected property file alone, with rig and environment as in the given simulation."""
-    raised: tuple[str, ...] = ()
-    """Channels whose gap grows by more than numbers fitted to pure noise would raise it by chance."""
-    raised_by_file: tuple[str, ...] = ()
-    """Channels whose gap grows in this way with the corrected property file alone."""
+    gap_given_file: Gap
+    """Gap of the given property file, the rig errors and environment terms found being taken out of the readings."""
+    gain: float = 0.0
+    """Log likelihood of all channels together by which the left-out readings are predicted better than before."""
+    gain_of_file: float = 0.0
+    """The same by which the corrected property file predicts them better than the given one, without rig and environment."""
     within_runs: bool = False
     """Whether parts of every run were left out instead of whole sweeps, because some effects have numbers for every run."""
 
-    @property
-    def helps(self) -> bool:
-        """Whether the gap shrinks, and grows in no channel."""
-        return self.gap_after.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised
-
-    @property
-    def file_helps(self) -> bool:
-        """Whether the gap shrinks, and grows in no channel, with the corrected property file alone."""
-        return self.gap_file.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised_by_file
-
     def without_repair(self) -> Validation:
         """The validation of the given model, without a repair."""
-        return Validation(
-            self.folds, self.gap_before, self.gap_before, self.gap_before, within_runs=self.within_runs
-        )
+        before = self.gap_before
+        return Validation(self.folds, before, before, before, within_runs=self.within_runs)
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
-    """Gap of residuals (c n,), channel by channel; chi2 without correlations, like the rms."""
+    """Gap of residuals (c n,) of the readings that count, channel by channel; chi2 without correlations, like the rms."""
     z = residual[noise.used] / noise.u[noise.used]
-    rmse = {name: rms(rows) for name, rows in noise.by_channel(residual).items()}
+    counted = np.where(np.isfinite(noise.u), residual, np.nan)
+    rmse = {name: rms(rows) for name, rows in noise.by_channel(counted).items()}
     return Gap(rmse, chi2_per_dof=float(z @ z) / max(len(z), 1))
 
 
@@ -104,22 +94,23 @@ def validate(
     """
     points = problem.points
     before = problem.measured - problem.predict(problem.start)
-    after = alone = before
+    after = given_file = before
     fits = problem.seen_through(weights or problem.noise)
     within_runs = any(effect.differs_by_run for effect in hypothesis.effects)
     group = _part_of_run(points.file) if within_runs else np.unique(points.sweep, return_inverse=True)[1]
     if (hypothesis.effects or inexact) and group.any():
-        after, alone = _left_out(fits, hypothesis, inexact, group)
+        after, given_file = _left_out(fits, hypothesis, inexact, group)
         if seen:
             before, _ = _left_out(fits, fits.refine(fits.null, inexact)[0], inexact, group)
-    noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
+    noise = problem.noise
+    cost = [float(np.sum(noise.whiten(np.nan_to_num(one)) ** 2)) for one in (before, given_file, after)]
     return Validation(
         folds=int(group.max()) + 1,
         gap_before=gap(before, noise),
         gap_after=gap(after, noise),
-        gap_file=gap(alone, noise),
-        raised=_raised(before, after, noise, numbers),
-        raised_by_file=_raised(before, alone, noise, numbers),
+        gap_given_file=gap(given_file, noise),
+        gain=0.5 * (cost[0] - cost[2]),
+        gain_of_file=0.5 * (cost[1] - cost[2]),
         within_runs=within_runs,
     )
 
@@ -127,29 +118,30 @@ def validate(
 def _left_out(
     problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness, group: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Measured less predicted (c n,), with each group (n,) predicted from all others; and this for the property file alone."""
+    """Measured less predicted (c n,), with each group (n,) predicted from all others; and this for the given property file."""
     found, state = problem.linearised(hypothesis, inexact), hypothesis.state
-    plain = file_alone(state, problem.start)
-    after, alone = (problem.measured - problem.predict(one) for one in (state, plain))
-    errors = [error_of(name) for name in found.names]
-    kept = [k for k, error in enumerate(errors) if error is None or error.kind == "tyre"]
+    given = with_given_file(state, problem.start)
+    after, before = (problem.measured - problem.predict(one) for one in (state, given))
+    of_rig = [
+        k for k, name in enumerate(found.names) if (e := error_of(name)) is not None and e.kind != "tyre"
+    ]
     slopes = np.zeros_like(found.slopes)
-    if kept:
-        of_file = plain.sensitivities(problem.points, [found.names[k] for k in kept], problem.channels)[1]
-        slopes[:, kept] = np.nan_to_num(of_file.stacked)
+    if of_rig:
+        there = given.sensitivities(problem.points, [found.names[k] for k in of_rig], problem.channels)[1]
+        slopes[:, of_rig] = np.nan_to_num(there.stacked)
     every = np.tile(group, len(problem.channels))
     for number in range(int(group.max()) + 1):
         change = found.moved_without(np.flatnonzero(every[problem.noise.used] == number))
         rows = every == number
         after[rows] -= found.slopes[rows] @ change
-        alone[rows] -= slopes[rows] @ change
-    return after, alone
+        before[rows] -= slopes[rows] @ change
+    return after, before
 
 
-def file_alone(state: Simulation, given: Simulation) -> Simulation:
-    """The simulation with the corrected property file, and with rig and environment of ``given``."""
-    tyre = {error.name: state.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
-    return replace(state, faults=given.faults.replace(**tyre), of_parts=given.of_parts)
+def with_given_file(state: Simulation, given: Simulation) -> Simulation:
+    """The simulation with its errors of rig and environment, and with the property file of ``given``."""
+    tyre = {error.name: given.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
+    return replace(state, values=given.values, turn_slip=given.turn_slip, faults=state.faults.replace(**tyre))
 
 
 def _part_of_run(file: np.ndarray) -> np.ndarray:
@@ -159,14 +151,3 @@ def _part_of_run(file: np.ndarray) -> np.ndarray:
         rows = np.flatnonzero(file == k)
         out[rows] = np.arange(len(rows)) * constants.PARTS_OF_A_RUN // len(rows)
     return out
-
-
-def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
-    """Channels whose chi2 rises by more than chance: fitting ``numbers`` to pure noise raises that of left-out sweeps, too.
-
-    Residuals are whitened, because correlated errors would raise a plain sum of squares further.
-    """
-    change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
-    channel = noise.used // (len(before) // len(noise.channels))
-    chance = numbers + constants.TWO_SIGMA * np.sqrt(2.0 * numbers)
-    return tuple(name for k, name in enumerate(noise.channels) if change[channel == k].sum() > chance)

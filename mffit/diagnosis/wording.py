@@ -10,10 +10,11 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise
 from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
 from mffit.diagnosis.remains import BestEffect
+from mffit.diagnosis.rest import Answer, Rest, RestKind
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Validation
-from mffit.effects import Effect
+from mffit.effects import NAMES, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
@@ -21,14 +22,14 @@ from mffit.suspicion import Misread, Outlier
 from tir.errors import listed
 
 TO_DO = {
-    "tyre": "nothing at the rig; the corrected property file contains it",
+    "tyre": "use {file}",
     "environment": "keep it constant, or use the corrected points, from which it is removed; a property file cannot contain it",
 }
 """By kind of effect, what to do about effects of tyre and environment."""
 
 NOT_REPAIRED = {
-    "tyre": "nothing at the rig; the property file is as given, and --repair-all would correct it",
-    "environment": "keep it constant; the readings are as measured, and --repair-all would correct them",
+    "tyre": "{file} is as given; --repair-all corrects it",
+    "environment": "keep it constant; the readings are as measured, and --repair-all corrects them",
 }
 """By kind of effect, what to do about effects that are only suspected."""
 
@@ -43,32 +44,90 @@ def headline(diagnosis: Diagnosis) -> str:
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
     taken_off = "".join(f"{said[:1].upper()}{said[1:]}. " for said in _taken_off(diagnosis))
-    return (
-        warned
-        + taken_off
-        + left_out
-        + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
-    )
+    answer = f"{verdict(diagnosis)}: {_misfit(diagnosis)}.{_suspicions(diagnosis)}"
+    return warned + taken_off + left_out + answer
 
 
 def verdict(diagnosis: Diagnosis) -> str:
     """The answer without numbers and without full stop."""
     effects = diagnosis.repaired or diagnosis.effects
-    if effects:
-        names = listed([_with_ties(found) for found in effects])
-        if (
-            min(found.confidence_of_tie(diagnosis.alternatives) for found in effects)
-            < constants.LIKELY_ANSWER
-        ):
-            return f"The best explanation, though uncertain, is {names}"
-        return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
-    if not diagnosis.unexplained:
-        return "No effect is missing as far as these data can show"
-    if diagnosis.smooth is not None:
-        return "Smooth structure remains that no effect of the library describes"
-    if diagnosis.bump is None:
-        return "The model misses the data by more than their noise, and no effect of the library explains it"
-    return "A local misfit remains that no effect of the library describes"
+    names = listed([_with_ties(found) for found in effects])
+    match diagnosis.answer:
+        case Answer.NOTHING:
+            return "Nothing is missing as far as these data can show"
+        case Answer.FOUND:
+            return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
+        case Answer.UNDECIDED if diagnosis.repaired:
+            return f"The missing {'effect is' if len(effects) == 1 else 'effects are'} {names}"
+        case Answer.UNDECIDED if effects:
+            return f"These data cannot tell what is missing; the best explanation is {names}"
+        case Answer.UNDECIDED:
+            likeliest, confidence = diagnosis.ranked_alternatives()[0]
+            what = f"{NAMES.get(likeliest, likeliest)} ({per_cent(confidence)})"
+            return f"These data cannot tell whether anything is missing; {what} may be"
+        case Answer.UNKNOWN:
+            also = f" in addition to {names}" if effects else ""
+            return f"Something is missing that no effect of the library describes{also}"
+
+
+def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Why the corrected model is not to be trusted, without full stop; empty if it is.
+
+    What a formula misses of the points of its own fit is stated by the build, and is no reason.
+    """
+    if diagnosis.seen or not diagnosis.unexplained:
+        return ()
+    for remark in diagnosis.notes:
+        if isinstance(remark, AnotherTyre):
+            return (remark.sentence.rstrip("."),)
+    first = diagnosis.rest[0]
+    sweep = f", most in {first.sweep}" if first.sweep else ""
+    missed = ", and ".join(
+        f"{name} by {short(size)} {unit} where the noise is {short(noise)} {unit}"
+        for name, unit, noise in _measured(diagnosis.noise)
+        if (size := diagnosis.gap_after.rms(name)) > constants.MISFIT_AT_NOISE * noise
+        or name == first.channel
+    )
+    return (
+        f"no effect of the library explains what remains: the model misses {missed}{sweep}; {_cure(diagnosis)}",
+    )
+
+
+def _cure(diagnosis: Diagnosis) -> str:
+    """What to do about an unknown cause."""
+    first = diagnosis.rest[0]
+    if first.sweep:
+        return f"check {first.sweep} or repeat it"
+    if first.kind is RestKind.LOCAL and diagnosis.bump is not None:
+        return f"repeat the points around {_around(diagnosis.bump)}"
+    return "no single sweep is at fault; give the model of this tyre, or fit it first (mffit build)"
+
+
+def advice(diagnosis: Diagnosis) -> list[str]:
+    """What to do, in short sentences: which property file to use, what to mend at the rig, what to keep constant."""
+
+    def names(*kinds: str) -> str:
+        return listed([one.effect.name for one in diagnosis.repaired if one.effect.kind in kinds])
+
+    file, rig, beside = diagnosis.model_after, names("rig"), names("environment")
+    found = [
+        f"Use {file}: it contains {names('tyre')}."
+        if diagnosis.delivers
+        else f"Keep {file}: nothing in it is corrected."
+    ]
+    if rig:
+        found.append(
+            f"The rest is your rig: {rig}. Correct these readings, or mend the rig, as stated below."
+        )
+    if beside:
+        found.append(f"Add {beside} as a term in addition to the file, or keep it constant.")
+    if diagnosis.model_with_terms:
+        found.append(
+            f"{diagnosis.model_with_terms} is the given file with its coefficients estimated anew in addition to these."
+        )
+    runs = [separation(one.separation) for one in diagnosis.effects if one.separation is not None]
+    found += [f"To decide, add {run}." for run in dict.fromkeys(runs)]
+    return found
 
 
 def _taken_off(diagnosis: Diagnosis) -> list[str]:
@@ -76,23 +135,51 @@ def _taken_off(diagnosis: Diagnosis) -> list[str]:
     return [remark.said for remark in diagnosis.notes if isinstance(remark, TakenOff)]
 
 
-def _nothing_named(diagnosis: Diagnosis) -> str:
-    shown, bump = diagnosis.gap_examined, diagnosis.bump
-    misfit = "the rms misfit is " + listed(
-        [
-            f"{short(shown.rms(name))} {unit} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
-            for name, unit, noise in _measured(diagnosis.noise)
-        ]
-    )
-    if zeros_of_setups(diagnosis):
-        after = listed(
-            [f"{short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)]
+def _misfit(diagnosis: Diagnosis) -> str:
+    """The misfit before and after in words, and what remains."""
+    given, effects = diagnosis.gap_examined, diagnosis.repaired or diagnosis.effects
+    after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
+    parts = []
+    for name, unit, noise in _measured(diagnosis.noise):
+        was, is_ = short(given.rms(name)), short(after.rms(name))
+        now = f"{is_} {unit} instead of {was} {unit}" if effects else f"{was} {unit}"
+        parts.append(
+            f"{now} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
         )
-        misfit += f"; with the zeros of every set-up, estimated within what [rig] declares, it is {after}"
-    if diagnosis.unexplained and diagnosis.smooth is None and bump is not None:
-        off = f"{short(bump.amplitude)} {CHANNELS[bump.channel].unit}"
-        misfit = f"{bump.channel} is off by {off} around {_around(bump)}; {misfit}"
-    return f"{verdict(diagnosis)}: {misfit}."
+    them = "it" if len(effects) == 1 else "them"
+    lead = (
+        f"with {them} the rms misfit {'is' if diagnosis.repaired else 'would be'}"
+        if effects
+        else "the rms misfit is"
+    )
+    said = f"{lead} {listed(parts)}"
+    if not effects and diagnosis.coefficients:
+        better = [
+            f"{short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)
+        ]
+        what = "the zeros of every set-up" if zeros_of_setups(diagnosis) else "the coefficients"
+        said += f"; with {what}, estimated within their declared uncertainty, it is {listed(better)}"
+    for rest in diagnosis.rest[:1]:
+        said += f"; {_remains(rest, diagnosis)}"
+    return said
+
+
+def _remains(rest: Rest, diagnosis: Diagnosis) -> str:
+    """What remains, in words."""
+    match rest.kind:
+        case RestKind.SMOOTH:
+            return f"what remains changes smoothly with the conditions{f', most in {rest.channel}' if rest.channel else ''}"
+        case RestKind.LOCAL if diagnosis.bump is not None:
+            off = f"{short(diagnosis.bump.amplitude)} {CHANNELS[rest.channel].unit}"
+            return f"{rest.channel} remains off by {off} around {_around(diagnosis.bump)}"
+        case RestKind.SCATTER:
+            most = f", most in {rest.sweep}" if rest.sweep else ""
+            return f"{rest.channel} scatters by {short(rest.ratio)} times its stated noise{most}"
+        case RestKind.ALL:
+            return (
+                f"it is {rest.ratio:.0f} times the stated noise, so that the model hardly is one of this tyre"
+            )
+    return f"{rest.sweep} contradicts the other sweeps in {rest.channel}"
 
 
 def _as_read(diagnosis: Diagnosis, channel: str) -> str:
@@ -117,24 +204,6 @@ def _zeros(diagnosis: Diagnosis) -> list[str]:
         for name, (value, u) in zeros_of_setups(diagnosis).items()
     ]
     return [f"Zeros of the set-ups as estimated here: {'; '.join(found)}."] if found else []
-
-
-def _named(diagnosis: Diagnosis) -> str:
-    effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
-    after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
-    misfit = listed(
-        [
-            f"{short(after.rms(name))} {unit} instead of {short(diagnosis.gap_examined.rms(name))} {unit} in "
-            f"{CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
-            for name, unit, noise in _measured(diagnosis.noise)
-        ]
-    )
-    rest = ""
-    if diagnosis.unexplained:
-        what = f"{bump.channel} around {_around(bump)}" if bump else "the rest"
-        rest = f"; {what} stays unexplained"
-    them, is_ = "it" if len(effects) == 1 else "them", "is" if diagnosis.repaired else "would be"
-    return f"{verdict(diagnosis)}: with {them} the rms misfit {is_} {misfit}{rest}.{_suspicions(diagnosis)}"
 
 
 def _suspicions(diagnosis: Diagnosis) -> str:
@@ -223,13 +292,15 @@ def method(validation: Validation) -> str:
     return f"each of {validation.folds} sweeps left out in turn"
 
 
-def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
+def remedy(found: AcceptedEffect, diagnosis: Diagnosis) -> str:
     """What to do about an effect, in words; numbers are in the rig's own axes."""
     effect = found.effect
     if effect.switches:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
-        return (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
+        said = (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
+        return said.format(file=diagnosis.model_after)
+    signs = diagnosis.signs
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
     if not several:
         return _remedy_with(found, effect.free[0].name, signs)
@@ -296,6 +367,13 @@ def best_effect(found: BestEffect) -> str:
         else f"would explain {100 * step.share:.0f} % of the misfit"
     )
     return f"{step.effect.name}{listed} {says}, {found.sigma:.1f} standard deviations with {found.tried} effects tried{rivals}"
+
+
+def rival_of_formula(found: BestEffect | None) -> str:
+    """A clause on the effect of rig or environment that may be behind model error; empty if none may."""
+    if found is None or not found.possible or found.best.effect.kind == "tyre":
+        return ""
+    return best_effect(found)
 
 
 def _number(name: str, value: float, u: float) -> str:

@@ -14,6 +14,7 @@ from mffit import config as configuration
 from mffit import fit as fitting
 from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
+from mffit.diagnosis import wording
 from mffit.fit import FitResult
 from mffit.made import made
 from mffit.measured import Measured
@@ -92,7 +93,8 @@ def build(
         missed = missed_at_readings(known, model, reading.points, fitted.model, proven)
         table = correction(known, model, proven)
         if trust.trusted:
-            remarks = (missed_sentence(missed[name]) for name in trust.limited if name in missed)
+            rival = wording.rival_of_formula(left.effect)
+            remarks = (missed_sentence(missed[name], rival) for name in trust.limited if name in missed)
             trust = replace(trust, remarks=tuple(remarks))
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     notes = (*base_notes(config, base), *(f"{note}." for note in reading.notes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,6 @@ from mffit.made import made
 from mffit.output import digest, output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
-from mffit.pipeline.judging import judged_diagnosis
 from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
@@ -99,17 +99,32 @@ def diagnose(
         made=made(hashes),
         lab=config.lab,
         left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
+        given_file=_seen_from(out, chosen.file),
+        written_anyway=chosen.fresh,
     )
-    diagnosis = replace(diagnosis, trust=judged_diagnosis(diagnosis))
+    why = wording.reasons(diagnosis)
     diagnosis = replace(
         diagnosis,
         headline=wording.headline(diagnosis),
-        tyre=marked(diagnosis.tyre, diagnosis.trust),
-        with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, diagnosis.trust),
+        reasons=why,
+        tyre=marked(diagnosis.tyre, why),
+        with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, why),
     )
     if out is not None:
         write_diagnosis(diagnosis, Path(out), protected=read)
     return diagnosis
+
+
+def _seen_from(out: str | Path | None, file: Path | None) -> str:
+    """Path of the given property file relative to the output folder, with slashes; a phrase for a model without a file."""
+    if file is None:
+        return "the given model"
+    if out is None:
+        return file.as_posix()
+    try:
+        return Path(os.path.relpath(file.resolve(), Path(out).resolve())).as_posix()
+    except ValueError:  # on another drive
+        return file.resolve().as_posix()
 
 
 class ChosenModel(NamedTuple):
@@ -161,8 +176,10 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] =
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced."""
     from mffit import report
 
-    with output_folder(out, by="diagnose", protected=protected) as folder:
-        diagnosis.tyre.write(folder / diagnosis.model_after)
+    files = (f"{diagnosis.name}.tir", f"{diagnosis.name}{WITH_TERMS}")
+    with output_folder(out, by="diagnose", protected=protected, outdated=files) as folder:
+        if diagnosis.delivers or diagnosis.written_anyway:
+            diagnosis.tyre.write(folder / diagnosis.model_after)
         if diagnosis.with_terms is not None:
             diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
         as_json.write(folder / "diagnosis.json", diagnosis)

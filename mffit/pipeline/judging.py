@@ -1,4 +1,4 @@
-"""Whether a build, a direct measurement or a diagnosis is to be trusted: what the rules need, and their judgement."""
+"""Whether a build or a direct measurement is to be trusted: what the rules need, and their judgement."""
 
 from __future__ import annotations
 
@@ -9,18 +9,15 @@ import numpy as np
 
 import tir
 from mffit.config import Config
-from mffit.diagnosis import Diagnosis, wording
-from mffit.diagnosis.noise import Origin
-from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre
+from mffit.diagnosis import wording
 from mffit.diagnosis.remains import OddSweep, Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
 from mffit.fit.wording import at_limits
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
-from mffit.rig import Readings
 from mffit.rig_errors import error_of
-from mffit.suspicion import Doubt, FinishedFit, JudgedMeasurement, LeftOutSweeps, Outlier, Trust, judge
+from mffit.suspicion import Doubt, FinishedFit, JudgedMeasurement, Outlier, Trust, judge
 from tir import Tyre
 
 
@@ -89,46 +86,6 @@ def judged_measurement(config: Config, points: Points, measured: Measured) -> Tr
 def said(trust: Trust) -> tuple[str, ...]:
     """Reasons and doubts as warnings."""
     return (*(f"the result is not to be trusted: {reason}" for reason in trust.reasons), *trust.doubts)
-
-
-def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
-    """The judgement of the corrected model of a diagnosis."""
-    points = diagnosis.points
-    if diagnosis.noise.origin is not Origin.STATED:
-        points = points.replace(**{f"u_{name}": np.nan for name in diagnosis.noise.channels})
-    after = Readings(**diagnosis.noise.by_channel(diagnosis.after))
-    left_out = {}
-    for name in after:
-        difference = after[name] - points.channel(name)
-        sweeps = len(np.unique(points.sweep[np.isfinite(difference)]))
-        if sweeps:
-            predicted = diagnosis.validation.gap_after.rms(name)
-            left_out[name] = LeftOutSweeps(sweeps, diagnosis.gap_after.rms(name), predicted, predicted)
-    finished = FinishedFit(
-        points=points,
-        model=after,
-        used=_used(points, after, diagnosis.outliers),
-        r2={name: found.r2 for name, found in with_points(after, points).items()},
-        left_out=left_out,
-    )
-    return judge(replace(finished, stranger=_stranger(diagnosis, finished)))
-
-
-def _stranger(diagnosis: Diagnosis, finished: FinishedFit) -> str:
-    """Why the diagnosed model is not of this tyre; empty if it may be."""
-    for remark in diagnosis.notes:
-        if isinstance(remark, AnotherTyre | HardlyThisTyre):
-            return remark.sentence.rstrip(".")
-    sweeps = np.unique(diagnosis.points.sweep).tolist()
-    for name in finished.used:
-        missed = sum(finished.wrong(name, diagnosis.points.sweep == k) for k in sweeps)
-        if 2 * missed > len(sweeps) > 1:
-            return (
-                f"the model misses {name} in {missed} of {len(sweeps)} sweeps by more than their noise explains, so that no "
-                "single sweep is at fault: it is a model of another tyre, or lacks what no effect of the library describes; give "
-                "the model of this tyre, or fit it first (mffit build)"
-            )
-    return ""
 
 
 def _cause(against: Sequence[Doubt], left: Remains) -> str:

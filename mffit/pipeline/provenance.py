@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote, unquote
@@ -85,15 +85,15 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
                     else ""
                 )
             )
-        return marked(tyre.annotate(measured=quantities, provenance=provenance), trust)
+        return marked(tyre.annotate(measured=quantities, provenance=provenance), trust.reasons)
 
     return annotated
 
 
-def marked(tyre: Tyre, trust: Trust) -> Tyre:
+def marked(tyre: Tyre, against: Sequence[str]) -> Tyre:
     """The tyre with the reasons against trusting it in its comments, and without those of an earlier judgement."""
     kept = {key: text for key, text in tyre.provenance.items() if key != DISTRUSTED}
-    reasons = {} if trust.trusted else {DISTRUSTED: "; ".join(trust.reasons)}
+    reasons = {DISTRUSTED: "; ".join(against)} if against else {}
     return replace(tyre, provenance={**reasons, **kept})
 
 

@@ -21,12 +21,16 @@ BECAUSE = {
 """By condition or side, the channels whose error of grip a property of the formula explains, and that property."""
 
 
-def missed_sentence(found: MissedAtReadings) -> str:
-    """A sentence on a channel that model error limits: size of the error and region of the largest one."""
+def missed_sentence(found: MissedAtReadings, rival: str = "") -> str:
+    """A sentence on a channel that model error limits: size of the error and region of the largest one.
+
+    ``rival`` is a clause on an error of rig or environment that may cause part of it.
+    """
     name, unit = found.channel, CHANNELS[found.channel].unit
     where = "" if found.region is None else f"; {_most(found, found.region)}"
+    limits = "the formula, not the readings" if not rival else f"the formula, or the readings ({rival})"
     return (
-        f"what limits {name} is the formula, not the readings: alike in all sweeps it misses {found.size:.3g} {unit} rms, "
+        f"what limits {name} is {limits}: alike in all sweeps it misses {found.size:.3g} {unit} rms, "
         f"{100.0 * found.size / found.largest:.1f} % of the largest {name}{where}"
     )
 

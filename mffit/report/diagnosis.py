@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
+from mffit.diagnosis.rest import Answer
 from mffit.quantities import CHANNELS
 from mffit.report import page, words
 from mffit.report.catalogue import Picture
@@ -13,6 +14,13 @@ from mffit.report.figures import gap
 from tir.parameters import BY_NAME
 
 DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
+    Picture(
+        name="gap_by_effect",
+        title="The rms misfit as given and with one effect after the other",
+        shows="Each bar adds one correction to those above it; the number is its length. Diamonds are left-out sweeps, predicted "
+        "by a fit without them. The dashed line is the noise of the readings. The scale is logarithmic.",
+        draw=gap.gap_by_effect,
+    ),
     Picture(
         name="curves",
         title="The worst and the typical sweep: measured and simulated",
@@ -22,10 +30,11 @@ DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
     ),
     Picture(
         name="evidence",
-        title="Gain in log evidence of every candidate effect in each forward step",
-        shows="Every effect that these data could show was refitted beside the effects accepted before. An effect is named if "
-        "its bar passes the dashed line, which allows for the number of effects tried. The number at a bar is its distance to "
-        f"the best in log evidence: within {TIED_EVIDENCE:g} the data do not tell them apart. The scale is logarithmic.",
+        title="Gain in log evidence of every candidate effect in the place of each accepted one",
+        shows="Every effect that these data could show was tried in the place of each accepted one, in addition to the others. "
+        "An effect is named if its bar passes the dashed line, which allows for the number of effects tried. The number at a bar "
+        f"is its distance to the best in log evidence: within {TIED_EVIDENCE:g} the data cannot separate them. The scale is "
+        "logarithmic.",
         draw=gap.evidence,
     ),
     Picture(
@@ -40,6 +49,15 @@ DIAGNOSIS: tuple[Picture[Diagnosis], ...] = (
 """Every picture of the page."""
 
 
+FIRST = {
+    Answer.NOTHING: "curves",
+    Answer.FOUND: "gap_by_effect",
+    Answer.UNDECIDED: "evidence",
+    Answer.UNKNOWN: "gap_maps",
+}
+"""By answer, the picture that the page shows first."""
+
+
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """Write ``plots/*.png`` and ``diagnosis.html`` of a diagnosis to an existing folder."""
     page.write(
@@ -48,6 +66,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         DIAGNOSIS,
         diagnosis,
         d=diagnosis,
+        first=FIRST[diagnosis.answer],
         measured=[channel.name for channel in gap.gap_channels(diagnosis)],
         say=wording,
         channels=CHANNELS,

@@ -92,8 +92,6 @@ class FinishedFit(JudgedMeasurement):
     free: int = 0  #: number of free coefficients
     left: float = 0.0  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     broken: tuple[str, ...] = ()  #: errors that the check finds in the written files, as sentences
-    stranger: str = ""
-    """Why a given model is not of this tyre, so that no sweep is at fault; "" for a fitted model."""
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> OverNoise:
         """Misfit over the stated noise at the used readings, or at those of them in the mask ``rows`` (n,)."""
@@ -467,18 +465,8 @@ def whole_sweeps(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             yield {"channel": name, "ratio": fit.misfit(name).ratio, "carriers": _carriers(fit, name)}
 
 
-@of_model(id="model-of-another-tyre", outcome=Outcome.DISTRUSTED, sentence="{why}")
-def of_another_tyre(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit of a given model that is none of this tyre; no other rule is applied then."""
-    if fit.stranger and any(_blamed_by(rule, fit) for rule in OF_READINGS):
-        yield {"why": fit.stranger}
-
-
 def judge(found: JudgedMeasurement) -> Trust:
-    """The judgement by all rules of trust, or without a fit by those that need none.
-
-    If the model is of another tyre, this is the only reason given.
-    """
+    """The judgement by all rules of trust, or without a fit by those that need none."""
 
     def said(*rules: Rule, doubtful: bool) -> tuple[str, ...]:
         return tuple(
@@ -491,8 +479,6 @@ def judge(found: JudgedMeasurement) -> Trust:
     if not isinstance(found, FinishedFit):
         rules = [rule for rule in OF_TRUST if rule.when is When.MEASURED]
         return Trust(said(*rules, doubtful=False), said(*rules, doubtful=True))
-    if strange := said(of_another_tyre, doubtful=False):
-        return Trust(reasons=strange, over_noise=found.over_noise)
     reasons = said(*OF_TRUST, doubtful=False)
     doubts = said(*OF_TRUST, doubtful=True)
     limited = tuple(name for name in found.used if found.beyond_scatter(name))
@@ -502,7 +488,6 @@ def judge(found: JudgedMeasurement) -> Trust:
 OF_READINGS = (above_noise, sweep_above_noise, unexplained)
 """Rules that blame readings."""
 OF_TRUST = (
-    of_another_tyre,
     not_ended,
     *OF_READINGS,
     bound_against_data,

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95, NAMED_IN_SENTENCE
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.constants import TIED_EVIDENCE
-from mffit.diagnosis.selection import ForwardStep
+from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.where import Region
 from mffit.quantities import CHANNELS, QuantityName
 from mffit.report import constants, labels, style
@@ -39,6 +39,7 @@ KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": styl
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
 GIVEN = Look(colour=style.CONTRAST, line="--", width=1.2)
 FOUND = Look(colour=style.ACCENT, line="-", width=1.2)
+LEFT_OUT = Look(colour=style.INK, marker="D", size=3.0, hollow=True)
 LEAST_GAIN = 1.0
 """Where the logarithmic axis of gains begins."""
 THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
@@ -70,6 +71,61 @@ def gap_channels(diagnosis: Diagnosis) -> list[GapChannel]:
         if np.isfinite(before).any():
             found.append(GapChannel(name=name, before=before, after=after))
     return found
+
+
+def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
+    """The rms misfit as given and with one effect after the other, of all readings and of left-out sweeps, by channel."""
+    steps = diagnosis.steps
+    if len(steps) < 2:
+        return NOTHING
+    names = [
+        labels.typeset(textwrap.shorten(f"{'' if k == 0 else '+ '}{one.name}", 34, placeholder="…"))
+        for k, one in enumerate(steps)
+    ]
+    panels = []
+    for channel in gap_channels(diagnosis):
+        name, noise = channel.name, diagnosis.noise.typical(channel.name)
+        sizes = np.array([one.gap.rms(name) for one in steps])
+        left_out = np.array([one.held_out.rms(name) for one in steps])
+        low, high = 0.5 * min(noise, *sizes), 2.0 * max(noise, *sizes, *left_out)
+        places = np.arange(len(steps), dtype=float)
+        panels.append(
+            Panel(
+                title=channel.known.mathtext,
+                x=Axis(label=f"rms misfit [{channel.known.unit}]", low=low, high=high, logarithmic=True),
+                y=listed(names),
+                series=[
+                    Bars(
+                        name="all readings",
+                        lengths=sizes,
+                        places=places,
+                        colours=[_colour_of(diagnosis, one.id) for one in steps],
+                    ),
+                    Trace(name="left-out sweeps", x=left_out, y=places, look=LEFT_OUT),
+                ],
+                guides=[Guide(axis="x", at=noise, look=THRESHOLD)],
+                notes=[
+                    Note(x=float(max(a, b)), y=k, text=number(a, digits=3))
+                    for k, (a, b) in enumerate(zip(sizes, left_out, strict=True))
+                ],
+            )
+        )
+    key = {
+        kind: Look(colour=colour, opacity=1.0)
+        for kind, colour in KIND_COLOURS.items()
+        if any(one.effect.kind == kind for one in diagnosis.repaired)
+    }
+    return Sheet(
+        rows=in_rows(panels, columns=2),
+        height=0.22 * len(steps) + 0.2,
+        key=key | {"left-out sweeps": LEFT_OUT, "noise": THRESHOLD},
+    )
+
+
+def _colour_of(diagnosis: Diagnosis, step: str) -> str:
+    """The colour of a step's bar, by the kind of its effect."""
+    kinds = {one.effect.id: one.effect.kind for one in diagnosis.repaired}
+    return KIND_COLOURS.get(kinds.get(step, ""), style.MUTED)
 
 
 def curves_before_after(diagnosis: Diagnosis) -> Sheet:
@@ -105,8 +161,8 @@ def _worst_and_typical(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> 
     found = curves(diagnosis.points)
     if not found or not channels:
         return {}
-    squares = np.nanmean([c.before**2 for c in channels], axis=0)
-    order = sorted(found, key=lambda curve: float(np.nanmean(squares[curve.index])))
+    squares = np.sum([np.nan_to_num(c.before) ** 2 for c in channels], axis=0)
+    order = sorted(found, key=lambda curve: float(np.mean(squares[curve.index])))
     typical = {"Typical": order[(len(order) - 1) // 2]} if len(order) > 1 else {}
     return {"Worst": order[-1], **typical}
 
@@ -173,23 +229,25 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
 
 
 def evidence(diagnosis: Diagnosis) -> Sheet:
-    """The gain in log evidence of every candidate, a panel per forward step, coloured by kind."""
-    steps = [step for step in diagnosis.steps if step.trials and step.gain > LEAST_GAIN]  # others have no bar
-    panels = [_candidates(step, number_of) for number_of, step in enumerate(steps, 1)]
+    """The gain in log evidence of every candidate in the place of each effect, a panel per place, coloured by kind."""
+    contests = [
+        one for one in diagnosis.contests if one.trials and one.gain > LEAST_GAIN
+    ]  # others have no bar
+    named = {one.effect.id: one.effect.name for one in diagnosis.effects}
+    panels = [_candidates(one, named.get(one.best.effects[-1].id, "")) for one in contests]
     most = max((len(panel.y.words or {}) for panel in panels), default=1)
-    present = {trial.effects[-1].kind for step in steps for trial in step.trials}
+    present = {trial.effects[-1].kind for one in contests for trial in one.trials}
     key = {kind: Look(colour=colour, opacity=1.0) for kind, colour in KIND_COLOURS.items() if kind in present}
     return Sheet(rows=in_rows(panels, columns=2), height=0.185 * most, key=key)
 
 
-def _candidates(step: ForwardStep, number_of: int) -> Panel:
+def _candidates(step: Contest, named: str) -> Panel:
     gained = [(trial.log_evidence - step.before.log_evidence, trial.effects[-1]) for trial in step.trials]
     rows = sorted(gained, key=lambda row: -row[0])[: constants.MOST_ROWS]
     gains = np.array([max(gain, LEAST_GAIN) for gain, _ in rows])
-    beside = " and ".join(effect.name for effect in step.before.effects)
     passed = rows[0][0] > step.threshold
-    after = f"beside {beside}" if beside else "one effect alone"
-    title = f"Step {number_of}{'' if passed else ', nothing passes'}: {after}"
+    title = f"In the place of {named}" if named else "One effect alone"
+    title += "" if passed else ": nothing passes"
     bars = Bars(
         name="gain",
         lengths=gains,

@@ -2,58 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
+from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.notes import NotVisible
 from mffit.diagnosis.where import Region
 from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS
 from mffit.report import words
-from mffit.report.text.layout import blocks, cut, lines_left, table, wrapped
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, per_cent, with_u
 from tir.errors import counted
 
+MOST_NUMBERS = 5
+"""Most numbers of an effect that a terminal shows."""
+
 
 def diagnosis_summary(diagnosis: Diagnosis) -> str:
-    """What ``mffit diagnose`` prints on one screen: the main sentence, the gap, the effects, what is unexplained."""
-    gaps: tuple[tuple[str, Gap], ...] = (
-        ("before", diagnosis.gap_before),
-        ("after", diagnosis.gap_after),
-        ("held out, before", diagnosis.validation.gap_before),
-        ("held out, after", diagnosis.validation.gap_after),
-    )
-    if not diagnosis.is_corrected:
-        gaps = (("all points", diagnosis.gap_before), ("held out", diagnosis.validation.gap_before))
-    if diagnosis.terms:
-        gaps = (*gaps, ("held out, corrected file alone", diagnosis.validation.gap_file))
+    """What ``mffit diagnose`` prints: the answer, what to do, the gap effect by effect, the effects, what is unexplained.
+
+    What to do is never cut, however many effects there are.
+    """
+    check, steps = diagnosis.validation, diagnosis.steps
+    gaps = [("before", diagnosis.gap_before), *((f"+ {one.name}", one.gap) for one in steps[1:])]
+    gaps += [("held out, before", check.gap_before), ("held out, after", check.gap_after)][
+        : 1 + (len(steps) > 1)
+    ]
     noise = diagnosis.noise
     rows = [(name, [*g.rmse.values(), g.chi2_per_dof]) for name, g in gaps]
     rows.append(("noise", [*(noise.typical(name) for name in noise.channels), 1.0]))
     head = ("gap, rms", *(CHANNELS[name].column(name) for name in noise.channels), "chi2 per dof")
-    parts = [
-        *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
-        wrapped(diagnosis.headline),
-        table(head, [(name, *(number(value, digits=3) for value in values)) for name, values in rows]),
-    ]
-    regions = _regions(diagnosis.unexplained_where) if diagnosis.unexplained else ""
     unseen = [note for note in diagnosis.notes if isinstance(note, NotVisible)]
     seen = [said for said in wording.notes(diagnosis) if said not in {note.sentence for note in unseen}]
-    notes = "\n".join([*(f"- {cut(said, 2, '  ')}" for said in seen), *_invisible(unseen)])
-    effects = [_effect(found, diagnosis.signs) for found in diagnosis.effects]
-    return blocks([*parts, *_within(lines_left(*parts, regions, notes), effects), regions, notes])
-
-
-def _within(lines: int, effects: Sequence[str]) -> list[str]:
-    """Effects as far as there is room for all that is said of them; of the others their first lines."""
-    heads = [effect.partition("\n")[0] for effect in effects]
-    full = 0
-    while full < len(effects):
-        lines -= effects[full].count("\n") + 2
-        if full and lines < len(effects) - full - 1:
-            break
-        full += 1
-    return [*effects[:full], "\n".join(heads[full:])]
+    return blocks(
+        [
+            *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
+            wrapped(diagnosis.headline),
+            paragraphs(wording.advice(diagnosis)),
+            table(head, [(name, *(number(value, digits=3) for value in values)) for name, values in rows]),
+            *(_effect(found, diagnosis) for found in diagnosis.effects),
+            _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
+            "\n".join([*(wrapped(said, "- ", "  ") for said in seen), *_invisible(unseen)]),
+        ]
+    )
 
 
 def _invisible(found: Sequence[NotVisible]) -> list[str]:
@@ -66,24 +57,24 @@ def _invisible(found: Sequence[NotVisible]) -> list[str]:
     return [wrapped(said, "- ", "  ")]
 
 
-def models_written(diagnosis: Diagnosis) -> str:
-    """Names of the property files of a diagnosis, with what they are."""
-    if diagnosis.with_terms is not None:
-        return f"{diagnosis.model_after} (the model as given), {diagnosis.model_with_terms}"
-    if not diagnosis.is_corrected:
-        return f"{diagnosis.model_after} (the model as given)"
-    return diagnosis.model_after
+def models_written(diagnosis: Diagnosis) -> list[str]:
+    """Names of the property files that a diagnosis writes."""
+    corrected = [diagnosis.model_after] if diagnosis.delivers or diagnosis.written_anyway else []
+    return [*corrected, *([diagnosis.model_with_terms] if diagnosis.model_with_terms else [])]
 
 
-def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
+def _effect(found: AcceptedEffect, diagnosis: Diagnosis) -> str:
     suspected = "" if found.repaired else ", suspected and not repaired"
     lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}{suspected}"]
-    lines += [_number(found, name) for name in found.parameters]
-    lines.append(wrapped(f"to do: {wording.remedy(found, signs)}", "  ", "  "))
+    some = list(found.parameters)[:MOST_NUMBERS]
+    lines += [_number(found, name) for name in some]
+    if len(found.parameters) > len(some):
+        lines.append(f"  and {counted(len(found.parameters) - len(some), 'more number')} (page and JSON)")
+    if found.effect.kind != "tyre" or not found.repaired:
+        lines.append(wrapped(f"to do: {wording.remedy(found, diagnosis)}", "  ", "  "))
     if found.tied_with:
         rivals = ", ".join(effect.name for effect in found.tied)
         lines.append(wrapped(f"these data cannot tell it from: {rivals}", "  ", "  "))
-        lines.append(wrapped(f"to separate them: {wording.separation(found.separation)}", "  ", "  "))
     return "\n".join(lines)
 
 

@@ -12,6 +12,7 @@ from mffit.conversion import wording as converted
 from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.result import Apart
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.hierarchy import Hierarchy, Population
@@ -32,11 +33,16 @@ from mffit.results.verification import Verification
 
 keys(
     Diagnosis,
-    "trusted reasons headline gap_before gap_after validation where effects alternatives limits unexplained unexplained_where "
-    "noise_floor=noise outliers coefficients model_after model_with_terms notes lab left_out [made]",
-    effects=lambda found: [
-        document(one) | {"to_do": wording.remedy(one, found.signs)} for one in found.effects
+    "trusted reasons headline verdict gap_before gap_after gap_by_effect validation where effects alternatives limits "
+    "unexplained unexplained_where "
+    "noise_floor=noise outliers coefficients model_after model_with_terms advice apart notes lab left_out [made]",
+    verdict=lambda found: found.answer.name.lower(),
+    gap_by_effect=lambda found: [
+        {"id": step.id, "gap": document(step.gap), "held_out": document(step.held_out)}
+        for step in found.steps
     ],
+    advice=wording.advice,
+    effects=lambda found: [document(one) | {"to_do": wording.remedy(one, found)} for one in found.effects],
     alternatives=lambda found: [
         {"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()
     ],
@@ -44,7 +50,8 @@ keys(
     notes=wording.notes,
 )
 keys(Gap, "**rmse chi2_per_dof", rmse=lambda gap: {column(name, "rmse"): x for name, x in gap.rmse.items()})
-keys(Validation, "method gap_before gap_after gap_file", method=wording.method)
+keys(Validation, "method gap_before gap_after gap_given_file gain", method=wording.method)
+keys(Apart, "where rms largest")
 keys(Limit, "id=effect.id of_usual_size=share ruled_out")
 keys(
     Noise,

@@ -10,8 +10,9 @@ import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.priors import log_prior
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import ForwardStep, log_prior
+from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import SeparatingRun, candidate_runs, separation
 from mffit.diagnosis.validation import gap, validate
@@ -111,8 +112,8 @@ def test_a_channel_that_was_not_measured_is_ignored():
     assert found.numbers["F0_N"] == pytest.approx(problem(points).fit((OFFSET,)).numbers["F0_N"], rel=1e-6)
 
 
-def step(**evidence: float) -> ForwardStep:
-    """A first step of rig effects whose prior grows with the length of their name; no effect has evidence 0."""
+def contest(**evidence: float) -> Contest:
+    """A first place of rig effects whose prior grows with the length of their name; no effect has evidence 0."""
     nothing = np.empty(0)
 
     def hypothesis(effects, value):
@@ -122,11 +123,11 @@ def step(**evidence: float) -> ForwardStep:
         hypothesis((Effect(name, name, "rig", "", (Free("F0_N", 1.0),), prior=0.5 * (len(name) - 1)),), value)
         for name, value in evidence.items()
     ]
-    return ForwardStep(hypothesis((), 0.0), tuple(trials), 4.0, Simulation.of(TYRE))
+    return Contest(hypothesis((), 0.0), tuple(trials), 4.0, Simulation.of(TYRE))
 
 
 def test_weights_are_evidence_times_prior_and_add_up():
-    found = step(a=3.0, bb=2.0, c=-1.0).weights()
+    found = contest(a=3.0, bb=2.0, c=-1.0).weights()
     logs = {"a": 3.0 - math.log(3), "bb": 2.5 - math.log(3), "c": -1.0 - math.log(3), "none": 0.0}
     total = sum(math.exp(v) for v in logs.values())
     assert found == pytest.approx({name: math.exp(v) / total for name, v in logs.items()})
@@ -134,8 +135,8 @@ def test_weights_are_evidence_times_prior_and_add_up():
 
 
 @pytest.mark.parametrize(("value", "passes"), [(3.9, False), (4.1, True)])
-def test_a_step_passes_from_its_threshold_on(value, passes):
-    found = step(a=value)
+def test_a_place_is_taken_from_its_threshold_on(value, passes):
+    found = contest(a=value)
     assert found.passes is passes
     assert found.gain == value
     assert found.best.effects[0].id == "a"

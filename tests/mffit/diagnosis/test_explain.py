@@ -28,7 +28,7 @@ def test_an_effect_that_vanishes_is_not_named(stiffer_camber):
     found = Explanation(
         problem=problem,
         chosen=both,
-        steps=[],
+        candidates=CATALOG,
         bump=bumps.best(both),
         bumps=bumps,
         refined=nothing,

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import diagnose
-from mffit.diagnosis.notes import NoiseBeyondStated, NotVisible, OneSweep, WithoutNoise
+from mffit.diagnosis.notes import NotVisible, OneSweep, WithoutNoise
+from mffit.diagnosis.rest import Answer, RestKind
 from mffit.diagnosis.strangers import another_tyre
 from mffit.errors import InputError
 from mffit.results import as_json
@@ -18,7 +19,9 @@ def test_a_right_model_has_no_gap(right_model, nothing):
     assert not found.unexplained
     assert found.gap_before == found.gap_after
     assert found.gap_before.chi2_per_dof == pytest.approx(1.0, abs=0.2)
-    assert "No effect is missing" in found.headline
+    assert found.answer is Answer.NOTHING
+    assert found.headline.startswith("Nothing is missing")
+    assert found.trusted
     assert all(found.tyre[name] == case.given[name] for name in ("PKY1", "PKY6", "PECP1", "QDZ1"))
 
 
@@ -93,8 +96,10 @@ def test_a_sweep_that_is_off_for_no_known_reason_is_unexplained(right_model):
     )
     found = diagnose(points.replace(gamma=np.where(off, 0.0, points.gamma)), case.given, config)
     assert found.unexplained
-    (note,) = [note for note in found.notes if isinstance(note, NoiseBeyondStated) and note.channel == "Fy"]
-    assert points.sweep_names[points.sweep[off][0]] == note.sweep
+    assert found.answer is Answer.UNKNOWN
+    blamed = {rest.sweep for rest in found.rest if rest.kind in (RestKind.SCATTER, RestKind.SWEEP)}
+    assert points.sweep_names[points.sweep[off][0]] in blamed
+    assert not found.trusted
 
 
 def test_a_model_of_another_tyre_is_said(right_model):

@@ -15,8 +15,9 @@ from mffit.diagnosis.bumps import _bells, bump_scan
 from mffit.diagnosis.inexact import declared
 from mffit.diagnosis.needs import MET, missing, possible
 from mffit.diagnosis.noise import Noise, Origin
-from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
+from mffit.diagnosis.notes import NotVisible
 from mffit.diagnosis.priors import declared_priors
+from mffit.diagnosis.rest import RestKind
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import refuse_strangers
 from mffit.effects import CATALOG, OF_CHANNEL
@@ -433,9 +434,11 @@ def test_a_noisy_channel_does_not_spoil_the_answers_of_the_other():
 def test_a_model_that_no_effect_improves_hardly_belongs_to_this_tyre():
     """With any effects, both channels miss by 42 times their stated noise: naming a cause would be a guess."""
     found = three_effects(2.5, strange=100.0, strange_moment=10.0)
-    (note,) = (n for n in found.notes if isinstance(n, HardlyThisTyre))
-    assert note.misfit == pytest.approx(math.hypot(100.0, U_FY) / (U_FY / 2.5), rel=0.15)
+    first = found.rest[0]
+    assert first.kind is RestKind.ALL
+    assert first.ratio == pytest.approx(math.hypot(100.0, U_FY) / (U_FY / 2.5), rel=0.15)
     assert not found.effects
     assert found.unexplained
-    assert "no effect of the library explains it" in found.headline
+    assert "Something is missing that no effect of the library describes" in found.headline
+    assert "hardly is one of this tyre" in found.headline
     assert found.tyre.values == TYRE.values

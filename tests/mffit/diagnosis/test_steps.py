@@ -7,7 +7,7 @@ import pytest
 
 from mffit.diagnosis import diagnose, gap, where
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import forward_step
+from mffit.diagnosis.selection import contest
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import SeparatingRun, separation
 from mffit.diagnosis.validation import validate
@@ -51,12 +51,10 @@ def test_a_shifted_region_is_found_with_its_size(right_model):
     assert first.z > 5.0
 
 
-def test_the_forward_step_ranks_the_hidden_effect_first(stiffer_camber):
+def test_a_contest_ranks_the_hidden_effect_first(stiffer_camber):
     case, _, points = stiffer_camber
     chosen = problem(case, points)
-    step = forward_step(
-        chosen, chosen.null, [BY_ID[i] for i in ("camber-grip", "camber-stiffness", "load-grip")]
-    )
+    step = contest(chosen, chosen.null, [BY_ID[i] for i in ("camber-grip", "camber-stiffness", "load-grip")])
     assert step.best.effects[-1].id == "camber-stiffness"
     assert step.passes
     assert step.weights()["camber-stiffness"] > 0.99

@@ -12,6 +12,7 @@ import tir
 from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.constants import TIED_EVIDENCE
+from mffit.diagnosis.rest import Answer
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.effects import CATALOG
 from mffit.report import constants, style, text, write_diagnosis
@@ -19,6 +20,7 @@ from mffit.report.curves import conditions
 from mffit.report.figures import gap
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
 
+PICTURES = {"gap_by_effect", "curves", "evidence", "gap_maps"}
 DENT = -80.0  # N, over 1 deg of sideslip
 
 
@@ -76,12 +78,12 @@ def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
 
 
 def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, folder, page):
-    assert {p.stem for p in (folder / "plots").iterdir()} == {"curves", "evidence", "gap_maps"}
-    assert set(page.tables) == {"curves", "evidence", "gap_maps"}
+    assert {p.stem for p in (folder / "plots").iterdir()} == PICTURES
+    assert set(page.tables) == PICTURES
     assert page.text.count("held out") >= 2
     assert "noise alone" in page.text
     verdict, rest = misaligned.headline.split(": ", 1)
-    assert f"{verdict}." in page.text
+    assert verdict in page.text
     assert rest[1:] in page.text
     assert "alpha_0_deg" not in page.text
     assert page.text.lower().count("sideslip axis misaligned") >= 3  # card, heading, number
@@ -131,32 +133,32 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
 
 
 def test_a_step_in_which_nothing_gains_has_no_picture(misaligned):
-    step = misaligned.steps[0]
+    step = misaligned.contests[0]
     worse = tuple(
         dataclasses.replace(trial, log_evidence=step.before.log_evidence - 1.0) for trial in step.trials
     )
-    nothing = dataclasses.replace(misaligned, steps=(dataclasses.replace(step, trials=worse),))
+    nothing = dataclasses.replace(misaligned, contests=(dataclasses.replace(step, trials=worse),))
     assert not gap.evidence(nothing).panels
 
 
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIED_EVIDENCE)
-    step = misaligned.steps[0]
+    step = misaligned.contests[0]
     before, trials = step.before, step.trials
     trials = tuple(
         dataclasses.replace(trial, log_evidence=before.log_evidence + gain)
         for trial, gain in zip(trials, gains, strict=False)
     )
     step = dataclasses.replace(step, trials=trials, threshold=5.0)
-    panel = gap.evidence(dataclasses.replace(misaligned, steps=(step,))).panels[0]
+    panel = gap.evidence(dataclasses.replace(misaligned, contests=(step,))).panels[0]
     best, behind = panel.notes
     assert best.text == "best"
     assert behind.colour == (style.INK if tied else style.MUTED)
 
 
 def test_the_page_states_the_margin_of_the_verdict(page):
-    assert f"within {TIED_EVIDENCE:g} the data do not tell them apart" in page.text
+    assert f"within {TIED_EVIDENCE:g} the data cannot separate them" in page.text
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
@@ -168,16 +170,18 @@ def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misalig
 def test_a_complete_simulation_is_reported_as_such(clean, tmp_path):
     page = written(clean, tmp_path)
     assert clean.effects == ()
-    assert "no effect of the library explains more than chance would" in page.text
+    assert clean.headline.split(": ")[0] in page.text
+    assert "No effect is named." in page.text
     assert "→" not in page.text
-    assert "after, all points" not in page.text
+    assert "+ " not in page.text[page.text.index("Gap, rms") : page.text.index("noise alone")]
     assert "Blue lines" not in page.text
 
 
 def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     page = written(unknown, tmp_path)
     assert unknown.unexplained
-    alert = page.text.index("There is structure that no effect of the library describes")
+    assert unknown.answer is Answer.UNKNOWN
+    alert = page.text.index("Something is missing that no effect of the library describes")
     assert alert < page.text.index("Fy gap, rms")
     assert gap.framed(unknown, "Fy")[0] == unknown.unexplained_where[0]
 
@@ -205,12 +209,37 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()
         assert max(map(len, said.splitlines())) <= TERMINAL_WIDTH
-        assert len(said.splitlines()) < TERMINAL_LINES  # and one for what is written
-    many = dataclasses.replace(misaligned, effects=misaligned.effects * 3)
+        assert len(said.splitlines()) <= TERMINAL_LINES
+
+
+def test_what_to_do_is_never_cut(misaligned):
+    many = dataclasses.replace(misaligned, effects=misaligned.effects * 6)
     said = text.diagnosis_summary(many)
-    assert len(said.splitlines()) < TERMINAL_LINES
-    assert said.count("(rig), confidence") == 3
-    assert 0 < said.count("to do:") < 3
+    assert said.count("(rig), confidence") == said.count("to do:") == 6
+    assert "..." not in said
+
+
+def test_the_gap_is_shown_effect_by_effect(misaligned):
+    """As given, then with the axis turned: bars per channel that end at the noise, and left-out sweeps beside them."""
+    sheet = gap.gap_by_effect(misaligned)
+    for panel, name in zip(sheet.panels, ("Fy", "Mz"), strict=True):
+        assert [*panel.y.words.values()] == ["as given", "+ sideslip axis misaligned"]
+        bars, left_out = panel.series
+        assert bars.lengths == pytest.approx(
+            [misaligned.gap_examined.rms(name), misaligned.gap_after.rms(name)]
+        )
+        assert left_out.x == pytest.approx(
+            [misaligned.validation.gap_before.rms(name), misaligned.validation.gap_after.rms(name)]
+        )
+        assert panel.guides[0].at == misaligned.noise.typical(name)
+
+
+def test_a_first_picture_follows_from_the_answer(misaligned, unknown, clean, tmp_path):
+    for k, (found, first) in enumerate(
+        ((misaligned, "gap_by_effect"), (unknown, "gap_maps"), (clean, "curves"))
+    ):
+        (tmp_path / str(k)).mkdir()
+        assert next(iter(written(found, tmp_path / str(k)).tables)) == first
 
 
 def test_a_reader_sees_every_picture_on_screen_phone_and_paper(folder):

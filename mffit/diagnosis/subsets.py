@@ -1,0 +1,224 @@
+"""Evidence of every set of effects at once, with the readings linearised at one simulation.
+
+The readings are linear in the numbers of all candidates, so the evidence of a set follows from inner products of columns, and
+a search over sets needs no further simulation. Numbers present in the simulation count from their values before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_solve, cholesky
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.priors import SWITCH, beyond_declaration, log_prior, moving, number, price
+from mffit.diagnosis.problem import DiagnosisProblem, not_too_steep
+from mffit.effects import Effect
+from mffit.least_squares import FreeNumber
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """An effect as columns of the linear model; one effect may have several, from different finite steps."""
+
+    effect: Effect
+    columns: slice
+    numbers: tuple[FreeNumber, ...]
+    """Its numbers with their priors, of which the columns are changes by one standard deviation; none for a switch."""
+
+
+Members = tuple[int, ...]
+"""Indices of the members of a set, in ascending order."""
+
+
+class LinearSets:
+    """The sets of some candidates, with the readings linearised at a fitted hypothesis."""
+
+    def __init__(self, problem: DiagnosisProblem, at: Hypothesis, candidates: Sequence[Effect]) -> None:
+        self.problem = problem
+        self.members: list[Member] = []
+        priors = {
+            e: tuple(number(f, {}, problem.start, problem.points) for f in moving((e,))) for e in candidates
+        }
+        known = {n.name: _moved(at, n) for e, numbers in priors.items() if e.id in at.ids for n in numbers}
+        at_rest = {
+            n.name: n.expected for numbers in priors.values() for n in numbers if known.get(n.name) == 0.0
+        }
+        state = at.state.with_numbers(at_rest) if at_rest else at.state
+        rows, away, first = [problem.whitened(state)], [], 0
+        for effect, groups in problem.columns(state, candidates).items():
+            numbers = priors[effect]
+            moved = [known.get(n.name, 0.0) for n in numbers]
+            present = effect.id in at.ids and (effect.switches or any(moved))
+            if present and effect.switches:
+                off = state.with_numbers({SWITCH: 0.0})
+                groups, moved = problem.columns(off, [effect])[effect], [1.0]
+            for columns in groups[: 1 if present else None]:
+                self.members.append(Member(effect, slice(first, first + columns.shape[1]), numbers))
+                rows.append(not_too_steep(problem.noise.whiten(columns)))
+                away.extend(moved or [0.0])
+                first += columns.shape[1]
+        whole = np.column_stack(rows)
+        whole[:, 0] += whole[:, 1:] @ np.array(away)
+        self._products = whole.T @ whole
+        self._price = [log_prior(one.effect, problem.start) - price(len(candidates)) for one in self.members]
+        self._known: dict[Members, tuple[float, np.ndarray]] = {}
+
+    def of(self, effects: Sequence[Effect]) -> Members:
+        """The set of some effects."""
+        ids = {effect.id for effect in effects}
+        found = {
+            one.effect.id: k for k, one in reversed(list(enumerate(self.members))) if one.effect.id in ids
+        }
+        return tuple(sorted(found.values()))
+
+    def effects(self, members: Members) -> tuple[Effect, ...]:
+        """The effects of a set."""
+        return tuple(self.members[k].effect for k in members)
+
+    def numbers(self, members: Members) -> dict[str, float]:
+        """The most probable numbers of a set, within their bounds."""
+        found = iter(self._solved(members)[1].tolist())
+        return {
+            n.name: float(np.clip(n.expected + n.spread * x, n.lower, n.upper))
+            for k in members
+            for n, x in zip(self.members[k].numbers, found, strict=False)
+        }
+
+    def weight(self, members: Members) -> float:
+        """Log posterior of a set up to a constant: evidence, price of every effect, and prior order of causes."""
+        return self._solved(members)[0]
+
+    def _solved(self, members: Members) -> tuple[float, np.ndarray]:
+        if members not in self._known:
+            self._known[members] = self._solve(members)
+        return self._known[members]
+
+    def _columns(self, members: Members) -> list[int]:
+        """Indices among the inner products, the residual being the first, of the columns of a set."""
+        return [
+            1 + c for k in members for c in range(self.members[k].columns.start, self.members[k].columns.stop)
+        ]
+
+    def _root(self, columns: Sequence[int]) -> np.ndarray:
+        """Lower Cholesky factor (k, k) of the information of data and priors about the columns."""
+        information = np.eye(len(columns)) + self._products[np.ix_(columns, columns)]
+        return np.asarray(cholesky(information, lower=True, check_finite=False))
+
+    def _solve(self, members: Members) -> tuple[float, np.ndarray]:
+        """Weight of a set, and the most probable amounts (k,) of its columns."""
+        columns, power = self._columns(members), float(self._products[0, 0])
+        weight = sum(self._price[k] for k in members) - 0.5 * power
+        if not columns:
+            return weight, np.zeros(0)
+        try:
+            root = self._root(columns)
+        except LinAlgError:
+            return -math.inf, np.zeros(len(columns))
+        pull = self._products[columns, 0]
+        x = cho_solve((root, True), pull, check_finite=False)
+        weight += 0.5 * float(pull @ x) - float(np.sum(np.log(np.diag(root))))
+        for k, place in zip(members, self._places(members), strict=True):
+            for n, amount in zip(self.members[k].numbers, x[place], strict=False):
+                value = n.expected + n.spread * float(amount)
+                weight += beyond_declaration(n, value, self.problem.declared)
+        return weight - 0.5 * self._beyond_bounds(members, x, root), x
+
+    def _places(self, members: Members) -> list[slice]:
+        """The columns of each member among those of the set."""
+        ends = np.cumsum(
+            [0, *(self.members[k].columns.stop - self.members[k].columns.start for k in members)]
+        )
+        return [slice(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
+
+    def _beyond_bounds(self, members: Members, x: np.ndarray, root: np.ndarray) -> float:
+        """Rise of the sum of squares if every number that is beyond its bound is moved back to it."""
+        over = np.zeros(len(x))
+        for k, place in zip(members, self._places(members), strict=True):
+            for i, n in enumerate(self.members[k].numbers):
+                value = n.expected + n.spread * float(x[place][i])
+                over[place.start + i] = max(n.lower - value, value - n.upper, 0.0) / n.spread
+        if not over.any():
+            return 0.0
+        variance = np.diag(cho_solve((root, True), np.eye(len(x)), check_finite=False))
+        return float(np.sum(over**2 / variance))
+
+    def taken_away(self, members: Members) -> Members:
+        """The set without the effects that add less than they cost, dropped one by one, the least useful first."""
+        while members:
+            fewer = self._without_least(members)
+            if self.weight(fewer) <= self.weight(members):
+                break
+            members = fewer
+        return members
+
+    def _without_least(self, members: Members) -> Members:
+        """The set without the effect that adds least to all others.
+
+        Without columns b, the sum of squares rises by x_b' V_bb^-1 x_b and the log determinant of the information by that of
+        V_bb, where V is the inverse of the information.
+        """
+        x = self._solved(members)[1]
+        root = self._root(self._columns(members))
+        V = cho_solve((root, True), np.eye(len(x)), check_finite=False)
+        worth = []
+        for k, place in zip(members, self._places(members), strict=True):
+            own = V[place, place]
+            worth.append(
+                self._price[k]
+                + 0.5 * float(x[place] @ np.linalg.solve(own, x[place]) + np.linalg.slogdet(own)[1])
+            )
+        return _without(members, members[int(np.argmin(worth))])
+
+    def best(self, members: Members) -> Members:
+        """The best set that adding and dropping effects reach from a set, and exchanging them where neither helps."""
+        while True:
+            for near in (self._more_or_fewer, self._exchanged):
+                trial = max(near(members), key=self.weight, default=members)
+                if self.weight(trial) > self.weight(members):
+                    members = trial
+                    break
+            else:
+                return members
+
+    def in_order(self, members: Members) -> Members:
+        """The members of a set, each the one that adds most to those before."""
+        order: Members = ()
+        while len(order) < len(members):
+            left = [k for k in members if k not in order]
+            order = (*order, max(left, key=lambda k: self.weight(_with(order, k))))
+        return order
+
+    def _absent(self, members: Members) -> list[int]:
+        ids = {self.members[k].effect.id for k in members}
+        return [k for k, one in enumerate(self.members) if one.effect.id not in ids]
+
+    def _more_or_fewer(self, members: Members) -> list[Members]:
+        fewer = [_without(members, k) for k in members]
+        return [*fewer, *(_with(members, k) for k in self._absent(members))]
+
+    def _exchanged(self, members: Members) -> list[Members]:
+        rests = [_without(members, k) for k in members]
+        return [_with(rest, k) for rest, k in product(rests, self._absent(members))]
+
+
+def _moved(at: Hypothesis, of: FreeNumber) -> float:
+    """Distance of a number from its prior mean, in prior standard deviations; 0 if it has hardly moved.
+
+    Some derivatives are infinite at the mean, where only finite steps show the effect.
+    """
+    distance = (at.numbers[of.name] - of.expected) / of.spread
+    return distance if abs(distance) > constants.HARDLY_MOVED else 0.0
+
+
+def _without(members: Members, k: int) -> Members:
+    return tuple(m for m in members if m != k)
+
+
+def _with(members: Members, k: int) -> Members:
+    return tuple(sorted((*members, k)))
