@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.noise import MemorySpan, Noise
+from mffit.diagnosis.noise import MemorySpan, Noise, Origin
 from mffit.diagnosis.notes import AnotherTyre, NoRepair, TakenOff, short
 from mffit.diagnosis.remains import BestEffect
 from mffit.diagnosis.rest import Answer, Rest, RestKind
@@ -144,7 +144,8 @@ def _misfit(diagnosis: Diagnosis) -> str:
         was, is_ = short(given.rms(name)), short(after.rms(name))
         now = f"{is_} {unit} instead of {was} {unit}" if effects else f"{was} {unit}"
         parts.append(
-            f"{now} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit})"
+            f"{now} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit}"
+            f"{_times_stated(diagnosis.noise, name)})"
         )
     them = "it" if len(effects) == 1 else "them"
     lead = (
@@ -219,6 +220,15 @@ def _suspicions(diagnosis: Diagnosis) -> str:
 
 def _suspicion(found: AcceptedEffect) -> str:
     return f"{found.effect.name} ({per_cent(found.confidence)})"
+
+
+def _times_stated(noise: Noise, channel: str) -> str:
+    """Words for readings that scatter by more than a usual factor beyond what is stated; else empty."""
+    stated = noise.typically_stated(channel)
+    ratio = noise.typical(channel) / stated
+    if noise.origin is not Origin.STATED or ratio <= constants.STATED_NOISE_FACTOR:
+        return ""
+    return f", {short(ratio)} times the stated {short(stated)} {CHANNELS[channel].unit}"
 
 
 def _measured(noise: Noise) -> Iterator[tuple[str, str, float]]:

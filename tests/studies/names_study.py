@@ -102,7 +102,7 @@ def scored(drawn: Set) -> Score:
         confidence=tuple(one.confidence for one in found.effects),
         repaired=tuple(one.effect.id for one in found.repaired),
         unexplained=found.unexplained,
-        held_out=tuple(g.chi2_per_dof for g in (check.gap_before, check.gap_after, check.gap_file)),
+        held_out=tuple(g.chi2_per_dof for g in (check.gap_before, check.gap_after, check.gap_given_file)),
         truth=_from_truth(drawn, found),
         file_changed=found.tyre is not drawn.given and dict(found.tyre.values) != dict(drawn.given.values),
         file_from_tyre=_misfit(drawn, found, found.tyre, true_tyre=True),

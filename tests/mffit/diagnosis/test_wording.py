@@ -314,6 +314,16 @@ def test_the_noise_is_stated_beside_the_declared_one():
     assert Mz == "The noise of Mz is 0.6 Nm (stated 0.6 Nm)."
 
 
+def test_readings_that_scatter_far_beyond_what_is_stated_are_said_in_the_headline(nothing):
+    noise = nothing.noise
+    worse = replace(noise, u=np.where(np.arange(len(noise.u)) < len(noise.u) // 2, 3.7, 1.0) * noise.stated)
+    stated = noise.typically_stated("Fy")
+    said = wording.headline(replace(nothing, noise=worse))
+    assert f"3.7 times the stated {stated:.3g} N" in said
+    assert "times the stated" not in said.split("Nm in self-aligning moment")[-1]
+    assert "times the stated" not in wording.headline(nothing)
+
+
 def test_an_outlier_is_named_by_its_line():
     said = wording.outlier(Outlier("sideslip_900.csv", 14, "sideslip_900", 3, "Fy", 109.0, 200.0, 15.2))
     assert said == "sideslip_900, line 14: Fy off by -91 N, 15 times its noise"

@@ -138,7 +138,7 @@ def test_a_zero_far_beyond_its_declaration_is_named_in_its_set_up(tmp_path):
     assert effect.effect.id == "sideslip-misalignment"
     assert effect.parameters["alpha_0_deg@right"][0] == pytest.approx(0.6, abs=0.01)
     assert effect.parameters["alpha_0_deg@left"][0] == pytest.approx(0.0, abs=0.01)
-    said = wording.remedy(effect, found.signs)
+    said = wording.remedy(effect, found)
     assert said.startswith("set-up right: turn the steering axis by -0.")
     assert "set-up left" not in said
 

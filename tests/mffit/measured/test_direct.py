@@ -417,7 +417,7 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.C_gamma.value == pytest.approx(-0.9 * 1500.0, rel=0.004)
     assert result.F_phit is None
     assert result.epsilon_gamma is None
-    assert result.notes == (wording.STRAIGHT_PATH,)
+    assert result.notes == (wording.STRAIGHT_PATH, wording.UNKNOWN_WARMTH)
     assert result.warnings == ()
 
 

@@ -25,6 +25,7 @@ def at_zero(**more):
 
 NOTES = [
     (wording.STRAIGHT_PATH, "it has no turn slip to measure"),
+    (wording.UNKNOWN_WARMTH, "loses 6 % along each sweep is 3 % stiffer when cold"),
     (
         wording.alignment(at_zero(alpha_M=None), 25.0),
         "If the force -331 N at (0, 0) were not turn slip, it would take 0.97 deg of misalignment",

@@ -121,7 +121,7 @@ def test_the_diagnosis_shows_hostile_names_as_text(settings, tmp_path):
     found = dataclasses.replace(
         found,
         outliers=(Outlier(HOSTILE, 3, HOSTILE, 0, "Fy", 40.0, 0.0, 9.0),),
-        model_after=f"{HOSTILE}.tir",
+        given_file=f"{HOSTILE}.tir",
     )
     write_diagnosis(found, tmp_path)
     page = read(tmp_path / "diagnosis.html")
