@@ -21,7 +21,6 @@ from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.repair import Repair
 from mffit.diagnosis.rest import Answer, Rest
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis, apart
-from mffit.diagnosis.selection import Contest
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Gap, gap, validate
@@ -37,7 +36,8 @@ from tir.parameters import BY_NAME
 
 def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
     """The records of all accepted effects, each judged together with the others."""
-    return tuple(_found(found, effect, given) for effect in found.chosen.effects)
+    u = _stated_u(found, found)
+    return tuple(_found(found, effect, u, given) for effect in found.chosen.effects)
 
 
 def answered(
@@ -79,7 +79,8 @@ def answer(
     done = repair.explanation
     after = given.predict(done.refined.state) if done.chosen.effects or done.coefficients else before
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
-    corrected = _corrected(tyre, done)
+    u = _stated_u(done, found)
+    corrected = _corrected(tyre, done, u)
     delivers = any(effect.kind == "tyre" and _in_file(effect) for effect in done.chosen.effects)
     again = bool(done.chosen.effects) and any(name in BY_NAME for name in done.coefficients)
     diagnosis = Diagnosis(
@@ -97,7 +98,7 @@ def answer(
         gap_named=gap(given.measured - explained, scatter),
         validation=repair.validation,
         where=where(points, given.measured - before, scatter),
-        effects=tuple(_with_repair(one, done) for one in named),
+        effects=tuple(_with_repair(one, done, u) for one in named),
         alternatives=alternatives,
         contests=found.contests or ((found.further,) if found.further else ()),
         unexplained_where=_remaining(found, given.measured - explained) if rest else (),
@@ -124,12 +125,12 @@ def _in_file(effect: Effect) -> bool:
     return effect.switches or any(name in BY_NAME for name in effect.parameters)
 
 
-def _with_repair(named: AcceptedEffect, done: Explanation) -> AcceptedEffect:
+def _with_repair(named: AcceptedEffect, done: Explanation, u: Mapping[str, float]) -> AcceptedEffect:
     """The record, with the numbers of the repair if the effect is repaired."""
     if named.effect not in done.chosen.effects:
         return replace(named, repaired=False)
-    numbers, stderr = done.refined.numbers, done.refined.stderr
-    return replace(named, parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in named.parameters})
+    numbers = done.refined.numbers
+    return replace(named, parameters={n: (numbers[n], u[n]) for n in named.parameters})
 
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
@@ -158,20 +159,21 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))
 
 
-def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:
-    """The record of one accepted effect, judged together with all other accepted ones."""
+def _found(
+    found: Explanation, effect: Effect, u: Mapping[str, float], given: DiagnosisProblem
+) -> AcceptedEffect:
+    """The record of one accepted effect, judged together with all other accepted ones; ``u`` by number."""
     problem, chosen = found.problem, found.chosen
-    step = found.contests[chosen.effects.index(effect)]
-    tied, confidence, together = _judged(found, effect, step)
+    tied, _, confidence, together = _judged(found, effect)
     noise = {name: problem.noise.typical(name) for name in problem.channels}
     separations = [separation(problem.points, chosen, t, noise) for t in tied]
     with_it = _with_earlier(found, effect)
-    numbers, stderr = found.refined.numbers, found.refined.stderr
+    numbers = found.refined.numbers
     return AcceptedEffect(
         effect=effect,
         confidence=confidence,
         together=together,
-        parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
+        parameters={n: (numbers[n], u[n]) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - problem.predict(with_it.state), found.scatter),
         held_out=validate(given, with_it).gap_after,
@@ -196,21 +198,40 @@ class Judgement(NamedTuple):
     """The comparison of an effect with its rivals."""
 
     tied: Sequence[Hypothesis]  #: equally good explanations with another effect in its place
+    weights: Sequence[float]  #: probabilities of the tied ones, relative to that of the effect
     confidence: float
     together: float  #: confidence in this effect or one of the tied ones that are not likelier
 
 
-def _judged(found: Explanation, effect: Effect, step: Contest) -> Judgement:
+def _judged(found: Explanation, effect: Effect) -> Judgement:
     """The confidence in an effect, and its ties."""
+    step = found.contests[found.chosen.effects.index(effect)]
     if effect.id in found.predicted:  # unnamed structure leaves evidence too weak to decide
         tied, known = found.predicted[effect.id].tied, found.confidence(effect)
-        return Judgement(tied, known / (1.0 + len(tied)), known)
+        return Judgement(tied, [1.0] * len(tied), known / (1.0 + len(tied)), known)
     rivals = [trial for trial in step.fitted if trial.effects[-1].id not in found.chosen.ids]
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     weight = {rival.ids: math.exp(min(-_lead(found.chosen, rival, rival in tied), 50.0)) for rival in rivals}
     known, total = found.confidence(effect), 1.0 + sum(weight.values())
-    together = 1.0 + sum(weight[rival.ids] for rival in tied if weight[rival.ids] <= 1.0)
-    return Judgement(tied, tempered(known / total), tempered(known * together / total))
+    of_tied = [weight[rival.ids] for rival in tied]
+    together = 1.0 + sum(w for w in of_tied if w <= 1.0)
+    return Judgement(tied, of_tied, tempered(known / total), tempered(known * together / total))
+
+
+def _stated_u(done: Explanation, found: Explanation) -> dict[str, float]:
+    """The standard uncertainty of every number of ``done``, with what explanations tied with ``found`` leave open of it.
+
+    An effect that takes the place of a tied one moves the numbers of the other effects.
+    """
+    chosen, stderr = found.chosen, done.refined.stderr
+    square = {name: stderr.get(name, 0.0) ** 2 for name in done.refined.numbers}
+    for effect in chosen.effects:
+        of = _judged(found, effect)
+        for rival, weight in zip(of.tied, of.weights, strict=True):
+            for name in square.keys() & chosen.numbers.keys() & rival.numbers.keys():
+                moved = rival.numbers[name] - chosen.numbers[name]
+                square[name] += weight / (1.0 + sum(of.weights)) * moved**2
+    return {name: math.sqrt(x) for name, x in square.items()}
 
 
 def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
@@ -250,17 +271,16 @@ def not_accepted(found: Explanation) -> dict[str, float]:
     return out
 
 
-def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
-    """The property file with the estimated coefficients, each with its reason in the comment."""
+def _corrected(tyre: Tyre, found: Explanation, u: Mapping[str, float]) -> Tyre:
+    """The property file with the estimated coefficients, each with its reason in the comment; ``u`` by number."""
     of_tyre = {name: number for name, number in found.coefficients.items() if name in BY_NAME}
     changes = {name: value for name, (value, _) in of_tyre.items()}
-    status = {name: wording.adjusted(float(tyre[name]), u) for name, (_, u) in of_tyre.items()}
+    status = {name: wording.adjusted(float(tyre[name]), own) for name, (_, own) in of_tyre.items()}
     for effect in found.chosen.effects:
         for name in effect.parameters:
             if name in BY_NAME:
                 changes[name] = found.refined.numbers[name]
-                error = found.refined.stderr.get(name, 0.0)
-                status[name] = wording.status(effect, float(tyre[name]), error)
+                status[name] = wording.status(effect, float(tyre[name]), u[name])
     if any(effect.switches for effect in found.chosen.effects):
         changes["USE_MODE"] = with_turn_slip(float(tyre["USE_MODE"]))
     return tyre.replace(**changes).annotate(status=status) if changes else tyre
