@@ -136,9 +136,17 @@ def _check_freed(row: Parameter, entry: CoefficientByHand) -> None:
         remedy = f"write {row.name} = {least:g} to hold it" if least == most else "exchange the two"
         raise q.wrong(f"{least:g} is not below max, {most:g}; {remedy}", "min")
     lower, upper = entry.bounds(row.name)
+    if lower >= upper:
+        key, other = ("min", "max") if most is None else ("max", "min")
+        raise q.wrong(
+            f"lies beyond the bounds {row.bounds[0]:g} to {row.bounds[1]:g}; give {other}, too", key
+        )
     for key, given in (("value", value), ("start", start)):
         if given is not None and not lower <= given <= upper:
-            raise q.wrong(f"{given:g} is outside the bounds {lower:g} to {upper:g}; correct one of them", key)
+            raise q.wrong(
+                f"{given:g} is outside the bounds {lower:g} to {upper:g}; correct it, or give min and max",
+                key,
+            )
 
 
 def unsettable(name: str) -> str:
@@ -161,7 +169,7 @@ def unsettable(name: str) -> str:
 def _number(given: object, row: Parameter, key: str = "") -> float:
     """The number under a key of the coefficient's table; without a key, the value at which it is held.
 
-    Refuses what is no finite number, and a value beyond the limits that the parameter table has for the coefficient.
+    Refuses what is no finite number and what the equations cannot take. A value beyond those of published tyres is a declaration.
     """
     if isinstance(given, str):
         quoted = NUMBER_IN_QUOTES.fullmatch(given)
@@ -173,12 +181,6 @@ def _number(given: object, row: Parameter, key: str = "") -> float:
         raise q.wrong(q.TOO_MANY_DIGITS, key)
     if not math.isfinite(given):
         raise q.wrong(f"{given:g} is not a finite number; write one", key)
-    lower, upper = row.bounds
-    if key != "u" and not lower <= given <= upper:
-        raise q.wrong(
-            f"{given:g} is outside {lower:g} to {upper:g}, the physically plausible range of {row.name}; correct it",
-            key,
-        )
     if row.divisor and given == 0.0 and not key:
         raise q.wrong(f"0 is not possible, because the equations divide by {row.name}; correct it", key)
     return float(given)

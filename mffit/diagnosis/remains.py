@@ -310,5 +310,5 @@ def held_numbers(left: Left) -> tuple[HeldNumber, ...]:
         if touches(value, lower, upper) and (found.amount[0] > 0.0) == (value - lower < upper - value):
             continue  # the readings pull it away from the bound
         by_hand = name in hand.held or name in hand.bounded
-        out.append(HeldNumber(name, _sigma(found.log_chance), found.share, by_hand))
+        out.append(HeldNumber(name, _sigma(found.log_chance), found.share, by_hand, name in fitted.at_limit))
     return tuple(out)

@@ -163,29 +163,17 @@ class LevelsOfLoad(NamedTuple):
 
 @rule(
     id="nominal-load-of-other-loads",
-    sentence="the nominal load of {nominal:g} N does not belong to measured loads of {lowest:.0f} to {highest:.0f} N: correct "
-    "nominal_load (a digit may be missing or too many), or the unit of Fz_N",
+    outcome=Outcome.WARNED,
+    sentence="the nominal load of {nominal:g} N is {where} the measured loads of {lowest:.0f} to {highest:.0f} N, so that "
+    "nothing was measured where the file is centred: check nominal_load (is a digit missing or too many?) and the unit of Fz_N",
 )
 def nominal_load_of_others(points: Points, config: Config) -> Iterator[Finding]:
     """Nominal load over the highest level of load, and the lowest level over the nominal load."""
     found, nominal = LevelsOfLoad.of(points), config.tyre.nominal_load
-    if max(nominal / found.highest, found.lowest / nominal) > constants.BEYOND_NOMINAL:
-        key = "tyre.nominal_load"
-        facts = {"nominal": nominal, **found._asdict()}
-        yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
-
-
-@rule(
-    id="nominal-load-above-all",
-    outcome=Outcome.WARNED,
-    sentence="the nominal load of {nominal:g} N is above the highest measured load of {highest:.0f} N, so that nothing was "
-    "measured where the file is centred: check nominal_load, and the unit of Fz_N",
-)
-def nominal_load_above_all(points: Points, config: Config) -> Iterator[Finding]:
-    """Nominal load over the highest level of load."""
-    found = LevelsOfLoad.of(points)
-    if found.below(config.tyre.nominal_load):
-        yield Finding({"nominal": config.tyre.nominal_load, "highest": found.highest})
+    if found.below(nominal):
+        yield Finding({"nominal": nominal, "where": "above", **found._asdict()})
+    elif found.lowest / nominal > constants.BEYOND_NOMINAL:
+        yield Finding({"nominal": nominal, "where": "far below", **found._asdict()})
 
 
 @rule(

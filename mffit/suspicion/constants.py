@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
-# Slopes and forces whose sign and size all tyres share
+# Slopes and forces whose sign all tyres share
 SIDESLIP_OF_SLOPES = Real(
     3.0,
     "deg",
@@ -12,13 +12,14 @@ SIDESLIP_OF_SLOPES = Real(
 )
 FEWEST = Count(4, "-", "Fewest readings, or sweeps, that show something: a slope, a copy, which one is odd.")
 WEAK_TURN_SLIP_FORCE = Real(0.01, "-", "A smaller turn-slip force over the load has no direction.")
-STEEPEST_CAMBER_STIFFNESS = Real(
-    -1.9, "1/rad", "Steepest camber stiffness over load of any tyre; a wrong frame changes it by 1."
-)
 SMALLEST_CAMBER_THRUST = Real(
-    0.2, "-", "Smallest Fy over Fz tan(gamma) of any tyre, which have 0.3 to 1.2; a wrong frame removes 1."
+    0.2,
+    "-",
+    "Smallest usual Fy over Fz tan(gamma) at large camber, which is 0.3 to 1.2; a wrong frame removes 1.",
 )
-LARGEST_CAMBER_THRUST = Real(1.5, "-", "Largest Fy over Fz tan(gamma) of any tyre; a wrong frame adds 1.")
+LARGEST_CAMBER_THRUST = Real(
+    1.5, "-", "Largest usual Fy over Fz tan(gamma) at large camber; a wrong frame adds 1."
+)
 LEVER_OF_OTHER_MOMENT_POINT = Real(
     0.5, "-", "Lever arm over radius above which moments refer to another point."
 )
@@ -30,28 +31,46 @@ RADIUS_OF_ANOTHER_TYRE = Real(
     "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
     "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
 )
-SMALLEST_RADIUS = Real(
-    0.75, "-", "Loaded or rolling over unloaded radius of a flat tyre: the rim is at 0.6 to 0.7."
+USUAL_RADIUS = Series(
+    (0.75, 1.0 + RADIUS_OF_ANOTHER_TYRE),
+    "-",
+    "Loaded or rolling over unloaded radius, outside which it is asked for: flat tyres are below.",
+)
+LARGEST_RADIUS = Real(
+    1.1,
+    "-",
+    "Loaded or rolling over unloaded radius that growth with speed does not reach; a rim is the other end.",
 )
 BEYOND_NOMINAL = Real(
     3.0,
     "-",
-    "Nominal load over the highest level, the lowest level over it, one load over all others of its file, or nominal pressure "
-    "over that of a file, that no campaign has: loads reach from a fifth of the nominal one to twice it; a digit too few or too "
-    "many is a factor of ten, psi for kPa one of seven.",
+    "Lowest level of load over the nominal one, or one load over all others of its file, that is asked for: a digit too few or "
+    "too many is a factor of ten.",
+)
+USUAL_PRESSURE = Series(
+    (1.0 / 3.0, 2.0),
+    "-",
+    "Pressure of a file over the nominal one, outside which it is asked for; psi read as kPa is a factor of seven.",
 )
 
 # Single files
+MUCH_NEARER = Real(0.2, "-", "Distance over another at which a force is the nearer one's without doubt.")
 STEEPEST_OVER_SIDESLIP = Real(
-    120.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."
+    120.0, "1/rad", "Slope over load that is asked for; radians read as degrees are 57 times as steep."
 )
 SMALLEST_FRICTION = Real(
-    0.02, "-", "Side force per load that every tyre exceeds at angles that show a force."
+    0.02, "-", "Side force per load, at angles that show a force, below which it is asked for."
 )
 LARGEST_MOMENT_ARM = Real(
-    0.15,
-    "m",
-    "|Mz| over load that no tyre exceeds: trail times friction. Side forces over load exceed it at usual angles.",
+    0.5,
+    "-",
+    "|Mz| over load and unloaded radius that no contact allows: it is shorter than the wheel, and the trail a part of it. Side "
+    "forces over load exceed it at usual angles.",
+)
+LEAST_LOADED = Real(
+    0.1,
+    "-",
+    "Share of a file's largest load below which force over load says nothing: offsets of the load cell rule there.",
 )
 
 # Every sweep against all others; shares are errors of a prediction over the usual size of the channel
@@ -85,6 +104,12 @@ USUAL_PUBLISHED_EPSILON = Real(
 )
 SPREAD_OF_PUBLISHED_EPSILON = Real(
     0.084, "-", "Standard deviation of the factors of these six tyres.", "Mottola and Massaro 2022, Table 2"
+)
+LARGEST_PUBLISHED_EPSILON = Real(
+    1.2,
+    "-",
+    "Largest camber reduction factor that is published: 0.7 of car tyres, slightly above 1 of truck tyres.",
+    "Mottola and Massaro 2022, section 1",
 )
 LARGEST_FALL_LEFT = Real(
     10.0,

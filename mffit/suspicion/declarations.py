@@ -16,7 +16,7 @@ from mffit.config import Config
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, rule
+from mffit.suspicion.rule import Finding, Outcome, rule
 from mffit.suspicion.slopes import Signatures, contradictions, signatures
 from tir.conventions import FLIPPED
 
@@ -47,6 +47,7 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
 
     fitting = [other for other in _alternatives(points, config) if fits(other)]
     fitting = fitting or [other for other in _pairs(points, config) if fits(other)]
+    fitting = [one for one in fitting if not _unusual_thrust(signatures(one.points()))] or fitting
     if fitting:
         remedy = f"the data agree with {' or with '.join(dict.fromkeys(other.remedy for other in fitting))}"
         key = fitting[0].key
@@ -62,6 +63,32 @@ def contradicted(points: Points, config: Config) -> Iterator[Finding]:
         "remedy": remedy + _or_misaligned(points, found, len(wrong)),
     }
     yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+
+
+def _unusual_thrust(found: Signatures) -> bool:
+    """Whether the camber thrust lies outside what is usual; False where large camber was not run on both sides."""
+    return found.thrust < constants.SMALLEST_CAMBER_THRUST or found.thrust > constants.LARGEST_CAMBER_THRUST
+
+
+@rule(
+    id="unusual-camber-thrust",
+    outcome=Outcome.WARNED,
+    sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma), which is rare ({least} to {most} is usual){instead}; check "
+    "force_frame and the unit of gamma_deg",
+)
+def other_frame(points: Points, config: Config) -> Iterator[Finding]:
+    """-Fy over Fz tan(gamma) at large camber of both signs, also as it would be in the other frame."""
+    found = signatures(points)
+    if not _unusual_thrust(found):
+        return
+    instead = ""
+    for other in _alternatives(points, config):
+        seen = signatures(other.points())
+        if other.key == "rig.force_frame" and not contradictions(seen) and not _unusual_thrust(seen):
+            instead = f", and {seen.thrust:.2f} with {other.remedy}"
+            break
+    least, most = constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST
+    yield Finding({"thrust": found.thrust, "least": least, "most": most, "instead": instead})
 
 
 def _or_misaligned(points: Points, found: Signatures, contradictions: int) -> str:

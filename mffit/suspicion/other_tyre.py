@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,7 @@ from mffit.config import Config
 from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, rule
+from mffit.suspicion.rule import Finding, Outcome, rule
 from mffit.suspicion.slopes import at_zero
 
 
@@ -66,28 +67,43 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 @rule(
     id="other-radius",
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
-    "tyre has; correct unloaded_radius, or the unit of {column}",
+    "wheel has; correct unloaded_radius, or the unit of {column}",
 )
 def other_radius(points: Points, config: Config) -> Iterator[Finding]:
-    """Radii of the wheel that rolls freely and upright over the declared unloaded radius."""
+    """Radii of the wheel that rolls freely and upright, outside the rim and the unloaded radius."""
+    rim = (config.tyre.rim_radius or 0.0) / config.tyre.unloaded_radius
+    key = "tyre.unloaded_radius"
+    for facts in _radii_outside(points, config, rim, constants.LARGEST_RADIUS):
+        yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+
+
+@rule(
+    id="unusual-radius",
+    outcome=Outcome.WARNED,
+    sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which is "
+    "rare: check unloaded_radius, and the unit of {column}",
+)
+def unusual_radius(points: Points, config: Config) -> Iterator[Finding]:
+    """The same over the unloaded radius."""
+    yield from map(Finding, _radii_outside(points, config, *constants.USUAL_RADIUS))
+
+
+def _radii_outside(points: Points, config: Config, least: float, most: float) -> Iterator[dict[str, Any]]:
+    """The medians of the radii outside limits, which are ratios to the unloaded radius."""
     upright = points.select(_rolls_upright(points))
     declared = config.tyre.unloaded_radius
     for radius in RADII:
         values = radius.of(upright)
         values = values[np.isfinite(values)]
-        if not len(values):
-            continue
-        middle = float(np.median(values))
-        if not constants.SMALLEST_RADIUS <= middle / declared <= 1.0 + constants.RADIUS_OF_ANOTHER_TYRE:
-            facts = {
+        middle = float(np.median(values)) if len(values) else math.nan
+        if middle < least * declared or middle > most * declared:
+            yield {
                 "words": radius.words,
                 "radius": middle,
                 "ratio": middle / declared,
                 "declared": declared,
                 "column": radius.column,
             }
-            key = "tyre.unloaded_radius"
-            yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
 
 
 def _rolls_upright(points: Points) -> np.ndarray:

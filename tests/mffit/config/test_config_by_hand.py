@@ -26,12 +26,13 @@ def line_of(path: Path, name: str) -> int:
 
 
 WRONG = [
-    ("PCY1 = 2.5", "PCY1", "2.5 is outside 0.5 to 2, the physically plausible range of PCY1; correct it"),
-    ("PEY1 = { min = -20.0 }", "PEY1.min", "-20 is outside -10 to 2, the physically plausible range of PEY1; correct it"),
+    ("PEY1 = { min = 2.5 }", "PEY1.min", "lies beyond the bounds -10 to 2; give max, too"),
+    ("PEY1 = { max = -20.0 }", "PEY1.max", "lies beyond the bounds -10 to 2; give min, too"),
+    ("PEY1 = { start = -20.0 }", "PEY1.start", "-20 is outside the bounds -10 to 2; correct it, or give min and max"),
     ("PEY1 = { min = 0.5, max = -3.0 }", "PEY1.min", "0.5 is not below max, -3; exchange the two"),
     ("PEY1 = { min = 0.5, max = 0.5 }", "PEY1.min", "0.5 is not below max, 0.5; write PEY1 = 0.5 to hold it"),
-    ("PEY1 = { start = 0.9, max = 0.5 }", "PEY1.start", "0.9 is outside the bounds -10 to 0.5; correct one of them"),
-    ("PEY1 = { value = -4.0, u = 1, min = -3 }", "PEY1.value", "-4 is outside the bounds -3 to 2; correct one of them"),
+    ("PEY1 = { start = 0.9, max = 0.5 }", "PEY1.start", "0.9 is outside the bounds -10 to 0.5; correct it, or give min and max"),
+    ("PEY1 = { value = -4.0, u = 1, min = -3 }", "PEY1.value", "-4 is outside the bounds -3 to 2; correct it, or give min"),
     ("PCY1 = " + 400 * "1", "PCY1", "has more digits than a number can have; correct it"),
     ("PCY1 = " + 5000 * "1", "PCY1", "has more digits than a number can have; correct it"),
     ("PCY1 = { min = -" + 400 * "1" + " }", "PCY1.min", "has more digits than a number can have; correct it"),
@@ -72,8 +73,15 @@ def test_a_symmetric_tyre_has_no_odd_terms_to_set(tmp_path):
     config.load(project(tmp_path, "PHY1 = 0.0", tyre='side = "symmetric"'))
 
 
+def test_a_value_beyond_those_of_published_tyres_is_a_declaration(tmp_path):
+    text = "PCY1 = 2.5\nPEY1 = { min = -20.0, max = -12.0, start = -15.0 }"
+    found = config.load(project(tmp_path, text)).coefficients
+    assert found["PCY1"].held == 2.5
+    assert found["PEY1"].bounds("PEY1") == (-20.0, -12.0)
+
+
 def test_every_mistake_is_named(tmp_path):
-    path = project(tmp_path, "PCY1 = 9.0\nPDY1 = 9.0")
+    path = project(tmp_path, "PCY1 = nan\nPDY1 = nan")
     with pytest.raises(InputError, match=r"also wrong: coefficients\.PDY1"):
         config.load(path)
 
@@ -116,8 +124,8 @@ def test_the_command_line_replaces_single_entries(tmp_path):
         (f"PCY1={5000 * '1'}", '--set PCY1: "1111111'),
         ("PCY1=much", '--set PCY1: "much" is not a value; write a number to hold it'),
         (
-            "PCY1=2.5",
-            "--set PCY1: 2.5 is outside 0.5 to 2, the physically plausible range of PCY1; correct it",
+            "PCY1={min=2.5}",
+            "--set PCY1 min: lies beyond the bounds 0.5 to 2; give max, too",
         ),
         (
             "RBX1=base",

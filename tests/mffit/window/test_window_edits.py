@@ -177,8 +177,8 @@ def test_an_edit_is_saved_and_undone_byte_for_byte(tyre_toml):
 
 def test_a_change_that_the_program_would_refuse_is_not_written(tyre_toml):
     file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
-    with pytest.raises(InputError, match="physically plausible range of PCY1"):
-        file.edit(lambda text: coefficient(text, name="PCY1", entry=99.0), file.digest)
+    with pytest.raises(InputError, match="lies beyond the bounds"):
+        file.edit(lambda text: coefficient(text, name="PCY1", entry={"min": 99.0}), file.digest)
     with pytest.raises(InputError, match="is not the file of"):
         file.edit(lambda text: leave_out(text, readings=[reading("no.csv", 2)], why="x"), file.digest)
     with pytest.raises(InputError, match="why"):

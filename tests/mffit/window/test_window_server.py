@@ -199,7 +199,7 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
 @pytest.mark.parametrize(
     ("name", "given", "sentence"),
     [
-        ("coefficient", {"name": "PCY1", "entry": 99.0}, "physically plausible range"),
+        ("coefficient", {"name": "PCY1", "entry": {"min": 99.0}}, "lies beyond the bounds"),
         ("coefficient", {"name": "PCY9", "entry": 1.0}, "not a coefficient"),
         ("coefficient", {"nam": "PCY1"}, "cannot be done with"),
         ("coefficient", {"name": "PCY1", "entry": {"min": 1.6, "max": 1.2}}, "1.6 is not below max, 1.2"),
