@@ -201,14 +201,18 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
 def _ranges(tyre: Tyre) -> Iterator[Problem]:
     for low, high in RANGES:
         if tyre[low] >= tyre[high]:
-            yield _error(low, f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}")
+            yield _error(
+                low if low in tyre.present else high,
+                f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}",
+            )
     if 0 < tyre["CAMMAX"] < constants.NARROW_CAMBER_RANGE and tyre["MC_CONTOUR_A"] > 0:
         yield _warning(
             "CAMMAX",
             f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations limit camber to it silently",
         )
+    stated = {"PRESMIN", "PRESMAX"} & tyre.present
     for name in ("INFLPRES", "NOMPRES"):
-        if not tyre["PRESMIN"] <= tyre[name] <= tyre["PRESMAX"]:
+        if stated and not tyre["PRESMIN"] <= tyre[name] <= tyre["PRESMAX"]:
             yield _warning(
                 name,
                 f"{name} {tyre[name]:g} lies outside PRESMIN {tyre['PRESMIN']:g} to PRESMAX {tyre['PRESMAX']:g}: simulations "

@@ -124,8 +124,11 @@ CONDITIONS = (
 
 
 def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
-    """Problems for the conditions that the tyre violates within its ranges or just outside."""
-    inside = box(tyre)
+    """Problems for the conditions that the tyre violates within its ranges or just outside.
+
+    An error in the default of a range that the file does not state is a warning: nobody said that the tyre reaches so far.
+    """
+    inside, stated = box(tyre), _stated(tyre)
     reach = constants.JUST_OUTSIDE * (inside[1] - inside[0])
     around = np.array([inside[0] - reach, inside[1] + reach])
     around[0, 0] = max(around[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
@@ -134,19 +137,33 @@ def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
         margin, point = worst(tyre, condition.measure, inside)
         if np.isnan(margin):
             yield Problem(
-                "error",
+                _level("error", condition, tyre, stated),
                 f"{condition.name} and related coefficients give no number at {_place(point, condition)}",
                 condition.name,
             )
             return
         sentence = condition.sentence if margin <= 0.0 else ""
-        level = condition.level
+        level = _level(condition.level, condition, tyre, stated) if sentence else ""
         if not sentence and condition.outside:
             margin, point = worst(tyre, condition.measure, around)
             sentence, level = condition.outside if margin <= 0.0 else "", "warning"
         if sentence:
             text = sentence.format(where=_place(point, condition), worst=condition.value(margin))
             yield Problem(level, text, condition.name)
+
+
+def _level(level: str, condition: Condition, tyre: TyreRecord, stated: np.ndarray) -> str:
+    """The level of a violation: "warning" if the condition holds over the stated ranges, at the nominal values of the others."""
+    if level == "error" and worst(tyre, condition.measure, stated)[0] > 0.0:
+        return "warning"
+    return level
+
+
+def _stated(tyre: TyreRecord) -> np.ndarray:
+    """:func:`box` with each range of which the file states no end reduced to its nominal value."""
+    nominal = (tyre["FNOMIN"], 0.0, tyre["NOMPRES"], 0.0, 0.0)
+    missing = [not tyre.present.intersection(names) for names in RANGES]
+    return np.where(missing, nominal, box(tyre))
 
 
 def worst(tyre: TyreRecord, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from tir.constants import NAMES_IN_A_SENTENCE
 
+LEVELS = ("error", "warning", "note")
+"""Levels of a problem, the gravest first."""
+
 
 class TirError(Exception):
     """A property file that cannot be used.

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from tir.codegen.program import Switches, trace
+from tir.defaults import completed
 from tir.document import Document, FileLine
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
+from tir.mode import asks_for_turn_slip
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.record import Quantity, TyreRecord
 from tir.targets import FITTYPS, TARGETS, fittyps_text
@@ -58,8 +60,8 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
     stated = {line.key for line in document.entries if parameter_of(line)} | added
-    problems += _about_missing(values, stated) + _about_unknown(extra)
-    complete = {row.name: row.default for row in TABLE} | values
+    complete = completed(values)
+    problems += _about_missing(complete, values, stated) + _about_unknown(extra)
     measured, provenance = _structured_comments(document)
     return kind(
         values=MappingProxyType(complete),
@@ -276,29 +278,50 @@ def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -
     )
 
 
-def _about_missing(values: Mapping[str, float | str], stated: Collection[str]) -> list[Problem]:
+def _about_missing(
+    complete: Mapping[str, Any], given: Collection[str], stated: Collection[str]
+) -> list[Problem]:
     """Problems for missing keys of the file's version; those without a usable value have been reported already."""
-    version = values.get("FITTYP")
+    version = complete["FITTYP"] if "FITTYP" in given else None
     missing = [
-        row.name
+        row
         for row in TABLE
         if row.name not in stated and (row.files == "" or (row.files == "62" and version not in (60, 61)))
     ]
+    names = _defaults_in_words(missing, complete)
     if version == 60:
         rest = (
-            f"; {counted(len(missing), 'key')} of 6.1 are missing and take their defaults" if missing else ""
+            f"; {counted(len(names), 'key')} of 6.1 are missing and take their defaults: {some(names)}"
+            if names
+            else ""
         )
         return [Problem("warning", f"FITTYP 60 is read as MF 6.1{rest}", "FITTYP")]
     out = []
     if version is None:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
-    if missing:
-        mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(missing) == 1 else "are"
+    if names:
+        mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(names) == 1 else "are"
         sentence = (
-            f"{counted(len(missing), f'key of MF {mf}')} {verbs} missing, defaults are taken: {some(missing)}"
+            f"{counted(len(names), f'key of MF {mf}')} {verbs} missing, defaults are taken: {some(names)}"
         )
         out.append(Problem("warning", sentence))
     return out
+
+
+def _defaults_in_words(missing: Sequence[Parameter], complete: Mapping[str, Any]) -> list[str]:
+    """Missing keys, first those whose defaults contribute to a force, with the values taken."""
+    acting = _acting(asks_for_turn_slip(complete))
+    neutral = {row.name for row in missing if complete[row.name] == (1.0 if row.scaling else 0.0)}
+    first = [row for row in missing if row.name in acting and row.name not in neutral]
+    words = [f"{row.name} = {complete[row.name]:g}{f' {row.unit}' * (row.unit != '-')}" for row in first]
+    return [*words, *(row.name for row in missing if row not in first)]
+
+
+@cache
+def _acting(turn_slip: bool) -> frozenset[str]:
+    """Parameters that slip forces and moments depend on."""
+    slipping = tuple(name for name in Forces._fields if name not in ("Fz", "My"))
+    return frozenset(trace(Switches(turn_slip), slipping).parameters) | {"INFLPRES"}
 
 
 def _about_unknown(extra: Mapping[str, str]) -> list[Problem]:

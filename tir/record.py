@@ -17,6 +17,7 @@ from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple, Self
 
 from tir.correction import Correction, read_correction
+from tir.defaults import completed
 from tir.document import Document
 from tir.errors import Problem, TirError
 from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
@@ -37,7 +38,7 @@ class Quantity(NamedTuple):
 class TyreRecord:
     """Every parameter of MF 6.2, and what is known about it."""
 
-    values: Mapping[str, float | str]  #: every parameter of the table; defaults where the file has none
+    values: Mapping[str, float | str]  #: every parameter of the table; given or by default
     present: frozenset[str] = frozenset()  #: names in the file, or given later
     status: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: name -> origin of the value
     measured: Mapping[str, Quantity] = field(default_factory=lambda: EMPTY)
@@ -49,7 +50,7 @@ class TyreRecord:
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Self:
-        """A tyre from some values; the others take the defaults of the table.
+        """A tyre from some values; the others take the defaults of the table, on the scale of the tyre (:mod:`tir.defaults`).
 
         Raises
         ------
@@ -57,8 +58,7 @@ class TyreRecord:
             For a name that is not in MF 6.2, or a value of the wrong kind.
         """
         _usable(given)
-        values = {row.name: row.default for row in TABLE} | dict(given)
-        return cls(MappingProxyType(values), frozenset(given))
+        return cls(MappingProxyType(completed(given)), frozenset(given))
 
     def __getitem__(self, name: str) -> Any:
         try:

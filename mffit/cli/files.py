@@ -27,11 +27,13 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     Looks at units, missing and unknown keys, and physics over the ranges of the file.
     """
     import tir
-    from tir.errors import counted
+    from tir.errors import LEVELS, counted
 
     tyre = tir.read(file)
     names = [name.strip() for name in targets.split(",")]
-    problems = [*tyre.problems, *tir.check(tyre, filter(None, names))]
+    problems = sorted(
+        [*tyre.problems, *tir.check(tyre, filter(None, names))], key=lambda p: LEVELS.index(p.level)
+    )
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors, warnings = (sum(p.level == level for p in problems) for level in ("error", "warning"))

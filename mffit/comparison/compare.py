@@ -38,18 +38,18 @@ DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     """The comparison of two files, with covariance and build if known; effects of errors of a common rig cancel.
 
-    It covers the ranges of both files, on a straight path, at the nominal pressure of the first.
+    It covers the ranges of both files, on a straight path, each at its own inflation pressure, as in a call without one.
     """
     tyres = (first.tyre, second.tyre)
     lower, upper = max(float(t["FZMIN"]) for t in tyres), min(float(t["FZMAX"]) for t in tyres)
-    nominal, pressure = float(first.tyre["FNOMIN"]), float(first.tyre["NOMPRES"])
+    nominal = float(first.tyre["FNOMIN"])
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
     reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX", "KPUMAX")}
     reach["KPUMAX"] = min(reach["KPUMAX"], SLIP_BEYOND_THE_PEAK)
     shared = _shared(first, second)
-    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach, shared)]
-    curves = [gap for load in loads for gap in _curves(first, second, load, pressure, reach)]
+    numbers = [row for load in loads for row in _numbers(first, second, load, reach, shared)]
+    curves = [gap for load in loads for gap in _curves(first, second, load, reach)]
     return Comparison(
         first=first.name,
         second=second.name,
@@ -74,14 +74,13 @@ def _numbers(
     first: ComparedSubject,
     second: ComparedSubject,
     load: float,
-    pressure: float,
     reach: Mapping[str, float],
     shared: Shared,
 ) -> Iterator[Difference]:
-    """Differences of the numbers of both files at a load [N] and a pressure [Pa]; ``reach`` limits the search for peaks."""
+    """Differences of the numbers of both files at a load [N]; ``reach`` limits the search for peaks."""
     found, moved = [], []
     for k, side in enumerate((first, second)):
-        at: Any = {"pressure": pressure, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
+        at: Any = {"pressure": None, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
         predictor = None if side.foretold is None else side.foretold[0]
         found.append(
             characteristics(
@@ -119,16 +118,15 @@ def _moved(
 
 
 def _curves(
-    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
+    first: ComparedSubject, second: ComparedSubject, load: float, reach: Mapping[str, float]
 ) -> Iterator[CurveGap]:
     """The differences of the curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
     for over, end, channels in CURVES:
         x = np.linspace(-reach[end], reach[end], STEPS_OF_LINE)
         alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
-        where = make_points(
-            alpha, gamma, load, kappa=kappa, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0
+        (a, half_a), (b, half_b) = (
+            _curve(side, (load, alpha, gamma, kappa), channels) for side in (first, second)
         )
-        (a, half_a), (b, half_b) = (_curve(side, where, channels) for side in (first, second))
         for channel in channels:
             yield CurveGap(
                 channel=channel,
@@ -142,8 +140,15 @@ def _curves(
             )
 
 
-def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tuple[Readings, Readings | None]:
-    """Forces of a file, and the half widths of their bands; None without a predictor."""
+def _curve(
+    side: ComparedSubject, at: tuple[Any, Any, Any, Any], channels: Sequence[str]
+) -> tuple[Readings, Readings | None]:
+    """Forces of a file at a load, sideslip, camber and slip, at its own pressure and speed, and the half widths of their bands;
+    None without a predictor.
+    """
+    Fz, alpha, gamma, kappa = at
+    pressure, speed = float(side.tyre["INFLPRES"]), float(side.tyre["LONGVL"])
+    where = make_points(alpha, gamma, Fz, kappa=kappa, p=pressure, V=speed, phi_t=0.0)
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
     if side.foretold is not None:

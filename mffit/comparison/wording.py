@@ -77,7 +77,7 @@ def place(row: Difference) -> str:
 
 
 def apart(first: ComparedSubject, second: ComparedSubject) -> str:
-    """Sentences on different uses or nominal conditions of two files; empty if they agree."""
+    """Sentences on different uses, nominal conditions or pressures of two files; empty if they agree."""
     said = []
     if first.turn_slip != second.turn_slip:
         on, off = (first, second) if first.turn_slip else (second, first)
@@ -89,6 +89,12 @@ def apart(first: ComparedSubject, second: ComparedSubject) -> str:
         said.append(
             f"Nominal conditions differ, {first.name} {one}, {second.name} {other}: coefficients are relative to them, so that "
             "equal ones give other forces."
+        )
+    pressures = [float(side.tyre["INFLPRES"]) / 1e3 for side in (first, second)]
+    if not math.isclose(*pressures):
+        said.append(
+            f"Each file is evaluated at its own inflation pressure, {first.name} at {pressures[0]:.5g} kPa, {second.name} at "
+            f"{pressures[1]:.5g} kPa."
         )
     return " ".join(said)
 

@@ -14,7 +14,7 @@ import tir
 from mffit.conversion import mf52, wording
 from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, camber_range, misfits
 from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
-from mffit.conversion.old_files import OF_62, OWN, old_default
+from mffit.conversion.old_files import OF_62, OWN, old_completed
 from mffit.conversion.refit import UNBOUNDED
 from mffit.conversion.result import ROUNDING, OldConversion
 from mffit.least_squares import FreeNumber, of_model, solve
@@ -123,10 +123,8 @@ def _forces(tyre: Tyre, at: Conditions) -> list[np.ndarray]:
 
 def _start(tyre: Tyre, keys: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """The old values: those of the same name, at the pressure of the file, where the terms of pressure are 0."""
-    values: dict[str, Any] = {name: old_default(name) for name in BY_NAME}
-    values |= {name: row.default for name, row in OWN.items()}
-    values |= {name: tyre[name] for names in keys.values() for name in names if name in tyre.values}
-    values |= {"NOMPRES": tyre["INFLPRES"], "INFLPRES": tyre["INFLPRES"]}
+    known = {name: tyre[name] for names in keys.values() for name in names if name in tyre.values}
+    values = old_completed({**known, "NOMPRES": tyre["INFLPRES"], "INFLPRES": tyre["INFLPRES"]})
     at_pressure = (float(tyre["INFLPRES"]) / float(tyre["NOMPRES"])) ** float(tyre["QSY8"])
     return values | {name: float(tyre[name]) * at_pressure for name in keys["ROLLING_COEFFICIENTS"]}
 

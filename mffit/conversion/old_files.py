@@ -10,9 +10,10 @@ from types import MappingProxyType
 from typing import Any
 
 from tir import Problem, TirError
+from tir.defaults import completed
 from tir.document import Document, read_document
 from tir.errors import some
-from tir.parameters import BY_NAME
+from tir.parameters import BY_NAME, TABLE, TURN_SLIP
 from tir.properties import (
     CAR_FITTYPS,
     MOTORCYCLE_FORMATS,
@@ -87,20 +88,24 @@ def read_old(
         keys = [key.partition(".")[2] for key in unused]
         problems.append(Problem("warning", f"keys that are not used: {some(keys)}"))
     present = frozenset(values)
-    defaults = {name: old_default(name) for name in BY_NAME} | {
-        name: row.default for name, row in OWN.items()
-    }
-    return OldFile(kind, MappingProxyType({**defaults, **values}), present, tuple(problems), document)
+    return OldFile(kind, MappingProxyType(old_completed(values)), present, tuple(problems), document)
 
 
-def old_default(name: str) -> Any:
-    """Value of a missing key: coefficients 0, except where the formulae of 6.2 need another value to be those of 5.2."""
-    row = BY_NAME[name]
-    if name in OF_62:
-        return OF_62[name]
-    if row.section.endswith("_COEFFICIENTS") and not row.scaling and row.section != "TURNSLIP_COEFFICIENTS":
-        return 0.0
-    return row.default
+def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Every parameter of 6.2 and of :data:`OWN`: the given values, and defaults for all others.
+
+    Missing coefficients are 0, except where the formulae of 6.2 need another value to be those of 5.2.
+    """
+    values = completed({name: x for name, x in given.items() if name in BY_NAME})
+    for row in TABLE:
+        if (
+            row.section.endswith("_COEFFICIENTS")
+            and not row.scaling
+            and row.section != TURN_SLIP
+            and row.name not in given
+        ):
+            values[row.name] = OF_62.get(row.name, 0.0)
+    return {**values, **{name: row.default for name, row in OWN.items()}, **given}
 
 
 def _version(document: Document) -> str:

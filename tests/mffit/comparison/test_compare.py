@@ -131,6 +131,20 @@ def test_equal_files_do_not_differ():
     assert "do not differ; all numbers are equal" in wording.headline(found)
 
 
+def test_files_that_give_other_forces_are_not_called_equal():
+    """Equal coefficients at two inflation pressures: a call without a pressure gives other forces, and the comparison says so."""
+    tyre = truth().replace(PPY1=0.4)
+    other = tyre.replace(INFLPRES=1.2 * tyre["INFLPRES"])
+    found = between(ComparedSubject("a", tyre, False), ComparedSubject("b", other, False))
+    (gap,) = (g for g in found.curves if (g.channel, g.over, g.load) == ("Fy", "alpha", found.curves[0].load))
+    asked = [t(gap.load, gap.x, turn_slip=False).Fy for t in (tyre, other)]
+    np.testing.assert_allclose(gap.first, asked[0], rtol=1e-9)
+    np.testing.assert_allclose(gap.second, asked[1], rtol=1e-9)
+    assert gap.rms > 0.01 * np.max(np.abs(gap.first))
+    assert "own inflation pressure" in wording.headline(found)
+    assert "do not differ" not in wording.headline(found)
+
+
 def test_uncertainties_propagate_to_the_numbers():
     """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
     u = 0.02 * abs(truth()["PKY1"])
