@@ -15,6 +15,7 @@ from tir.equations import normalise
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, some
 from tir.evaluate import DIVISORS
+from tir.formula import OLD_KEYS
 from tir.mode import BLOCK
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP
 from tir.record import TyreRecord
@@ -65,14 +66,20 @@ SINGLE = (
         lambda x: x <= 0.0,
         "the relaxation length is divided by it; give its value",
     ),
+    PlausibleRule(
+        ("PDY1", "PDX1"),
+        lambda x: x < 0.0,
+        "the slope factor turns with it, so the curve is that of a positive one, but programs may take it for the friction; "
+        "reverse its sign, and for PDY1 those of PDY2, RVY1-3 and QBZ10, for PDX1 that of PDX2",
+    ),
 )
 """Dimensions, limits and masses."""
 SHAPES = tuple(
     PlausibleRule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
     for name, what, amplitude in (
         ("PCX1", "shape factor", "PDX1"),
-        ("PCY1", "shape factor", ""),
-        ("QCZ1", "shape factor", ""),
+        ("PCY1", "shape factor", "PDY1"),
+        ("QCZ1", "shape factor", "QDZ1"),
         ("QBZ1", "slope factor", "QDZ1"),
         ("LCX", "scale of a shape factor", "PDX1"),
         ("LCY", "scale of a shape factor", ""),
@@ -93,10 +100,6 @@ def broken(tyre: TyreRecord, rules: Iterable[PlausibleRule]) -> Iterator[Problem
                 yield Problem(rule.level, f"{name} is {value}: {rule.sentence}", name)
 
 
-KEYS_OF_52 = (
-    "PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QTZ1", "MBELT", "LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG",
-)  # fmt: skip
-"""Coefficients that only the 5.2 generation has."""
 LICENCE = (
     "turn slip in Siemens' solver needs the MF-Swift licence (Ansys' manual says so): with MF-Tyre alone take the file for turn "
     "slip off, NAME-normal.tir"
@@ -300,7 +303,7 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
 
 def _old_keys(tyre: Tyre) -> Iterator[Problem]:
     old = [key.partition(".")[2] for key in tyre.extra]
-    old = [key for key in old if key in KEYS_OF_52]
+    old = [key for key in old if key in OLD_KEYS]
     if old:
         yield _warning(
             old[0], f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?"
@@ -353,7 +356,7 @@ def _moments(tyre: Tyre) -> Iterator[Problem]:
             "QSX4-11 and QSX12-14 are both used, although they describe the same effect: set one group to 0",
         )
     step = np.array([-1e-3, 1e-3])
-    if float(np.diff(tyre(float(p.FNOMIN), step, turn_slip=False).Mz)[0]) <= 0:
+    if tyre["QDZ1"] and float(np.diff(tyre(float(p.FNOMIN), step, turn_slip=False).Mz)[0]) <= 0:
         yield _warning(
             "QDZ1",
             "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)",

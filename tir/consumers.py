@@ -6,11 +6,10 @@ from collections.abc import Iterator
 
 from tir.codegen.program import Switches, trace
 from tir.constants import LONGEST_READABLE_LINE
-from tir.document import Document, FileLine
+from tir.document import Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces
 from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
-from tir.properties import number_of, unquoted
 from tir.record import TyreRecord
 from tir.targets import Target
 from tir.units import KINDS

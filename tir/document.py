@@ -16,6 +16,10 @@ SECTION = re.compile(r"^\s*\[([^\]]*)\]")
 ENTRY = re.compile(r"^(\s*)([A-Za-z_][\w.\- ]*?)(\s*=[^\S\r\n]*)(.*)$", re.DOTALL)
 QUOTED = re.compile(r"'([^']*)'|\"([^\"]*)\"")
 LINE_END = re.compile(r"(\r\n|\r|\n)")
+NUMBER = re.compile(
+    r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[edED][+-]?\d+)?|[+-]?(?:inf|infinity|nan)", re.ASCII | re.IGNORECASE
+)
+"""Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 CONTINUED = "!>"
 """Begins a line that continues the comment line above."""
 
@@ -201,6 +205,23 @@ def split_comment(text: str) -> tuple[str, str]:
         return quoted.group(0), rest.strip().lstrip("$!").strip()
     cut = min((i for i in (text.find("$"), text.find("!")) if i >= 0), default=len(text))
     return text[:cut].strip(), text[cut:].strip().lstrip("$!").strip()
+
+
+def unquoted(text: str) -> str:
+    """The text without the quotes around it."""
+    text = text.strip()
+    return (
+        text[1:-1].strip()
+        if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\""
+        else text.strip("'\"")
+    )
+
+
+def number_of(text: str) -> float | None:
+    """The number that a text states, with Fortran's exponents too; None if it is none."""
+    if not NUMBER.fullmatch(text):
+        return None
+    return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
 
 
 def _decode(raw: bytes, path: Path) -> tuple[str, str]:

@@ -40,25 +40,30 @@ class Condition:
     camber: bool = True  #: whether it depends on camber
 
 
+def _sign(peak: float) -> float:
+    """The sign of a peak factor: a negative one turns the slope factor round too, and the curve stays."""
+    return -1.0 if peak < 0.0 else 1.0
+
+
 CONDITIONS = (
     Condition(
         "PDY1",
         "error",
-        lambda p, q: stiffness.lateral_friction(p, q, q.gamma),
+        lambda p, q: _sign(p.PDY1) * stiffness.lateral_friction(p, q, q.gamma),
         "the lateral friction coefficient is not positive: {worst:.2f} at {where}; narrow the ranges or refit",
         outside="the lateral friction coefficient turns negative just outside the ranges, at {where}",
     ),
     Condition(
         "PDY1",
         "warning",
-        lambda p, q: FRICTION - stiffness.lateral_friction(p, q, q.gamma),
+        lambda p, q: FRICTION - _sign(p.PDY1) * stiffness.lateral_friction(p, q, q.gamma),
         "the lateral friction coefficient is {worst:.1f} at {where}",
         lambda margin: FRICTION - margin,
     ),
     Condition(
         "PDX1",
         "warning",
-        lambda p, q: np.where(p.PDX1 == 0.0, 1.0, stiffness.longitudinal_friction(p, q)),
+        lambda p, q: np.where(p.PDX1 == 0.0, 1.0, _sign(p.PDX1) * stiffness.longitudinal_friction(p, q)),
         "the longitudinal friction coefficient is not positive: {worst:.2f} at {where}; narrow the ranges or refit",
     ),
     Condition(

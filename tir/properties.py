@@ -11,37 +11,23 @@ from typing import Any, NamedTuple, TypeVar
 
 from tir.codegen.program import Switches, trace
 from tir.defaults import completed
-from tir.document import Document, FileLine
+from tir.document import Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
+from tir.formula import HEADER, Formula, formula_of
 from tir.mode import asks_for_turn_slip
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.record import Quantity, TyreRecord
-from tir.targets import FITTYPS, TARGETS, fittyps_text
+from tir.targets import TARGETS
 from tir.units import KINDS, factor
 
 Kind = TypeVar("Kind", bound=TyreRecord)
-OLD_FITTYPS = {
-    5: "MF-Tyre 5",
-    6: "MF-Tyre 5.2",
-    21: "MF-Tyre 5.2 with MF-Swift",
-    51: "MF-MCTyre 1.0, a motorcycle tyre",
-    52: "MF-MCTyre 1.1, a motorcycle tyre",
-}
-CAR_FITTYPS = (5, 6, 21)
-OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE"}
-MOTORCYCLE_FORMATS = {"PAC_MC", "MF-MCTYRE"}
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
-HEADER = ("MDI_HEADER", "UNITS")
 MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
 PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
-NUMBER = re.compile(
-    r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[edED][+-]?\d+)?|[+-]?(?:inf|infinity|nan)", re.ASCII | re.IGNORECASE
-)
-"""Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 STATUS = re.compile(
     r"^(fitted|measured|tied|default|from (?:base|sister|another campaign)|estimate|covered|regularised|given|held|"
     r"diagnosed|converted)\b"
@@ -56,8 +42,10 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
     values, status, extra = stated_values(document, problems)
     added = add_given(values, lacking, problems)
     status |= dict.fromkeys(added, "given when the file was read")
-    _refuse_other_versions(values, document)
+    formula = formula_of(document, values.get("FITTYP"))
+    _refuse_other_formulas(formula, document)
     _refuse_truncated(values, document)
+    _refuse_unknown(formula, document)
     problems += _about_a_cut_number(values, document)
     stated = {line.key for line in document.entries if parameter_of(line)} | added
     complete = completed(values)
@@ -191,13 +179,6 @@ def value_of(
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
 
 
-def number_of(text: str) -> float | None:
-    """The number that a text states, with Fortran's exponents too; None if it is none."""
-    if not NUMBER.fullmatch(text):
-        return None
-    return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
-
-
 @cache
 def _needed() -> frozenset[str]:
     """Parameters that any force or other result depends on."""
@@ -205,29 +186,44 @@ def _needed() -> frozenset[str]:
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
-def _refuse_other_versions(values: Mapping[str, float | str], document: Document) -> None:
-    version = values.get("FITTYP")
-    form = str(values.get("PROPERTY_FILE_FORMAT", "")).upper()
-    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS | MOTORCYCLE_FORMATS):
-        name = f"PROPERTY_FILE_FORMAT '{form}'"
-        if version in OLD_FITTYPS:
-            name = f"FITTYP {version:g}: {OLD_FITTYPS[int(version)]}"
-        if form in MOTORCYCLE_FORMATS if version is None else version not in CAR_FITTYPS:
-            raise TirError(of_motorcycles(name), path=document.path)
+def _refuse_other_formulas(formula: Formula, document: Document) -> None:
+    if formula.kind == "motorcycle":
+        raise TirError(of_motorcycles(formula), path=document.path)
+    if formula.kind == "other":
+        raise TirError(of_another_model(formula), path=document.path)
+    if formula.kind == "5.2":
         raise TirError(
-            f"is a file of the MF 5.2 generation ({name}); its coefficients have another meaning in MF 6.2, so "
-            "renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
+            f"is a file of the MF 5.2 generation ({formula.why}: {formula.name}); its coefficients have another meaning in "
+            "MF 6.2, so renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
             path=document.path,
         )
-    if version is not None and version not in FITTYPS:
-        raise TirError(f"has FITTYP {version:g}, but only {fittyps_text()} are supported", path=document.path)
 
 
-def of_motorcycles(stated: str) -> str:
-    """Why a file of the old formula for motorcycles cannot be used, and what to do; ``stated`` is how it says so."""
+def _refuse_unknown(formula: Formula, document: Document) -> None:
+    if formula.kind == "unknown":
+        raise TirError(
+            f"{formula.why}: if it is of MF 6, write FITTYP = 61 or FITTYP = 62 into its [MODEL], or give it in Python, "
+            "tir.read(path, FITTYP=62); if it is of MF 5.2, use mffit convert --fittyp 6",
+            path=document.path,
+            name="FITTYP",
+        )
+
+
+def of_motorcycles(formula: Formula) -> str:
+    """Why a file of the old formula for motorcycles cannot be used, and what to do."""
     return (
-        f"is of MF-MCTyre, the old formula for motorcycles ({stated}), whose camber force is another one: fit the tyre's data "
-        "again; or, if it is a car's tyre of MF 5.2 with a wrong FITTYP, write FITTYP 6 or use mffit convert --fittyp 6"
+        f"is of MF-MCTyre, the old formula for motorcycles ({formula.why}: {formula.name}), whose camber force is another one: "
+        "fit the tyre's data again; or, if it is a car's tyre of MF 5.2 under a wrong name, write FITTYP 6 or use mffit convert "
+        "--fittyp 6"
+    )
+
+
+def of_another_model(formula: Formula) -> str:
+    """Why a file of another tyre model cannot be used, and what to do."""
+    return (
+        f"is of another tyre model, {formula.name} ({formula.why}), whose coefficients are not those of MF 5.2 or MF 6: take the "
+        "tyre's file of MF 6.1 or 6.2, or fit its data; if the name is wrong, use mffit convert --fittyp 6 for MF 5.2, or write "
+        "FITTYP = 62 into [MODEL]"
     )
 
 
@@ -350,16 +346,6 @@ def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[
         if found:
             provenance[found.group(1).strip()] = found.group(2)
     return measured, provenance
-
-
-def unquoted(text: str) -> str:
-    """The text without the quotes around it."""
-    text = text.strip()
-    return (
-        text[1:-1].strip()
-        if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\""
-        else text.strip("'\"")
-    )
 
 
 def _warning(sentence: str, line: FileLine) -> Problem:

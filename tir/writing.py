@@ -16,10 +16,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tir.document import Document, FileLine, commented, folded
+from tir.document import Document, FileLine, commented, folded, unquoted
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
-from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, described, parameter_of, units_of, unquoted
+from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, described, parameter_of, units_of
 from tir.record import TyreRecord
 from tir.targets import DEFAULT, Target, target_of, use_mode_words, vendor
 from tir.units import SI, factor

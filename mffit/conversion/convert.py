@@ -15,6 +15,7 @@ from mffit.conversion.old_files import OldFile, read_old
 from mffit.conversion.refit import held, refit
 from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
 from mffit.errors import InputError
+from mffit.fit.same_curve import in_one_form
 from tir import Tyre
 from tir.equations import lateral, normalise, stiffness
 from tir.outputs import outputs_of
@@ -63,6 +64,7 @@ def convert(
     goal = mf52.forces(p, *at)._asdict()
     start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
+    start |= in_one_form(start)
     found = refit(start, at, goal, reach)
     values = {**start, **found, **camber_range(old, reach)}
     tyre = Tyre.from_values(values)

@@ -48,8 +48,12 @@ class Conditions(NamedTuple):
         return most[group.ravel()]
 
     def u(self, force: np.ndarray) -> np.ndarray:
-        """Uncertainty of each force (n,) for a fit: a good share of the largest alike, by the weight of the condition."""
-        unit = float(constants.GOOD_SHARE) * self.largest_alike(force)
+        """Uncertainty of each force (n,) for a fit: a good share of the largest alike, by the weight of the condition.
+
+        Where all alike are 0, it is a share of the largest of all.
+        """
+        alike = self.largest_alike(force)
+        unit = float(constants.GOOD_SHARE) * np.where(alike > 0.0, alike, np.max(alike))
         return np.asarray(unit / np.sqrt(self.weight / self.weight.sum()))
 
 

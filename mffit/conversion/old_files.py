@@ -13,18 +13,9 @@ from tir import Problem, TirError
 from tir.defaults import completed
 from tir.document import Document, read_document
 from tir.errors import some
+from tir.formula import CAR_FITTYPS, OLD_FITTYPS, formula_of
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP
-from tir.properties import (
-    CAR_FITTYPS,
-    MOTORCYCLE_FORMATS,
-    OLD_FITTYPS,
-    OLD_FORMATS,
-    add_given,
-    number_of,
-    of_motorcycles,
-    stated_values,
-    unquoted,
-)
+from tir.properties import add_given, of_another_model, of_motorcycles, stated_values
 
 OWN = {
     name: replace(BY_NAME["PHY1"], name=name, section="", default=default, unit=unit)
@@ -59,8 +50,8 @@ class OldFile:
 
 
 def is_old(path: str | Path) -> bool:
-    """Whether a file states a version that :func:`read_old` reads."""
-    return _version(read_document(path)) in (*map(str, CAR_FITTYPS), *OLD_FORMATS)
+    """Whether a file is of a formula that :func:`read_old` reads."""
+    return formula_of(read_document(path)).kind == "5.2"
 
 
 def read_old(
@@ -108,32 +99,25 @@ def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:
     return {**values, **{name: row.default for name, row in OWN.items()}, **given}
 
 
-def _version(document: Document) -> str:
-    """The version as FITTYP or PROPERTY_FILE_FORMAT state it, if it is one of the 5.2 generation; else empty."""
-    stated = {
-        line.key: unquoted(line.value).upper() for line in reversed(document.entries) if line.key in VERSION
-    }
-    number = number_of(stated.get("FITTYP", ""))
-    if number is not None:
-        return f"{number:g}" if number in OLD_FITTYPS else ""
-    form = stated.get("PROPERTY_FILE_FORMAT", "")
-    return form if form in OLD_FORMATS | MOTORCYCLE_FORMATS else ""
-
-
 def _kind(document: Document, fittyp: int | None) -> str:
-    if fittyp is not None and fittyp not in CAR_FITTYPS:
-        raise TirError(f"FITTYP {fittyp} cannot be converted: give {', '.join(map(str, CAR_FITTYPS))}")
-    version = _version(document) if fittyp is None else str(fittyp)
-    if not version:
+    """The formula of an old file in words, such as "MF-Tyre 5.2"; raises TirError if it is of another one."""
+    if fittyp is not None:
+        if fittyp not in CAR_FITTYPS:
+            raise TirError(f"FITTYP {fittyp} cannot be converted: give {', '.join(map(str, CAR_FITTYPS))}")
+        return OLD_FITTYPS[fittyp]
+    formula = formula_of(document)
+    if formula.kind == "motorcycle":
+        raise TirError(of_motorcycles(formula), path=document.path)
+    if formula.kind == "other":
+        raise TirError(of_another_model(formula), path=document.path)
+    if formula.kind == "6":
         raise TirError(
-            "states no FITTYP of MF 5.2 (5, 6, 21) and no PROPERTY_FILE_FORMAT of PAC2002: a file of MF 6.1 or 6.2 needs no "
-            "conversion, other formulas cannot be converted; if it is of MF 5.2 all the same, use --fittyp 6",
+            f"is of {formula.name} ({formula.why}) and needs no conversion; if it is of MF 5.2 all the same, use --fittyp 6",
             path=document.path,
         )
-    if version in OLD_FORMATS:
-        return version
-    number = number_of(version)
-    if number not in CAR_FITTYPS:
-        stated = f"PROPERTY_FILE_FORMAT '{version}'" if number is None else f"FITTYP {version}"
-        raise TirError(of_motorcycles(stated), path=document.path)
-    return OLD_FITTYPS[int(number)]
+    if formula.kind == "unknown":
+        raise TirError(
+            f"{formula.why}: if it is of MF 5.2, use --fittyp 6; a file of MF 6.1 or 6.2 needs no conversion",
+            path=document.path,
+        )
+    return formula.name

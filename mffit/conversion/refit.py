@@ -103,6 +103,8 @@ def refit(
     found: dict[str, float] = {}
     curved = exceeding(SimpleNamespace(**values), reach)
     for channel, by_camber in FREE.items():
+        if not np.any(goal[channel]):  # the old file has no such force, and its coefficients are 0
+            continue
         limited = [factor for factor in curved if factor.channel == channel]
         names = (*by_camber, *(name for factor in limited for name in factor.names))
         if names:

@@ -74,10 +74,21 @@ def size(row: RegionMisfit) -> str:
 
 def reasons(found: Conversion | OldConversion) -> list[str]:
     """Why the converted file is not to be trusted; empty if its misfit is small."""
-    out = []
+    out = [] if isinstance(found, OldConversion) else against_sideslip(found)
     for row in found.poor:
         out.append(
             f"{MODEL[row.channel].symbol} at {region(row)} is off by up to {size(row)}, in rms by {row.rms_share:.1%} of the "
             f"largest of the same load; {row.within:.0%} of the conditions are within {constants.GOOD_SHARE:.0%}"
         )
     return out
+
+
+def against_sideslip(found: Conversion) -> list[str]:
+    """A sentence if the side force of the upright wheel grows with sideslip, which no tyre does in ISO-W."""
+    nominal = float(found.tyre["FNOMIN"])
+    if float(found.tyre.state(nominal).K_ya) <= 0.0:
+        return []
+    return [
+        f"the side force grows with sideslip at {nominal:.0f} N (PKY1 and PKY2 have one sign), but in ISO-W, the axes of "
+        "property files, every tyre pushes against it: the file is in other axes, and so is the converted one"
+    ]

@@ -191,13 +191,21 @@ def test_units_are_those_of_the_file(tmp_path):
     )
 
 
+UNTOLD = re.sub(
+    r"(?m)^(FITTYP|PROPERTY_FILE_FORMAT|PHY3|PT[XY]\d|QTZ1|MBELT|LGA[XYZ]|LSGKP|LSGAL|LGYR|LKYG) .*\n",
+    "",
+    TEXT,
+)
+"""Nothing but coefficients that both generations have."""
+
+
 @pytest.mark.parametrize(
     ("mangled", "said"),
     [
         (TEXT.replace("= 6  ", "= 52 "), "old formula for motorcycles"),
         (TEXT.replace("= 6  ", "= 51 "), "old formula for motorcycles"),
         (TEXT.replace("= 6  ", "= 61 "), "needs no conversion"),
-        (re.sub(r"FITTYP.*\n|PROPERTY_FILE_FORMAT.*\n", "", TEXT), "states no FITTYP of MF 5.2"),
+        (UNTOLD, "does not say which version .* if it is of MF 5.2, use --fittyp 6"),
         (re.sub(r"FNOMIN.*\n", "", TEXT), "lacks FNOMIN"),
         (TEXT.replace("-0.8\n", "-0,8\n"), 'PEY1 is "-0,8"'),
     ],
@@ -215,7 +223,7 @@ def test_what_cannot_be_converted_is_refused(tmp_path, mangled, said):
         "FITTYP = 51\nPROPERTY_FILE_FORMAT = 'MF_05'",
         "FITTYP = 62",
         "PROPERTY_FILE_FORMAT = 'MF-MCTYRE'",
-        "$ nothing",
+        "PROPERTY_FILE_FORMAT = 'PAC_TIME'",
     ],
 )
 def test_a_car_tyre_with_a_wrong_version_is_converted_when_told_so(tmp_path, capsys, converted, stated):
@@ -234,6 +242,44 @@ def test_a_car_tyre_with_a_wrong_version_is_converted_when_told_so(tmp_path, cap
     main(["convert", str(tmp_path / "wrong.tir"), "--fittyp", "6", "--out", str(tmp_path / "new.tir")])
     capsys.readouterr()
     assert tir.read(tmp_path / "new.tir") == converted.tyre
+
+
+@pytest.mark.parametrize(
+    "stated", ["$ nothing", *(f"PROPERTY_FILE_FORMAT = '{x}'" for x in ("MF52", "MF_52", "SWIFT", "DELFT"))]
+)
+def test_the_keys_of_an_old_file_are_enough(tmp_path, converted, stated):
+    """Whatever program's name it has: read as MF 6.2, its moment under camber would be another."""
+    plain = re.sub(r"(FITTYP|PROPERTY_FILE_FORMAT).*\n", "", TEXT)
+    (tmp_path / "old.tir").write_text(plain.replace("[MODEL]\n", f"[MODEL]\n{stated}\n"))
+    with pytest.raises(tir.TirError, match=r"MF 5.2 generation.*mffit convert"):
+        tir.read(tmp_path / "old.tir")
+    assert is_old(tmp_path / "old.tir")
+    assert convert(tmp_path / "old.tir").tyre == converted.tyre
+
+
+def test_a_file_of_the_side_force_alone_is_converted(tmp_path):
+    """No longitudinal force and no moment: nothing is divided by them, and the side force is the old one."""
+    lateral = "[DIMENSION]\nUNLOADED_RADIUS = 0.2\n[VERTICAL]\nFNOMIN = 700\n[LATERAL_COEFFICIENTS]\n"
+    text = f"{lateral}PCY1 = 1.5\nPDY1 = -2.4\nPKY1 = -45\nPKY2 = 2\nPHY3 = 0.04\n"
+    (tmp_path / "lateral.tir").write_text(text)
+    found = convert(tmp_path / "lateral.tir")
+    D, K = 2.4 * 600.0, 45.0 * 700.0 * math.sin(2.0 * math.atan(600.0 / (2.0 * 700.0)))
+    force = -D * math.sin(1.5 * math.atan(K / (1.5 * D) * 0.05))
+    assert found.tyre(600.0, 0.05).Fy == pytest.approx(force, rel=1e-6)
+    assert found.tyre(600.0, 0.05).Mz == found.tyre(600.0, 0.0, 0.0, 0.1).Fx == 0.0
+    assert found.tyre["PDY1"] > 0.0  # a negative peak is the same curve; one sign is written
+    assert not [p.sentence for p in tir.check(found.tyre) if p.level == "error"]
+
+
+def test_a_side_force_that_grows_with_sideslip_is_in_other_axes(tmp_path, capsys):
+    lateral = "[DIMENSION]\nUNLOADED_RADIUS = 0.2\n[VERTICAL]\nFNOMIN = 700\n[LATERAL_COEFFICIENTS]\n"
+    (tmp_path / "other.tir").write_text(
+        f"{lateral}PCY1 = 1.5\nPDY1 = 2.4\nPKY1 = -45\nPKY2 = -2\nPHY3 = 0.04\n"
+    )
+    with pytest.raises(SystemExit) as ended:
+        main(["convert", str(tmp_path / "other.tir"), "--out", str(tmp_path / "new.tir")])
+    assert ended.value.code == 3
+    assert "the file is in other axes" in " ".join(capsys.readouterr().out.split())
 
 
 def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys):
