@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,8 +21,26 @@ NUMBER = re.compile(
     r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[edED][+-]?\d+)?|[+-]?(?:inf|infinity|nan)", re.ASCII | re.IGNORECASE
 )
 """Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
+KEY_ALONE = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:=\s*)?")
+VALUE_ALONE = re.compile(r"(\s*=?[^\S\r\n]*)(.*)", re.DOTALL)
 CONTINUED = "!>"
 """Begins a line that continues the comment line above."""
+BYTE_ORDER_MARKS = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+"""Bytes with which a file of an encoding begins, which its text does not hold."""
+NO_TEXT = {
+    b"MATLAB 5.0": "a MATLAB file",
+    b"\x89HDF": "a MATLAB 7.3 or other HDF5 file",
+    b"PK\x03\x04": "an Excel workbook or another zip archive",
+    b"\xd0\xcf\x11\xe0": "an Excel workbook of the old kind",
+    b"\x1f\x8b": "a compressed file",
+    b"%PDF": "a PDF",
+}
+"""What a file is that begins with these bytes."""
+AS_TEXT = (
+    "write each coefficient on a line of its own, such as PCY1 = 1.3, with UNLOADED_RADIUS and FNOMIN, and FITTYP = 62 for MF "
+    "6.2; or in Python tir.Tyre.from_values({'PCY1': 1.3, ...}).write('tyre.tir')"
+)
+"""What to do with coefficients that are not in a property file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +60,11 @@ class FileLine:
     def head(self) -> bool:
         """Whether the line opens a section."""
         return not self.key and SECTION.match(self.text) is not None
+
+    @property
+    def apart(self) -> bool:
+        """Whether the key stands on a line above, alone."""
+        return bool(self.key) and ENTRY.match(self.text) is None
 
     def with_value(self, value: str) -> FileLine:
         """The line with another value and all other characters unchanged."""
@@ -99,7 +123,7 @@ class Document:
     @property
     def content(self) -> bytes:
         """The bytes of the file."""
-        return self.text.encode(self.encoding)
+        return encoded(self.text, self.encoding)
 
     @property
     def line_end(self) -> str:
@@ -185,7 +209,13 @@ def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Doc
             continue
         if stripped.startswith("{"):
             table = True
-        entry = None if table or not stripped or stripped[0] in "$!({" else ENTRY.match(content)
+        aside = table or not stripped or stripped[0] in "$!({"
+        value_of = None if aside else _key_above(lines, content)
+        if value_of is not None:
+            lines[value_of[0]] = replace(lines[value_of[0]], key="", value="", comment="")
+            lines.append(_value_below(FileLine(number, content, section, value_of[1], end=end)))
+            continue
+        entry = None if aside else ENTRY.match(content)
         if entry is None:
             lines.append(FileLine(number, content, section, end=end))
             continue
@@ -195,6 +225,30 @@ def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Doc
             FileLine(number, content, section, entry.group(2).strip().upper(), value, comment, end, start)
         )
     return Document(tuple(lines), encoding, path)
+
+
+def _key_above(lines: Sequence[FileLine], content: str) -> tuple[int, str] | None:
+    """Index and key of the line above that holds a key alone, if ``content`` is its value: "= 4000", or "4000" below "FNOMIN =".
+
+    None if the value belongs to no such line.
+    """
+    value = split_comment(content)[0]
+    begun = value.startswith("=")
+    if not begun and number_of(value) is None and not QUOTED.fullmatch(value):
+        return None
+    above = next((i for i in reversed(range(len(lines))) if lines[i].text.strip()), None)
+    found = None if above is None else KEY_ALONE.fullmatch(lines[above].text)
+    if above is None or found is None or ("=" in lines[above].text) == begun:
+        return None
+    return above, found.group(1).upper()
+
+
+def _value_below(line: FileLine) -> FileLine:
+    """The line that holds the value of a key above it, with value and comment."""
+    found = VALUE_ALONE.fullmatch(line.text)
+    assert found is not None
+    value, comment = split_comment(found.group(2))
+    return replace(line, value=value, comment=comment, start=found.end(1))
 
 
 def split_comment(text: str) -> tuple[str, str]:
@@ -224,12 +278,29 @@ def number_of(text: str) -> float | None:
     return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
 
 
+def encoded(text: str, encoding: str) -> bytes:
+    """The bytes of a text, with the byte order mark of its encoding."""
+    return BYTE_ORDER_MARKS.get(encoding, b"") + text.encode(encoding)
+
+
 def _decode(raw: bytes, path: Path) -> tuple[str, str]:
     if not raw.strip():
         raise TirError("is empty: a property file was expected", path=path)
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\x00" in raw[:200]:
-        raise TirError("is UTF-16 or binary: save it as plain text (ASCII or UTF-8)", path=path)
-    for encoding in ("utf-8-sig" if raw.startswith(b"\xef\xbb\xbf") else "utf-8", "latin-1"):
+    for begins, what in NO_TEXT.items():
+        if raw.startswith(begins):
+            raise TirError(f"is {what}, not the text of a property file: {AS_TEXT}", path=path)
+    for encoding, mark in BYTE_ORDER_MARKS.items():
+        if raw.startswith(mark):
+            try:
+                return raw.removeprefix(mark).decode(encoding), encoding
+            except UnicodeDecodeError:
+                break
+    if b"\x00" in raw[:200]:
+        raise TirError(
+            "is UTF-16 without a byte order mark, or binary: save it as plain text (ASCII or UTF-8)",
+            path=path,
+        )
+    for encoding in ("utf-8-sig" if raw.startswith(codecs.BOM_UTF8) else "utf-8", "latin-1"):
         try:
             return raw.decode(encoding), encoding
         except UnicodeDecodeError:

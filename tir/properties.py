@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from tir.codegen.program import Switches, trace
 from tir.defaults import completed
-from tir.document import Document, FileLine, number_of, unquoted
+from tir.document import AS_TEXT, Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
 from tir.formula import HEADER, Formula, formula_of
@@ -37,7 +37,10 @@ STATUS = re.compile(
 def described(kind: type[Kind], document: Document, lacking: Mapping[str, float | str]) -> Kind:
     """The tyre of a document, with values of keys that it lacks; raises as :func:`tir.read`."""
     if not document.entries:
-        raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
+        raise TirError(
+            f"holds no 'KEY = value' line, so it is not a property file{_otherwise(document)}",
+            path=document.path,
+        )
     problems: list[Problem] = []
     values, status, extra = stated_values(document, problems)
     added = add_given(values, lacking, problems)
@@ -46,7 +49,7 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
     _refuse_other_formulas(formula, document)
     _refuse_truncated(values, document)
     _refuse_unknown(formula, document)
-    problems += _about_a_cut_number(values, document)
+    problems += _about_a_cut_number(values, document) + _about_values_below(document)
     stated = {line.key for line in document.entries if parameter_of(line)} | added
     complete = completed(values)
     problems += _about_missing(complete, values, stated) + _about_unknown(extra)
@@ -176,6 +179,8 @@ def value_of(
     remedy = ": give a number"
     if number is None and "," in text:
         remedy = f"; decimal commas are not allowed, write {text.replace(',', '.')}"
+    if text.endswith(";") and number_of(text[:-1].strip()) is not None:
+        remedy = ": leave the semicolon out"
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
 
 
@@ -235,7 +240,7 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
         remedy = (
             f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...)"
             if coefficients
-            else "the file is truncated, is for another tyre model, or is not a property file"
+            else f"the file is truncated, is for another tyre model, or is not a property file{_otherwise(document)}"
         )
         raise TirError(
             f"lacks {' and '.join(missing)}, which every force needs: {remedy}",
@@ -247,6 +252,31 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
             "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is truncated",
             path=document.path,
         )
+
+
+def _otherwise(document: Document) -> str:
+    """What to do if a line names a coefficient in another form than a property file, such as a table or a script; else empty."""
+    for line in document.lines:
+        names = [
+            word for word in re.findall(r"[A-Za-z]\w*", line.text) if word.upper() in ESSENTIAL_COEFFICIENTS
+        ]
+        if names and line.key != names[0].upper():
+            return f"; line {line.number} names {names[0]} in another form: {AS_TEXT}"
+    return ""
+
+
+def _about_values_below(document: Document) -> list[Problem]:
+    """A problem if values are on other lines than their keys."""
+    apart = [line for line in document.entries if line.apart]
+    if not apart:
+        return []
+    keys = some([line.key for line in apart])
+    return [
+        _warning(
+            f"the values of {keys} are on the lines below their keys; other programs may want one line",
+            apart[0],
+        )
+    ]
 
 
 def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -> list[Problem]:

@@ -12,7 +12,7 @@ from typing import Any
 from tir import Problem, TirError
 from tir.defaults import completed
 from tir.document import Document, read_document
-from tir.errors import some
+from tir.errors import listed, some
 from tir.formula import CAR_FITTYPS, OLD_FITTYPS, formula_of
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP
 from tir.properties import add_given, of_another_model, of_motorcycles, stated_values
@@ -29,6 +29,8 @@ OWN = {
 """Parameters that only old files have and that the forces need."""
 VERSION = ("FITTYP", "PROPERTY_FILE_FORMAT")
 NEEDED = ("FNOMIN", "UNLOADED_RADIUS")
+CURVES = {"longitudinal": ("PCX1", "PDX1", "PKX1"), "side": ("PCY1", "PDY1", "PKY1", "PKY2")}
+"""What a force needs: shape, peak and slope."""
 OF_62 = {"PKY4": 2.0, "QSY7": 1.0, "QSY8": 0.0}
 """Values of MF 6.2 by which its formulae are those of MF 5.2; every other coefficient that 5.2 lacks is 0."""
 
@@ -75,11 +77,31 @@ def read_old(
             path=document.path,
             name=missing[0],
         )
+    _refuse_incomplete_curves(values, document)
     if unused:
         keys = [key.partition(".")[2] for key in unused]
         problems.append(Problem("warning", f"keys that are not used: {some(keys)}"))
     present = frozenset(values)
     return OldFile(kind, MappingProxyType(old_completed(values)), present, tuple(problems), document)
+
+
+def _refuse_incomplete_curves(values: Mapping[str, Any], document: Document) -> None:
+    """Raise TirError for a force of which some coefficients are there but not all, and for a file without any force."""
+    begun = {word: names for word, names in CURVES.items() if any(values.get(name) for name in names)}
+    for word, names in begun.items():
+        missing = [name for name in names if name not in values]
+        if missing:
+            raise TirError(
+                f"lacks {listed(missing)}, without which its {word} force is unknown: add the missing lines, or take the "
+                "complete file",
+                path=document.path,
+                name=missing[0],
+            )
+    if not begun:
+        names = listed([name for names in CURVES.values() for name in names])
+        raise TirError(
+            f"has no force: none of {names} is there with a value other than 0", path=document.path
+        )
 
 
 def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:

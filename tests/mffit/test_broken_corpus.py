@@ -223,7 +223,10 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "a heading not in the file": (of_sweep(columns={"Fy_N": "FY"}), 'no heading "FY"'),
     # base files
     "an empty base file": (base(""), "base.tir: is empty"),
-    "a binary base file": (base(b"\0\1\2\3" * 40), "base.tir: is UTF-16 or binary"),
+    "a binary base file": (
+        base(b"\0\1\2\3" * 40),
+        "base.tir: is UTF-16 without a byte order mark, or binary",
+    ),
     "a base file in words": (
         base(WHOLE_TIR.replace("-12", "zwölf")),
         'PKY1 is "zwölf", but a number was expected',

@@ -45,6 +45,8 @@ def read_text(tmp_path: Path, text: str | bytes) -> tir.Tyre:
         TEXT.replace("\n", "\r\n"),
         TEXT.replace("\n", "\r"),
         b"\xef\xbb\xbf" + TEXT.encode(),
+        TEXT.encode("utf-16"),
+        b"\xfe\xff" + TEXT.encode("utf-16-be"),
         TEXT.replace("! Motorcycle", "! Motorradreifen, Größe 120").encode("latin-1"),
         TEXT.replace("= 1.27\n", "= 1.27D+00   $ Fortran\n"),
         TEXT.replace("= 1.27\n", "=1.27!inline\n"),
@@ -58,6 +60,8 @@ def read_text(tmp_path: Path, text: str | bytes) -> tir.Tyre:
         "crlf",
         "cr",
         "bom",
+        "utf16",
+        "utf16-be",
         "latin1",
         "fortran",
         "tight",
@@ -70,6 +74,58 @@ def read_text(tmp_path: Path, text: str | bytes) -> tir.Tyre:
 )
 def test_the_usual_variants_of_files_read_alike(tmp_path, tyre, mangled):
     assert read_text(tmp_path, mangled) == tyre
+
+
+def split(text):
+    """Key and value on two lines each, as listings on pages of programs have them, with the sign on either line."""
+    text = re.sub(r"(?m)^([A-Z]\w*) *(= *\S.*)$", r"\1\n      \2", text)
+    return re.sub(r"(?m)^(PDY1|FNOMIN|LONGVL)\n *= *", r"\1 =\n  ", text)
+
+
+def test_values_on_the_line_below_their_keys_are_read(tmp_path, tyre):
+    found = read_text(tmp_path, split(TEXT))
+    assert found == tyre
+    (problem,) = (p for p in found.problems if "below their keys" in p.sentence)
+    assert problem.line is not None
+    assert found.document.content == split(TEXT).encode()
+    changed = found.replace(PDY1=1.375)
+    assert changed.text() == split(TEXT).replace("PDY1 =\n  1.27", "PDY1 =\n  1.375")
+    assert read_text(tmp_path, changed.text()) == tyre.replace(PDY1=1.375)
+
+
+def test_a_number_below_another_line_is_no_value(tmp_path):
+    with pytest.raises(tir.TirError, match="PKY1 has no value"):
+        read_text(tmp_path, re.sub(r"(?m)^PKY1 .*$", "PKY1 =\n[MORE]\n3", TEXT))
+    with pytest.raises(tir.TirError, match="lacks FNOMIN"):
+        read_text(tmp_path, re.sub(r"(?m)^FNOMIN .*$", "FNOMIN of the tyre\n= 1500", TEXT))
+
+
+@pytest.mark.parametrize("mark", ["utf-16", "utf-8-sig"])
+def test_a_file_with_a_byte_order_mark_is_written_with_it(tmp_path, mark):
+    raw = TEXT.encode(mark)
+    path = tmp_path / "again.tir"
+    read_text(tmp_path, raw).write(path)
+    assert path.read_bytes() == raw
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"MATLAB 5.0 MAT-file, Platform: PCWIN64".ljust(128) + b"\0\1IM", ["MATLAB", "PCY1 = 1.3"]),
+        (b"\x89HDF\r\n\x1a\n" + bytes(50), ["MATLAB 7.3", "from_values"]),
+        (b"PK\x03\x04" + bytes(50), ["Excel", "PCY1 = 1.3"]),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1" + bytes(50), ["Excel"]),
+        (b"name,value\nPCX1,1.6\nPCY1,1.3\n", ["line 3 names PCY1", "from_values"]),
+        (b'{"UNLOADED_RADIUS": 0.3,\n "PKY1": -20}\n', ["line 2 names PKY1"]),
+        (b"tyre.FNOMIN = 4000\ntyre.PCY1 = 1.3\n", ["line 2 names PCY1", "PCY1 = 1.3"]),
+        (TEXT.replace("= 1.27\n", "= 1.27;\n").encode(), ["PDY1", "leave the semicolon out"]),
+    ],
+    ids=["mat", "mat73", "xlsx", "xls", "csv", "json", "matlab", "semicolon"],
+)
+def test_coefficients_in_another_form_are_refused_with_what_to_do(tmp_path, content, words):
+    with pytest.raises(tir.TirError) as caught:
+        read_text(tmp_path, content)
+    assert all(word in str(caught.value) for word in words), caught.value
 
 
 def test_unknown_keys_are_kept_and_named(tmp_path):
@@ -136,7 +192,7 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
     ("mangled", "words"),
     [
         (b"", ["empty"]),
-        (TEXT.encode("utf-16"), ["UTF-16"]),
+        (TEXT.encode("utf-16-le"), ["UTF-16"]),
         ("nothing of the kind\n", ["not a property file"]),
         (TEXT.replace("FITTYP                   = 62", "FITTYP = 6"), ["5.2", "fit"]),
         (TEXT.replace("= 62", "= 21").replace("'USER'", "'MF_05'"), ["5.2"]),

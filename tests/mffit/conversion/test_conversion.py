@@ -207,6 +207,8 @@ UNTOLD = re.sub(
         (TEXT.replace("= 6  ", "= 61 "), "needs no conversion"),
         (UNTOLD, "does not say which version .* if it is of MF 5.2, use --fittyp 6"),
         (re.sub(r"FNOMIN.*\n", "", TEXT), "lacks FNOMIN"),
+        (re.sub(r"PKY[12].*\n", "", TEXT), "lacks PKY1 and PKY2, without which its side force"),
+        (re.sub(r"P[CDK][XY]\d.*\n", "", TEXT), "has no force"),
         (TEXT.replace("-0.8\n", "-0,8\n"), 'PEY1 is "-0,8"'),
     ],
 )
