@@ -238,7 +238,7 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
         remedy = (
-            f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...)"
+            f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...){_option(missing)}"
             if coefficients
             else f"the file is truncated, is for another tyre model, or is not a property file{_otherwise(document)}"
         )
@@ -252,6 +252,14 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
             "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is truncated",
             path=document.path,
         )
+
+
+def _option(missing: Sequence[str]) -> str:
+    return (
+        "; mffit check, show, compare and convert take --unloaded-radius"
+        if missing == ["UNLOADED_RADIUS"]
+        else ""
+    )
 
 
 def _otherwise(document: Document) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import NOT_TRUSTED, Voice, voiced
-from mffit.cli.options import PATH, out_option, tir_file, unloaded_radius
+from mffit.cli.options import PATH, given, out_option, tir_file
 
 
 @click.command()
@@ -20,8 +20,9 @@ from mffit.cli.options import PATH, out_option, tir_file, unloaded_radius
     metavar="NAMES",
     help="Programs that must be able to read it: mftyre,simscape,...",
 )
+@given
 @voiced
-def check(file: Path, targets: str, voice: Voice) -> None:
+def check(file: Path, targets: str, given: dict[str, float], voice: Voice) -> None:
     """Check a property file.
 
     Looks at units, missing and unknown keys, and physics over the ranges of the file.
@@ -29,7 +30,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     import tir
     from tir.errors import LEVELS, counted
 
-    tyre = tir.read(file)
+    tyre = tir.read(file, **given)
     names = [name.strip() for name in targets.split(",")]
     problems = sorted(
         [*tyre.problems, *tir.check(tyre, filter(None, names))], key=lambda p: LEVELS.index(p.level)
@@ -47,8 +48,11 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 @click.argument("files", type=PATH, nargs=-1, required=True, metavar="FILE.tir... | tyre.toml")
 @out_option("Page to write [default: FILE.html in the current folder].", is_file=True)
 @click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
+@given
 @voiced
-def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
+def show(
+    files: tuple[Path, ...], out: Path | None, open_it: bool, given: dict[str, float], voice: Voice
+) -> None:
     """Draw the curves of property files, or a project with its points.
 
     Writes a page with sliders for the conditions; several files are drawn in the same panels. The page of a tyre.toml has the
@@ -57,7 +61,7 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
     import mffit
 
     with voice.progress() as say:
-        page = mffit.show(files, out, progress=say)
+        page = mffit.show(files, out, given=given, progress=say)
     if out is None:
         stem = page.names[0] if files[0].suffix == ".toml" else files[0].stem
         out = page.write(Path(f"{stem}.html"))
@@ -73,7 +77,7 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 @click.option(
     "--to", type=click.Choice(["mf52", "pac2002"]), help="Convert a file of MF 6.2 to an older formula."
 )
-@unloaded_radius
+@given
 @click.option(
     "--fittyp",
     type=click.Choice(["5", "6", "21"]),
@@ -81,7 +85,7 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
 )
 @voiced
 def convert(
-    file: Path, out: Path, to: str | None, unloaded_radius: float | None, fittyp: str | None, voice: Voice
+    file: Path, out: Path, to: str | None, given: dict[str, float], fittyp: str | None, voice: Voice
 ) -> None:
     """Convert a property file of MF 5.2 or PAC2002 to MF 6.2, or with --to one of MF 6.2 back.
 
@@ -92,7 +96,6 @@ def convert(
     from mffit.report import text
     from mffit.results import as_json
 
-    given = {} if unloaded_radius is None else {"UNLOADED_RADIUS": unloaded_radius}
     found: conversion.Conversion | conversion.OldConversion
     if to is not None:
         found = conversion.to_old(file, to, given)

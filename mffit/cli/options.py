@@ -11,6 +11,16 @@ import click
 Command = TypeVar("Command", bound=Callable[..., Any])
 PATH = click.Path(path_type=Path)
 
+
+def _as_given(context: click.Context, option: click.Parameter, value: float | None) -> dict[str, float]:
+    return {} if value is None else {"UNLOADED_RADIUS": value}
+
+
+def _unloaded_radius(*names: str, **settings: Any) -> Callable[[Command], Command]:
+    wanted = "Of the tyre, in metres, if the files lack it."
+    return click.option("--unloaded-radius", *names, type=float, metavar="M", help=wanted, **settings)
+
+
 tyre_toml = click.argument("tyre_toml", type=PATH)
 tir_file = click.argument("file", type=PATH, metavar="FILE.tir")
 path_centre = click.option(
@@ -18,9 +28,11 @@ path_centre = click.option(
     type=click.Choice(["left", "right"]),
     help="Side of the disc's centre, rolling forwards, where no tyre.toml states it.",
 )
-unloaded_radius = click.option(
-    "--unloaded-radius", type=float, metavar="M", help="Of the tyre, in metres, if the files lack it."
-)
+
+
+unloaded_radius = _unloaded_radius()
+given = _unloaded_radius("given", callback=_as_given)
+"""The same option, as values of keys by which :func:`tir.read` completes a property file."""
 strict = click.option(
     "--strict", is_flag=True, help="Exit code 3 also if the result is only in doubt, for automatic runs."
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from mffit.cli.console import Voice, told, voiced
-from mffit.cli.options import PATH, out_option, path_centre, tyre_toml
+from mffit.cli.options import PATH, given, out_option, path_centre, tyre_toml
 from mffit.errors import InputError, check_readable
 
 
@@ -100,8 +100,11 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     type=click.Choice(["on", "off"]),
     help="Evaluate both files with turn slip on or off [default: each as intended].",
 )
+@given
 @voiced
-def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, voice: Voice) -> None:
+def compare(
+    first: Path, second: Path, out: Path | None, turn_slip: str | None, given: dict[str, float], voice: Voice
+) -> None:
     """Compare two property files, a file and data, or two builds.
 
     Ranks the differences of curves, stiffnesses, peaks, trail and eps_gamma.
@@ -111,7 +114,7 @@ def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, 
 
     both = None if turn_slip is None else turn_slip == "on"
     with voice.progress() as show:
-        found = pipeline.compare(first, second, turn_slip=both, out=out, progress=show)
+        found = pipeline.compare(first, second, turn_slip=both, given=given, out=out, progress=show)
     voice.say(text.comparison_table(found))
     voice.written(out, "compare.html", "compare.json")
     voice.give(found)

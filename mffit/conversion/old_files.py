@@ -98,9 +98,9 @@ def _refuse_incomplete_curves(values: Mapping[str, Any], document: Document) -> 
                 name=missing[0],
             )
     if not begun:
-        names = listed([name for names in CURVES.values() for name in names])
+        every = listed([*CURVES["longitudinal"], *CURVES["side"]])
         raise TirError(
-            f"has no force: none of {names} is there with a value other than 0", path=document.path
+            f"has no force: none of {every} is there with a value other than 0", path=document.path
         )
 
 

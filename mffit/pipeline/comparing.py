@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import tir
 from mffit import config as configuration
@@ -33,6 +34,7 @@ def compare(
     second: str | Path,
     *,
     turn_slip: bool | None = None,
+    given: Mapping[str, float] = MappingProxyType({}),
     out: str | Path | None = None,
     progress: Progress = silent,
 ) -> Comparison:
@@ -42,6 +44,7 @@ def compare(
     ----------
     first, second : property file, folder of a build, or (one of the two) a ``tyre.toml`` with its sweeps
     turn_slip : evaluate both files with turn slip on, or off; default as each file is intended
+    given : values [SI] of keys that a file lacks, such as UNLOADED_RADIUS
     out : folder to write to; nothing is written if None
     progress : called with a sentence before each step
 
@@ -66,10 +69,10 @@ def compare(
     if data:
         config = configuration.load(data[0])
         progress(READING)
-        found = _with_data(_subject(files[0]), config)
+        found = _with_data(_subject(files[0], given), config)
         files += inputs_of(config)
     else:
-        sides = _with_names_apart([_subject(path) for path in paths], paths)
+        sides = _with_names_apart([_subject(path, given) for path in paths], paths)
         if turn_slip is not None:
             sides = [replace(side, turn_slip=turn_slip) for side in sides]
         progress("comparing")
@@ -89,7 +92,7 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
         report.write_comparison(found, folder)
 
 
-def _subject(path: Path) -> ComparedSubject:
+def _subject(path: Path, given: Mapping[str, float]) -> ComparedSubject:
     """A property file, or that of a build's folder, with its covariance if its build is beside it."""
     build = None
     if path.is_dir():
@@ -98,7 +101,7 @@ def _subject(path: Path) -> ComparedSubject:
     else:
         with suppress(InputError):
             build = fleet.read(path.parent)
-    tyre = tir.read(path)
+    tyre = tir.read(path, **given)
     use = use_of(tyre)
     subject = ComparedSubject(path.name, tyre, tyre.turn_slip if use is None else use == "turn-slip")
     posterior = posterior_of(tyre, path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from mffit import viewer
 from mffit.errors import InputError
@@ -18,6 +19,7 @@ def show(
     tyres: Given | Mapping[str, Given] | Iterable[Given],
     out: str | Path | None = None,
     *,
+    given: Mapping[str, float] = MappingProxyType({}),
     progress: Progress = silent,
 ) -> Page:
     """A page with the curves of property files, or with the points, curves and coefficients of a project.
@@ -29,6 +31,7 @@ def show(
     tyres : a path or :class:`tir.Tyre`, several of them, or a mapping from names to them; or the path of one ``tyre.toml``,
         which is built, and nothing but the page is written
     out : file to write; nothing is written if None
+    given : values [SI] of keys that a property file lacks, such as UNLOADED_RADIUS
     progress : called with a sentence before each step of a build
 
     Returns
@@ -45,7 +48,7 @@ def show(
         tyres = list(tyres)
     project = _project(tyres)
     if project is None:
-        return viewer.show(tyres, out)
+        return viewer.show(tyres, out, given=given)
     page = viewer.project_page(build(project, progress=progress))
     if out is not None:
         page.write(out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import tir
 from mffit.errors import InputError
@@ -18,19 +19,23 @@ Given = str | Path | Tyre
 """A property file, or a tyre."""
 
 
-def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyre]:
+def named(
+    given: Given | Mapping[str, Given] | Iterable[Given], lacking: Mapping[str, float] = MappingProxyType({})
+) -> dict[str, Tyre]:
     """Tyres by name: the given name, or the shortest end of the path that differs from all others.
+
+    ``lacking`` has values [SI] of keys that a file lacks.
 
     Raises InputError if no tyre is given, or if a value is not finite; TirError if a file cannot be read.
     """
     if isinstance(given, str | Path | Tyre):
         given = [given]
     if isinstance(given, Mapping):
-        found = {str(name): _tyre(one) for name, one in given.items()}
+        found = {str(name): _tyre(one, lacking) for name, one in given.items()}
     else:
         given = list(given)
         names = tell_apart([_path(one) for one in given])
-        found = {name: _tyre(one) for name, one in zip(names, given, strict=True)}
+        found = {name: _tyre(one, lacking) for name, one in zip(names, given, strict=True)}
     if not found:
         raise InputError("no tyre is given: name at least one .tir file")
     for name, tyre in found.items():
@@ -72,8 +77,8 @@ def _path(given: Given) -> Path:
     return Path(given)
 
 
-def _tyre(given: Given) -> Tyre:
-    return given if isinstance(given, Tyre) else tir.read(given)
+def _tyre(given: Given, lacking: Mapping[str, float]) -> Tyre:
+    return given if isinstance(given, Tyre) else tir.read(given, **lacking)
 
 
 def _refuse_what_cannot_be_drawn(name: str, tyre: Tyre) -> None:

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import mffit
 from mffit.errors import InputError
@@ -57,7 +58,12 @@ class Page:
         return f'<iframe {frame} srcdoc="{html.escape(self.html)}"></iframe>'
 
 
-def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path | None = None) -> Page:
+def show(
+    tyres: Given | Mapping[str, Given] | Iterable[Given],
+    out: str | Path | None = None,
+    *,
+    given: Mapping[str, float] = MappingProxyType({}),
+) -> Page:
     """A page with the curves of property files in common panels, and sliders for the operating condition.
 
     The page evaluates the tyres by itself, with code generated from the equations. It needs no network and no server.
@@ -66,6 +72,7 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
     ----------
     tyres : a path or :class:`tir.Tyre`, several of them, or a mapping from names to them
     out : file to write; nothing is written if None
+    given : values [SI] of keys that a file lacks, such as UNLOADED_RADIUS
 
     Returns
     -------
@@ -77,7 +84,7 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
     InputError, TirError
         On a file that cannot be read or drawn, or if ``out`` is another file.
     """
-    found = named(tyres)
+    found = named(tyres, given)
     names = sorted({name for on in (False, True) for name in trace(Switches(on), OUTPUTS).parameters})
     data = {
         "order": INPUTS,
