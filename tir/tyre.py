@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import FrozenInstanceError
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Never, Self
 
 from tir import calls
 from tir.codegen.program import Switches
 from tir.document import Document, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import counted
-from tir.parameters import TABLE
+from tir.parameters import BY_NAME, TABLE
 from tir.properties import described
 from tir.record import TyreRecord
 from tir.targets import FITTYPS
@@ -37,6 +39,24 @@ class Tyre(TyreRecord):
     other results of the model, ``tyre.plot()`` a figure. ``tyre.write("other.tir")`` writes a file. Axes and signs:
     :mod:`tir.conventions`.
     """
+
+    def __setattr__(self, name: str, value: Any) -> Never:
+        """Raise FrozenInstanceError with the way to a tyre of another value: a tyre does not change."""
+        raise FrozenInstanceError(_unchanged(name, value))
+
+    def __delattr__(self, name: str) -> Never:
+        raise FrozenInstanceError(_unchanged())
+
+    def __setitem__(self, name: str, value: Any) -> Never:
+        raise TypeError(_unchanged(name, value))
+
+    def __delitem__(self, name: str) -> Never:
+        raise TypeError(_unchanged())
+
+    def __getattr__(self, name: str) -> Never:
+        """Raise AttributeError; for a parameter, with the way to read it."""
+        way = f"; its parameter is tyre[{name!r}]" if name in BY_NAME else ""
+        raise AttributeError(f"a tyre has no attribute {name!r}{way}", name=name, obj=self)
 
     def __repr__(self) -> str:
         """The tyre in a few lines; ``tyre.values`` holds everything."""
@@ -198,6 +218,12 @@ class Tyre(TyreRecord):
     def write(self, path: str | Path, target: str | None = None) -> None:
         """Write :meth:`text`; an existing file is replaced only when the new one is complete."""
         write(self, path, target)
+
+
+def _unchanged(name: str = "", value: Any = None) -> str:
+    """Why a value of a tyre cannot be changed, and what to do."""
+    change = f"{name}={reprlib.repr(value)}" if name in BY_NAME else "..."
+    return f"a tyre does not change: take a copy with another value, other = tyre.replace({change})"
 
 
 def read(path: str | Path, **lacking: float | str) -> Tyre:

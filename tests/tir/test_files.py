@@ -608,3 +608,21 @@ def test_values_of_missing_keys_can_be_given_on_reading(tmp_path):
     assert any("the given 0.4 is not used" in problem.sentence for problem in other.problems)
     with pytest.raises(tir.TirError, match="no parameter RADIUS"):
         tir.read(path, RADIUS=0.3)
+
+
+def test_a_tyre_does_not_change_and_says_what_to_do_instead(tyre):
+    before = tyre(1400.0, 0.05)
+    with pytest.raises(AttributeError, match=r"tyre\.replace\(PKY1=-5\)"):
+        tyre.PKY1 = -5
+    with pytest.raises(TypeError, match=r"tyre\.replace\(PKY1=-5\)"):
+        tyre["PKY1"] = -5
+    with pytest.raises(AttributeError, match=r"tyre\.replace\(\.\.\.\)"):
+        tyre.values = {}
+    with pytest.raises(AttributeError, match="replace"):
+        del tyre.values
+    with pytest.raises(TypeError, match="replace"):
+        del tyre["PKY1"]
+    with pytest.raises(AttributeError, match=r"tyre\['PKY1'\]"):
+        tyre.PKY1  # noqa: B018
+    assert tyre(1400.0, 0.05) == before
+    assert tyre.replace(PKY1=-5.0)(1400.0, 0.05) != before
