@@ -35,6 +35,17 @@ DECIDED_BY = {
 """By number, the channel whose readings determine it; the numbers that engineers ask for first come first."""
 
 
+def slip_end(tyres: Sequence[Tyre]) -> float:
+    """End of the range of slip, common to some files, that lies farther from zero: negative if it is the braked one.
+
+    At most 0.3 to either side; the driven end if both are equally far.
+    """
+    braked = max(float(tyre["KPUMIN"]) for tyre in tyres)
+    driven = min(float(tyre["KPUMAX"]) for tyre in tyres)
+    ends = max(braked, -float(SLIP_BEYOND_THE_PEAK)), min(driven, float(SLIP_BEYOND_THE_PEAK))
+    return ends[0] if -ends[0] > ends[1] else ends[1]
+
+
 def characteristics(
     tyre: Tyre,
     load: float,
@@ -49,8 +60,8 @@ def characteristics(
     """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
 
     ``turn_slip``: whether the simulation computes spin; without it there is no turn-slip stiffness. The default of ``pressure``
-    is the file's, that of ``reach``, the largest sideslip of the search for peaks, its ALPMAX, that of ``slip_reach`` its
-    KPUMAX, at most 0.3. Without ``known``, or if a number depends on none of its coefficients, the number's uncertainty is 0.
+    is the file's, that of ``reach``, the largest sideslip of the search for peaks, its ALPMAX, that of ``slip_reach``
+    :func:`slip_end`. Without ``known``, or if a number depends on none of its coefficients, the number's uncertainty is 0.
     The covariance of ``predictor`` is used for the numbers of its channels, see :data:`DECIDED_BY`; it includes the exchange
     between coefficients and model error, which leaves the force unchanged.
     """
@@ -107,7 +118,7 @@ def with_slopes(
 
     by_slip = slopes("alpha")
     end = float(tyre["ALPMAX"]) if reach is None else reach
-    driven = min(float(tyre["KPUMAX"]), SLIP_BEYOND_THE_PEAK) if slip_reach is None else slip_reach
+    slip = slip_end([tyre]) if slip_reach is None else slip_reach
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
     found = {
         "epsilon_gamma": values["PECP1"] * (1.0 + values["PECP2"] * dfz),
@@ -115,7 +126,7 @@ def with_slopes(
         "C_gamma_N_per_rad": slopes("gamma")["Fy"],
         "C_Mz_alpha_Nm_per_rad": by_slip["Mz"],
         "K_xk_N": slopes("kappa")["Fx"],
-        "mu_x": peak("kappa", "Fx", driven) / load,
+        "mu_x": peak("kappa", "Fx", slip) / load,
         "mu_y": peak("alpha", "Fy", end) / load,
         "Mz_peak_Nm": peak("alpha", "Mz", end),
         "trail_m": -by_slip["Mz"] / by_slip["Fy"] if plain(by_slip["Fy"]) else math.nan,

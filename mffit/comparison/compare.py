@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mffit.comparison import constants, wording
-from mffit.comparison.characteristics import characteristics, with_slopes
+from mffit.comparison.characteristics import characteristics, slip_end, with_slopes
 from mffit.comparison.record import (
     ComparedSubject,
     Comparison,
@@ -20,7 +20,7 @@ from mffit.comparison.record import (
     SweepGap,
     ranked,
 )
-from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
+from mffit.constants import STEPS_OF_LINE
 from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, levels, make_points
@@ -30,8 +30,8 @@ from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
-CURVES = (("alpha", "ALPMAX", (*SIDEWAYS,)), ("gamma", "CAMMAX", (*SIDEWAYS,)), ("kappa", "KPUMAX", ("Fx",)))
-"""The varied quantity, the file's key of its range, and the channels whose curves are compared."""
+CURVES = (("alpha", "ALPMAX", (*SIDEWAYS,)), ("gamma", "CAMMAX", (*SIDEWAYS,)), ("kappa", "kappa", ("Fx",)))
+"""The varied quantity, the key of its range, and the channels whose curves are compared."""
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
@@ -45,8 +45,8 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     nominal = float(first.tyre["FNOMIN"])
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
-    reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX", "KPUMAX")}
-    reach["KPUMAX"] = min(reach["KPUMAX"], SLIP_BEYOND_THE_PEAK)
+    reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX")}
+    reach["kappa"] = slip_end(tyres)
     shared = _shared(first, second)
     numbers = [row for load in loads for row in _numbers(first, second, load, reach, shared)]
     curves = [gap for load in loads for gap in _curves(first, second, load, reach)]
@@ -80,7 +80,7 @@ def _numbers(
     """Differences of the numbers of both files at a load [N]; ``reach`` limits the search for peaks."""
     found, moved = [], []
     for k, side in enumerate((first, second)):
-        at: Any = {"pressure": None, "reach": reach["ALPMAX"], "slip_reach": reach["KPUMAX"]}
+        at: Any = {"pressure": None, "reach": reach["ALPMAX"], "slip_reach": reach["kappa"]}
         predictor = None if side.foretold is None else side.foretold[0]
         found.append(
             characteristics(
@@ -122,7 +122,7 @@ def _curves(
 ) -> Iterator[CurveGap]:
     """The differences of the curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
     for over, end, channels in CURVES:
-        x = np.linspace(-reach[end], reach[end], STEPS_OF_LINE)
+        x = np.linspace(-abs(reach[end]), abs(reach[end]), STEPS_OF_LINE)
         alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
         (a, half_a), (b, half_b) = (
             _curve(side, (load, alpha, gamma, kappa), channels) for side in (first, second)

@@ -53,14 +53,15 @@ COMPARED_APART = Real(
 SHORTEST_STRETCH = Real(2.0, "s", "Shortest stretch after its transient.")
 FEWEST_POINTS = Count(8, "-", "Fewest samples or points that show a level, a line or a noise.")
 TRANSIENT_ROLL = Real(2.0, "m", "Distance dropped after a change: three to ten relaxation lengths.")
-SMALLEST_SWEEP = Real(3.0, "deg", "Smallest range of a sweeping angle.")
 SMALLEST_SWEEP_OF_SLIP = Real(
     0.05,
     "-",
     "Smallest range of a sweep of longitudinal slip; every tyre has a longitudinal force beyond it.",
 )
-RETURNED_SHARE = Real(
-    0.3, "-", "Share of its range that a sweep among plateaus returns; a move does not return."
+SWEPT_SHARE = Real(
+    0.5,
+    "-",
+    "Share of its setting's range that a movement among plateaus covers to be a sweep; a move to the next plateau covers less.",
 )
 GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")

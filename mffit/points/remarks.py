@@ -7,9 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mffit.constants import NAMED_IN_SENTENCE
-from mffit.points.choice import settings_of
 from mffit.points.faulty import Fault
-from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
@@ -51,7 +49,7 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int) -> StretchNote
         file=sweep.file,
         sweep=label,
         kind=stretch.kind,
-        swept=swept(sweep, stretch) if stretch.kind == SWEEP else "",
+        swept=COLUMN_OF.get(stretch.swept, ""),
         begin_s=float(sweep.time[stretch.begin]),
         end_s=float(sweep.time[last]),
         first_line=int(sweep.line[stretch.begin]),
@@ -67,10 +65,3 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int) -> StretchNote
         points=points,
         dropped=stretch.dropped,
     )
-
-
-def swept(sweep: Sweep, stretch: Stretch) -> str:
-    """Column of the setting that moves most along a sweep, relative to the smallest range of a sweep."""
-    part, settings = slice(stretch.begin, stretch.end), settings_of(sweep)
-    ranges = {name: float(np.ptp(getattr(settings, name)[part])) / least for name, least in RANGE.items()}
-    return COLUMN_OF[max(ranges, key=lambda name: ranges[name])]

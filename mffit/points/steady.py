@@ -26,12 +26,8 @@ STEP = {
     "kappa": float(constants.SLIP),
 }
 """Settings that a rig sweeps, in the order of the search, and the smallest change to another set-point."""
-RANGE = {
-    "alpha": constants.SMALLEST_SWEEP.rad,
-    "gamma": constants.SMALLEST_SWEEP.rad,
-    "kappa": float(constants.SMALLEST_SWEEP_OF_SLIP),
-}
-"""Smallest range of a sweep, by setting."""
+OTHERS = {"alpha": ("gamma", "kappa"), "gamma": ("kappa",), "kappa": ("alpha", "gamma")}
+"""The settings that must rest in a sweep of a setting. Sideslip may follow camber, as on rigs that steer about another axis."""
 Scale = Mapping[str, float]
 """Usual size of each setting in a recording."""
 
@@ -111,46 +107,47 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     """The stretches of a part at constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
     resting = ~np.any(list(moving.values()), axis=0)
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
-    still = [rest for rest in rests if not _creeps(settings, rest)]
-    held = [settings.time[s.end - 1] - settings.time[s.begin] for s in still]
+    held = [settings.time[s.end - 1] - settings.time[s.begin] for s in rests]
     staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # the rig rests most of the time
-    shortest = 0.0 if staircase else constants.SHORTEST_STRETCH
-    found = [s for s, seconds in zip(still, held, strict=True) if seconds >= shortest]
+    # Between plateaus a movement is a sweep only if it covers most of its setting's range; else it leads to the next plateau.
+    span = {
+        name: constants.SWEPT_SHARE * np.ptp(getattr(settings, name)) if staircase else 0.0 for name in STEP
+    }
+    shortest = 0.0 if staircase else _shortest_plateau(settings)
+    found = [s for s, seconds in zip(rests, held, strict=True) if seconds >= shortest]
     covered = np.zeros(len(settings.time), dtype=bool)
     for rest in found:
         covered[rest.begin : rest.end] = True
     for begin, end in runs(~covered):
-        found += _swept(settings, moving, begin, end, staircase)
+        found += _swept(settings, moving, begin, end, span)
     return found
 
 
+def _shortest_plateau(settings: SteadySettings) -> float:
+    """Time [s] of a rest between movements, transient included, below which it is part of the sweep around it."""
+    speed = float(np.median(settings.V))
+    return constants.SHORTEST_STRETCH + (constants.TRANSIENT_ROLL / speed if speed > 0.0 else 0.0)
+
+
 def _swept(
-    settings: SteadySettings, moving: Mapping[str, np.ndarray], begin: int, end: int, staircase: bool
+    settings: SteadySettings,
+    moving: Mapping[str, np.ndarray],
+    begin: int,
+    end: int,
+    span: Mapping[str, float],
 ) -> list[Stretch]:
-    """Sweeps of one setting in a moving part; the remaining samples are moves between plateaus."""
-
-    def sweeps(name: str, pieces: list[tuple[int, int]]) -> list[Stretch]:
-        values = getattr(settings, name)
-        return [
-            Stretch(b, e, "", SWEEP)
-            for b, e in pieces
-            if settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
-            and np.ptp(values[b:e]) >= RANGE[name]
-            and (not staircase or _returns(values[b:e]))
-        ]
-
-    def resting(*names: str) -> list[tuple[int, int]]:
-        at_rest = ~np.any([moving[name][begin:end] for name in names], axis=0)
-        for s in found:
-            at_rest[s.begin - begin : s.end - begin] = False
-        return [(begin + b, begin + e) for b, e in runs(at_rest)]
-
+    """Sweeps of one setting over at least its ``span`` in a moving part; the remaining samples are moves between plateaus."""
     found: list[Stretch] = []
-    found += sweeps("alpha", resting("gamma", "kappa"))
-    if not found and np.ptp(settings.alpha[begin:end]) < RANGE["alpha"]:
-        found += sweeps("gamma", resting("kappa"))
-    if np.any(moving["kappa"][begin:end]):
-        found += sweeps("kappa", resting("alpha", "gamma"))
+    for name, others in OTHERS.items():
+        rests = ~np.any([moving[other][begin:end] for other in others], axis=0)
+        for s in found:
+            rests[s.begin - begin : s.end - begin] = False
+        for b, e in ((begin + b, begin + e) for b, e in runs(rests)):
+            ranges = {each: np.ptp(getattr(settings, each)[b:e]) for each in STEP}
+            follows = name == "gamma" and ranges["alpha"] > constants.SWEPT_SHARE * ranges["gamma"]
+            lasts = settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
+            if np.any(moving[name][b:e]) and ranges[name] >= span[name] and lasts and not follows:
+                found += [Stretch(i, j, "", SWEEP, name) for i, j in _without_jumps(settings, name, b, e)]
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
         taken[s.begin - begin : s.end - begin] = True
@@ -158,10 +155,20 @@ def _swept(
     return found
 
 
-def _returns(x: np.ndarray) -> bool:
-    """Whether a setting returns over a large share of its range."""
-    far = max(x.max() - max(x[0], x[-1]), min(x[0], x[-1]) - x.min())
-    return bool(far > constants.RETURNED_SHARE * np.ptp(x))
+def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) -> list[tuple[int, int]]:
+    """The parts of a sweep between jumps of its setting, as a sawtooth has, in which the force does not follow.
+
+    In a jump the setting would cross its range in less than a second, and moves much faster than usual in this sweep.
+    """
+    values = getattr(settings, name)[begin:end]
+    lag = _samples(settings, constants.AVERAGED_TIME)
+    smooth = uniform_filter1d(values, lag, mode="nearest")
+    most = constants.SWEPT_SHARE * np.ptp(smooth)
+    crossed = most * constants.AVERAGED_TIME / constants.COMPARED_APART
+    usual = constants.GAP_OVER_STEP * float(np.median(np.abs(smooth[lag:] - smooth[:-lag])))
+    noise = beyond(FALSE_ALARM / len(values)) * _noise(values) * np.sqrt(2.0 / lag)
+    jumps = _changes(smooth, max(crossed, usual, noise), lag)
+    return [(begin + b, begin + e) for b, e in runs(~jumps) if np.ptp(smooth[b:e]) >= most]
 
 
 def scale_of(series: Sequence[SteadySettings]) -> Scale:
@@ -173,7 +180,7 @@ def scale_of(series: Sequence[SteadySettings]) -> Scale:
 
 
 def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
-    """By setting, mask (n,) of the samples at which it changes.
+    """By setting, mask (n,) of the samples at which it changes: a swept setting at any rate, a condition within a short time.
 
     ``scale`` is the usual size of each setting in the whole recording; if None, that of this series.
     """
@@ -184,23 +191,45 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
-        mask = np.zeros(n, dtype=bool)
-        if np.ptp(values) > 0.0:
-            if name in STEP:
-                step: float | np.ndarray = STEP[name]
-            else:
-                usual = max(scale[name], float(np.median(np.abs(values))))
-                step = usual * _step_of_condition(masks["kappa"][lag:])
-            smooth = uniform_filter1d(values, lag, mode="nearest")
-            noise = _noise(values) * np.sqrt(2.0 / lag)  # standard deviation of the difference of two means
-            change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(step, clear * noise)
-            # Mark all samples between the two that differ, because a small change appears in few pairs only.
-            begun = np.zeros(n + 1, dtype=int)
-            begun[: n - lag] += change
-            begun[lag + 1 :] -= change
-            mask = np.cumsum(begun)[:n] > 0
-        masks[name] = mask
+        if not np.ptp(values) > 0.0:
+            masks[name] = np.zeros(n, dtype=bool)
+            continue
+        smooth = uniform_filter1d(values, lag, mode="nearest")
+        noise = clear * _noise(values) * np.sqrt(2.0 / lag)  # of the difference of two means
+        if name in STEP:
+            masks[name] = _wanders(smooth, max(STEP[name], noise), lag)
+        else:
+            usual = max(scale[name], float(np.median(np.abs(values))))
+            step = usual * _step_of_condition(masks["kappa"][lag:])
+            masks[name] = _changes(smooth, np.maximum(step, noise), lag)
     return masks
+
+
+def _changes(values: np.ndarray, step: float | np.ndarray, lag: int) -> np.ndarray:
+    """Mask (n,) of the samples between any two values that are ``lag`` samples apart and differ by more than ``step``.
+
+    All samples between the two are marked, because a small change appears in few pairs only.
+    """
+    n = len(values)
+    change = np.abs(values[lag:] - values[:-lag]) > step
+    begun = np.zeros(n + 1, dtype=int)
+    begun[: n - lag] += change
+    begun[lag + 1 :] -= change
+    return np.asarray(np.cumsum(begun)[:n] > 0)
+
+
+def _wanders(values: np.ndarray, step: float, lag: int) -> np.ndarray:
+    """As :func:`_changes`, for changes at any rate: pairs further and further apart within what rested so far.
+
+    The distance doubles, so that the samples marked before a slow movement and behind it take less time than one ``step`` of it.
+    """
+    n = len(values)
+    moving = _changes(values, step, lag)
+    while (lag := 2 * lag) < n:
+        for begin, end in runs(~moving):
+            if end - begin > lag:
+                moving[begin:end] = _changes(values[begin:end], step, lag)
+    return moving
 
 
 def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
@@ -215,13 +244,3 @@ def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
 def _noise(values: np.ndarray) -> float:
     """Standard deviation of a setting's noise, from the median step between samples."""
     return robust(np.diff(values)) / math.sqrt(2.0) if len(values) > 1 else 0.0
-
-
-def _creeps(settings: SteadySettings, stretch: Stretch) -> bool:
-    """Whether an angle or the slip moves through the stretch too slowly for :func:`moves` to detect it."""
-    quarter = max((stretch.end - stretch.begin) // 4, 1)
-    for name, step in STEP.items():
-        part = getattr(settings, name)[stretch.begin : stretch.end]
-        if abs(float(np.mean(part[-quarter:]) - np.mean(part[:quarter]))) > step:
-            return True
-    return False

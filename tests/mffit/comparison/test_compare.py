@@ -60,6 +60,13 @@ def test_numbers_are_those_of_the_equations():
     assert "C_phit_Nm" not in values_of(tyre, 1400.0, turn_slip=False)
 
 
+def test_the_peak_of_a_file_of_braking_is_that_of_braking():
+    """A file that was tested braked only: at the driven end of its range, zero, there is no force."""
+    tyre = truth().replace(KPUMIN=-0.2, KPUMAX=0.0)
+    peak = max(abs(float(tyre(1400.0, kappa=-x).Fx)) for x in np.linspace(0.0, 0.2, 401))
+    assert values_of(tyre, 1400.0, turn_slip=False)["mu_x"] == pytest.approx(peak / 1400.0, rel=1e-3)
+
+
 def test_numbers_hold_at_the_pressure_asked_for():
     tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PPY1=0.5, PPY2=0.9)
     nominal = values_of(tyre, 1400.0, turn_slip=False)

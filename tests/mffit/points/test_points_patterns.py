@@ -1,0 +1,152 @@
+"""Whatever moves by more than it scatters is a sweep, at any rate and in any pattern; what rests is a plateau."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mffit import config as configuration
+from mffit import points
+from mffit.points.steady import SteadySettings, moves, stretches
+from mffit.points.stretch import PLATEAU, SWEEP
+
+LOAD = 900.0
+B, C, D = 9.0, 1.4, 1.6
+
+
+def sine(slip, stiffness: float = B, peak: float = D):
+    """A force over the load, rising with a slip [-] or falling with an angle [rad]."""
+    return peak * np.sin(C * np.arctan(stiffness * slip))
+
+
+def at_rate(corners, rate: float) -> np.ndarray:
+    """Values over time, from corners ``(time [s], value)``."""
+    when, what = np.transpose(corners)
+    return np.interp(np.arange(round(when[-1] * rate)) / rate, when, what)
+
+
+def recording(rate: float, alpha_deg=0.0, kappa=0.0, *, scatter: float = 0.01, seed: int = 4) -> pd.DataFrame:
+    """A tyre on a straight path that follows its angles at once; each channel with the noise of its sensor."""
+    alpha_deg, kappa = np.broadcast_arrays(alpha_deg, kappa)
+    random, n = np.random.default_rng(seed), len(alpha_deg)
+    noise = random.standard_normal((6, n))
+    return pd.DataFrame(
+        {
+            "time_s": np.arange(n) / rate,
+            "alpha_deg": alpha_deg + scatter * noise[0],
+            "gamma_deg": 0.005 * noise[1],
+            "Fz_N": LOAD + 4.0 * noise[2],
+            "kappa": kappa + 5e-4 * noise[3],
+            "Fx_N": LOAD * sine(kappa) + 4.0 * noise[4],
+            "Fy_N": -LOAD * sine(np.radians(alpha_deg)) + 4.0 * noise[5],
+            "p_kPa": 120.0,
+            "V_mps": 10.0,
+        }
+    )
+
+
+@pytest.fixture
+def read(tmp_path):
+    def reading(*tables: pd.DataFrame) -> points.loading.Reading:
+        names = [f"{k}.csv" for k in range(len(tables))]
+        for name, table in zip(names, tables, strict=True):
+            table.to_csv(tmp_path / name, index=False)
+        tyre = {"name": "x", "unloaded_radius": 0.25, "nominal_load": LOAD, "nominal_pressure": 120.0}
+        content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": name} for name in names]}
+        return points.read(configuration.load(content, folder=tmp_path))
+
+    return reading
+
+
+def of_kind(found, kind: str) -> list:
+    return [note for note in found.stretches if note.kind == kind and not note.dropped]
+
+
+def triangle(seconds: float, rate: float, top: float) -> np.ndarray:
+    return at_rate([(0.0, 0.0), (0.5 * seconds, top), (seconds, 0.0)], rate)
+
+
+def sawtooth(seconds: float, rate: float, top: float) -> np.ndarray:
+    """Up slowly and back at once, four times."""
+    teeth = [((k + x) * seconds / 4.0, y) for k in range(4) for x, y in ((0.0, 0.0), (0.98, top))]
+    return at_rate([*teeth, (seconds, 0.0)], rate)
+
+
+def wave(seconds: float, rate: float, top: float) -> np.ndarray:
+    """Slow about its turning points."""
+    return top * np.sin(2.0 * np.pi * np.arange(round(seconds * rate)) / rate / seconds)
+
+
+@pytest.mark.parametrize("pattern", [triangle, sawtooth, wave])
+@pytest.mark.parametrize(("seconds", "rate"), [(6.0, 50.0), (60.0, 20.0), (1500.0, 1.0)])
+@pytest.mark.parametrize(("setting", "top"), [("alpha_deg", 5.0), ("kappa", -0.09)])
+def test_a_setting_that_moves_is_a_sweep_at_any_rate(read, pattern, seconds, rate, setting, top):
+    """From 1.7 deg/s down to 0.007 deg/s at one sample a second."""
+    found = read(recording(rate, **{setting: pattern(seconds, rate, top)}))
+    sweeps = of_kind(found, SWEEP)
+    assert {note.swept for note in sweeps} == {setting}
+    if pattern is not wave:  # which rests at its turning points if it is slow
+        assert not of_kind(found, PLATEAU)
+    values = found.points.table[setting]
+    assert np.ptp(values) > 0.85 * (2.0 if pattern is wave else 1.0) * abs(top)
+    assert sum(note.end_s - note.begin_s for note in sweeps) > 0.7 * seconds
+    force, truth = (
+        (found.points.Fy, -LOAD * sine(found.points.alpha))
+        if setting == "alpha_deg"
+        else (found.points.Fx, LOAD * sine(found.points.kappa))
+    )
+    assert np.sqrt(np.mean((force - truth) ** 2)) < 8.0
+
+
+@pytest.mark.parametrize("scatter", [0.01, 0.3, 2.0])
+def test_noise_of_a_held_setting_is_no_sweep(read, scatter):
+    """The plateau of a rig whose sensor is noisy, a minute long."""
+    found = read(recording(50.0, alpha_deg=np.full(3000, 3.0), scatter=scatter))
+    (plateau,) = of_kind(found, PLATEAU)
+    assert plateau.end_s - plateau.begin_s > 59.0
+    assert not of_kind(found, SWEEP)
+
+
+def test_a_slow_ramp_between_long_rests_leaves_both_plateaus(read):
+    """0.1 deg/s over 6 deg: what is marked before and behind takes less time than a step of 0.15 deg."""
+    alpha = at_rate([(0.0, 0.0), (40.0, 0.0), (100.0, 6.0), (140.0, 6.0)], 20.0)
+    found = read(recording(20.0, alpha_deg=alpha))
+    before, after = of_kind(found, PLATEAU)
+    (sweep,) = of_kind(found, SWEEP)
+    assert 37.0 < before.end_s <= 41.5
+    assert 98.5 <= after.begin_s < 103.0
+    assert sweep.alpha_from_deg < 0.3
+    assert sweep.alpha_to_deg > 5.7
+
+
+@pytest.mark.parametrize("stop", [1.0, 2.0, 3.0])
+def test_a_ramp_with_stops_keeps_all_its_readings(read, stop):
+    """A stop every 2 deg, at 0.5 deg/s: stops are plateaus if they last, and part of the sweep if they do not."""
+    corners, time = [(0.0, -8.0)], 0.0
+    for angle in np.arange(-8.0, 8.0, 2.0):
+        corners += [(time + stop, angle), (time + stop + 4.0, angle + 2.0)]
+        time += stop + 4.0
+    found = read(recording(50.0, alpha_deg=at_rate(corners, 50.0)))
+    kept = of_kind(found, SWEEP) + of_kind(found, PLATEAU)
+    assert sum(note.end_s - note.begin_s for note in kept) > 0.85 * time
+    assert not [
+        note for note in found.stretches if "samples after" in note.dropped or "steady" in note.dropped
+    ]
+
+
+def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
+    """Steps of 2 deg from -8 to 8 deg, and all the way back in 8 s."""
+    angles = np.arange(-8.0, 9.0, 2.0)
+    corners = [(10.0 * k + x, a) for k, a in enumerate(angles) for x in (0.0, 7.5)]
+    corners += [(corners[-1][0] + 8.0, -8.0), (corners[-1][0] + 18.0, -8.0)]
+    alpha = np.radians(at_rate(corners, 50.0))
+    one = np.ones(len(alpha))
+    settings = SteadySettings(
+        np.arange(len(alpha)) / 50.0, alpha, 0 * one, LOAD * one, 1e5 * one, 9.0 * one, 0 * one
+    )
+    found = stretches(settings)
+    (sweep,) = (s for s in found if s.kind == SWEEP)
+    assert sweep.end - sweep.begin == pytest.approx(8.0 * 50.0, abs=60)
+    assert len([s for s in found if s.kind == PLATEAU]) == len(angles) + 1
+    assert not np.any(moves(settings)["gamma"])
