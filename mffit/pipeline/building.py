@@ -82,6 +82,8 @@ def build(
         trust, left = judged(
             config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
         )
+        judgement = said(trust)  # the doubts of the reading are among its warnings
+        trust = replace(trust, doubts=(*reading.doubts, *trust.doubts))
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
@@ -103,6 +105,14 @@ def build(
     if fitted.temperature is not None:
         tyres[TEMPERATURE] = annotated(fitted.temperature.file.tyre, TEMPERATURE)
         names = {**names, TEMPERATURE: special}
+    warnings = (
+        *judgement,
+        *base_warnings(config, base),
+        *reading.warnings,
+        *measured.warnings,
+        *fitted.warnings,
+        *lab_warnings(config.lab, made_of.date.date()),
+    )
     result = BuildResult(
         config=config,
         points=reading.points,
@@ -113,14 +123,7 @@ def build(
         tyres=tyres,
         members=members,
         plain=fitting.plain_use(config),
-        warnings=(
-            *said(trust),
-            *base_warnings(config, base),
-            *reading.warnings,
-            *measured.warnings,
-            *fitted.warnings,
-            *lab_warnings(config.lab, made_of.date.date()),
-        ),
+        warnings=warnings,
         seconds=time.perf_counter() - began,
         trust=trust,
         remains=left,

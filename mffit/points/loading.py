@@ -20,6 +20,7 @@ from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
 from mffit.points.left_out import LeftOut, by_hand
+from mffit.points.lost import lost_sweeps
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.slip_zero import SlipZero, against_free_rolling, readings_of
@@ -45,6 +46,7 @@ class Reading(NamedTuple):
     notes: tuple[str, ...] = ()  #: remarks that need no action
     taken_off: tuple[str, ...] = ()  #: sentences about undeclared rig errors that were subtracted
     as_read: Points | None = None  #: the points before this subtraction; None without any
+    doubts: tuple[str, ...] = ()  #: warnings for which a result of these points is in doubt
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -72,7 +74,10 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     scale = scale_of(series) if series else None
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
+    stretches = tuple(note for part in reduced for note in part.stretches)
+    doubts = lost_sweeps((part.ranges for part in reduced), points, stretches)
     warnings = [
+        *doubts,
         *found.warnings,
         *(sentence for _, sentences in timed for sentence in sentences),
         *of_slip.warnings,
@@ -82,7 +87,6 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if straight and not continuous:
         points = points.replace(continuous=False)
     steady = points if continuous and straight else points.select(~points.continuous)
-    stretches = tuple(note for part in reduced for note in part.stretches)
     left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
     if not len(steady):
         if may_be_empty:
@@ -109,6 +113,7 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         of_slip.notes,
         tuple(dict.fromkeys(said for _, said in of_slip.taken_off.values())),
         _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
+        doubts,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from mffit.points import averaging, remarks
 from mffit.points.choice import chosen
 from mffit.points.faulty import DRIVEN, DRIVEN_RULE, Fault, driven, faults
 from mffit.points.left_out import LeftOut, by_rule, of_recording
+from mffit.points.lost import Ranges, ranges_of
 from mffit.points.points import Points
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
@@ -24,6 +26,7 @@ class Reduced(NamedTuple):
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
     left_out: tuple[LeftOut, ...] = ()  #: readings left out by rules
+    ranges: Ranges = MappingProxyType({})  #: of the swept settings of a recording, without faulty samples
 
 
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
@@ -56,6 +59,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
         warnings=(*remarks.faulty(sweep, wrong), *remarks.dropped(sweep, tried)),
         stretches=notes,
         left_out=of_recording(sweep, wrong, tried, found.used),
+        ranges=ranges_of(sweep, faulty),
     )
 
 

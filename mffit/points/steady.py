@@ -97,10 +97,12 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
     return sorted(found)
 
 
-def _samples(settings: SteadySettings, seconds: float) -> int:
-    """Number of samples in a time [s], at least one."""
-    n = len(settings.time)
-    return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
+def samples_in(time: np.ndarray, seconds: float) -> int:
+    """Number of samples of a series (n,) in a time [s], at least one."""
+    n = len(time)
+    if n < 2:
+        return 1
+    return int(np.clip(round(seconds / max(np.median(np.diff(time)), 1e-9)), 1, n - 1))
 
 
 def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) -> list[Stretch]:
@@ -161,7 +163,7 @@ def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) ->
     In a jump the setting would cross its range in less than a second, and moves much faster than usual in this sweep.
     """
     values = getattr(settings, name)[begin:end]
-    lag = _samples(settings, constants.AVERAGED_TIME)
+    lag = samples_in(settings.time, constants.AVERAGED_TIME)
     smooth = uniform_filter1d(values, lag, mode="nearest")
     most = constants.SWEPT_SHARE * np.ptp(smooth)
     crossed = most * constants.AVERAGED_TIME / constants.COMPARED_APART
@@ -186,7 +188,7 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     """
     n = len(settings.time)
     scale = scale or scale_of([settings])
-    lag = _samples(settings, constants.COMPARED_APART)
+    lag = samples_in(settings.time, constants.COMPARED_APART)
     clear = beyond(FALSE_ALARM / n)  # corrected for n comparisons
     masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):

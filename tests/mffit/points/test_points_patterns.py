@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from mffit import build, points
 from mffit import config as configuration
-from mffit import points
 from mffit.points.steady import SteadySettings, moves, stretches
 from mffit.points.stretch import PLATEAU, SWEEP
+from mffit.report import verdict
 
 LOAD = 900.0
 B, C, D = 9.0, 1.4, 1.6
@@ -150,3 +151,33 @@ def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
     assert sweep.end - sweep.begin == pytest.approx(8.0 * 50.0, abs=60)
     assert len([s for s in found if s.kind == PLATEAU]) == len(angles) + 1
     assert not np.any(moves(settings)["gamma"])
+
+
+def braked_with_the_load(fall: float) -> pd.DataFrame:
+    """Eight brakings between rests, each of which takes off a share of the load at once."""
+    corners = [
+        (6.0 * k + x, s) for k in range(8) for x, s in ((0.0, 0.0), (3.0, 0.0), (4.4, -0.1), (5.9, 0.0))
+    ]
+    kappa = at_rate(corners, 50.0)
+    table = recording(50.0, kappa=kappa)
+    table["Fz_N"] *= 1.0 - fall * (kappa < -0.015)
+    return table
+
+
+def test_a_setting_whose_sweeps_are_all_lost_is_in_doubt(read):
+    """The load jumps by two thirds whenever the wheel is braked, so that no sweep of slip is held."""
+    (doubt,) = read(braked_with_the_load(0.67)).doubts
+    assert doubt.startswith("kappa moves from -0.09")
+    assert "load, pressure or speed changes" in doubt
+    assert not read(braked_with_the_load(0.2)).doubts
+
+
+def test_a_build_without_the_sweeps_of_its_recording_is_not_sound(tmp_path):
+    up = at_rate([(0.0, -8.0), (8.0, 8.0), (16.0, -8.0)], 20.0)
+    recording(20.0, alpha_deg=up).to_csv(tmp_path / "a.csv", index=False)
+    braked_with_the_load(0.67).to_csv(tmp_path / "b.csv", index=False)
+    tyre = {"name": "x", "unloaded_radius": 0.25, "nominal_load": LOAD, "nominal_pressure": 120.0}
+    content = {"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "a.csv"}, {"file": "b.csv"}]}
+    result = build(configuration.load(content, folder=tmp_path))
+    assert result.trust.doubts[0] == next(w for w in result.warnings if w.startswith("kappa moves"))
+    assert verdict.judged(result) != "sound"
