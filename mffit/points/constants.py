@@ -30,9 +30,7 @@ CORE = Series(
 )
 
 # Samples that are no measurement
-UNLOADED = Real(
-    0.1, "-", "Share of the usual load, or speed, below which the tyre is off the belt, or stands."
-)
+UNLOADED = Real(0.1, "-", "Share of the usual load below which the tyre is off the belt.")
 SPIKE = Real(0.15, "-", "Smallest spike of a force over the usual load.")
 HARMLESS_DRIFT = Real(0.02, "-", "Drift of a force within a stretch, over the load, that is averaged.")
 ARM = Real(

@@ -57,20 +57,22 @@ def by_hand(excluded: Sequence[ExcludedRows]) -> tuple[LeftOut, ...]:
     )
 
 
+def at_standstill(standing: Sequence[tuple[str, np.ndarray]]) -> tuple[LeftOut, ...]:
+    """The entries of samples at standstill: files with lines (m,)."""
+    return tuple(
+        one for file, lines in standing for one in _of_lines(file, lines, "standstill", "the wheel stands")
+    )
+
+
 def by_rule(sweep: Sweep, which: np.ndarray, rule: str, why: str) -> tuple[LeftOut, ...]:
     """The readings of a mask (n,) as one entry; no entry if the mask is empty."""
-    if not np.any(which):
+    return _of_lines(sweep.file, sweep.line[which], rule, why)
+
+
+def _of_lines(file: str, lines: np.ndarray, rule: str, why: str) -> tuple[LeftOut, ...]:
+    if not len(lines):
         return ()
-    return (
-        LeftOut(
-            file=sweep.file,
-            lines=line_text(sweep.line[which]),
-            count=int(np.sum(which)),
-            by="rule",
-            rule=rule,
-            why=why,
-        ),
-    )
+    return (LeftOut(file=file, lines=line_text(lines), count=len(lines), by="rule", rule=rule, why=why),)
 
 
 def of_recording(

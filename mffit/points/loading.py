@@ -19,7 +19,7 @@ from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
-from mffit.points.left_out import LeftOut, by_hand
+from mffit.points.left_out import LeftOut, at_standstill, by_hand
 from mffit.points.lost import lost_sweeps
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
@@ -87,7 +87,11 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     if straight and not continuous:
         points = points.replace(continuous=False)
     steady = points if continuous and straight else points.select(~points.continuous)
-    left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
+    left_out = (
+        *by_hand(found.excluded),
+        *at_standstill(found.standing),
+        *(one for part in reduced for one in part.left_out),
+    )
     if not len(steady):
         if may_be_empty:
             return Reading(steady, (*warnings, _nothing(reduced)), stretches, left_out, notes=of_slip.notes)

@@ -16,8 +16,9 @@ import numpy as np
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import constants
-from mffit.scatter import ALARM, finite_median, robust
+from mffit.scatter import ALARM, robust
 from mffit.sweeps import Sweep
+from mffit.sweeps.standstill import standing
 from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
@@ -336,9 +337,7 @@ def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
     if "kappa" in sweep.table or "V_mps" not in sweep.table:
         return None
     along = sweep.V * np.cos(sweep.alpha)
-    turning = np.isfinite(sweep.omega) & (
-        along > constants.UNLOADED * finite_median(along)
-    )  # not at standstill
+    turning = np.isfinite(sweep.omega) & (along > 0.0) & ~standing(along)
     if not np.any(turning):
         return None
     slip = np.full(len(sweep), np.nan)

@@ -19,6 +19,7 @@ from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import UnknownUnitError, converted
 
 CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
@@ -55,13 +56,17 @@ class Guesses(NamedTuple):
 
 
 def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
-    """The guessed channels of a file, and remarks; the unloaded radius [m], if known, checks the speed of rotation."""
+    """The guessed channels of a file, and remarks; the unloaded radius [m], if known, checks the speed of rotation.
+
+    Samples of a recording at standstill are not looked at.
+    """
+    raw, of_rest = _rolling(raw)
     columns = _number_columns(raw)
     slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
-    remarks = [*of_axes, *left_out.values(), *of_units]
+    remarks = [*of_rest, *of_axes, *left_out.values(), *of_units]
     columns = {name: column for name, column in columns.items() if name not in left_out}
     found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if why := _of_finished_points(columns, found):
@@ -76,6 +81,20 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
+
+
+def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
+    """The rows of a recording at which the wheel rolls, and a remark about the others."""
+    speeds = candidates(raw, BY_NAME["V_mps"])
+    if not speeds or not candidates(raw, BY_NAME["time_s"]):
+        return raw, []
+    rests = standing(speeds[0].values)
+    count = int(np.sum(rests))
+    return (
+        (raw.of_rows(~rests), [f"{count} of {len(raw)} rows are at standstill and left out"])
+        if count
+        else (raw, [])
+    )
 
 
 def corrected(guessed: Guesses, raw: RawTable, choices: Collection[ColumnChoice]) -> Guesses:

@@ -23,6 +23,7 @@ from mffit.sweeps.raw_table import (
     is_summary,
     with_decimal_point,
 )
+from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import UnknownUnitError, converted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
@@ -42,6 +43,8 @@ class Columns:
     direction: np.ndarray | None  #: +1 or -1 (n,), None without such a column
     warnings: tuple[str, ...]
     headings: Mapping[str, str] = field(default_factory=dict)  #: headings of the file, by contract column
+    standing: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
+    """Lines of samples at standstill, which are left out before anything is judged."""
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
@@ -84,13 +87,15 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
 
     Keys that are ``shared`` come from ``[columns]``, which applies to all files; if a file lacks the heading, such a key is
     ignored unless the column is required. A recording (``time_s``) may have gaps: cells without a number, and rare samples
-    outside the plausible range, which become NaN. In a table of points each of them is an error.
+    outside the plausible range, which become NaN. In a table of points each of them is an error. Samples of a recording at
+    standstill are left out first: there, speed, pressure and slip may read anything.
 
     Raises InputError if a column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
     raw, warnings = _without_rows_that_are_none(raw, headings)
+    raw, at_rest = _without_standstill(raw, headings)
     for channel in SWEEP_CHANNELS:
         if channel.name not in headings:
             continue
@@ -106,7 +111,15 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
         found["direction"] = np.where(direction > 0, "forward", "backward")
     order = sorted(found, key=lambda name: raw.headings.index(headings[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
-    return Columns(raw, table, direction, tuple(warnings), {name: headings[name] for name in order})
+    return Columns(raw, table, direction, tuple(warnings), {name: headings[name] for name in order}, at_rest)
+
+
+def _without_standstill(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, np.ndarray]:
+    """The rows of a recording at which the wheel rolls, and the lines (m,) of the others."""
+    rolls = np.ones(len(raw), dtype=bool)
+    if "time_s" in headings and "V_mps" in headings:
+        rolls = ~standing(numbers(raw.column(headings["V_mps"])))
+    return raw if np.all(rolls) else raw.of_rows(rolls), np.asarray(raw.lines)[~rolls]
 
 
 def _without_rows_that_are_none(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:

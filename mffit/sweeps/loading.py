@@ -42,6 +42,7 @@ def load(config: Config) -> Sweeps:
     """
     found: list[Sweep] = []
     excluded: list[ExcludedRows] = []
+    at_rest: list[tuple[str, np.ndarray]] = []
     warnings: list[str] = []
     of_columns: list[tuple[Path, str]] = []
     frames: dict[str, FileFrame] = {}
@@ -56,6 +57,8 @@ def load(config: Config) -> Sweeps:
         if raw is None:
             continue
         columns = _columns(config, index, entry, raw)
+        if len(columns.standing):
+            at_rest.append((entry.file, columns.standing))
         frames[entry.file] = _frame(config, columns)
         of_columns.extend(
             (raw.path, sentence) for sentence in _overridden(columns, config, frames[entry.file])
@@ -91,6 +94,7 @@ def load(config: Config) -> Sweeps:
         tuple(in_iso_w(sweep) for sweep in found),
         tuple(warnings),
         tuple(replace(rows, sweeps=tuple(in_iso_w(sweep) for sweep in rows.sweeps)) for rows in excluded),
+        tuple(at_rest),
     )
 
 

@@ -82,3 +82,5 @@ class Sweeps(Brief):
     sweeps: tuple[Sweep, ...]  #: without the excluded rows
     warnings: tuple[str, ...]
     excluded: tuple[ExcludedRows, ...] = ()
+    standing: tuple[tuple[str, np.ndarray], ...] = ()
+    """File, as named in ``tyre.toml``, and lines (m,) of the samples at standstill."""

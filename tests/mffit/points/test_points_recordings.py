@@ -13,6 +13,7 @@ from mffit import points
 from mffit.errors import InputError
 from mffit.pipeline.inputs import read_points
 from mffit.points.stretch import MOVE, SWEEP
+from mffit.recordings import sniff
 
 COLUMNS = {
     "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P", "V_mps": "V",
@@ -278,3 +279,28 @@ def test_clocks_that_each_begin_anew_are_no_common_time(tmp_path):
     assert np.all(np.isfinite(times(table, later)))
     assert np.ptp(times(table, later)) > 100.0
     assert not np.any(np.isfinite(times(table, table)))
+
+
+def stood(table: pd.DataFrame, seconds: float) -> pd.DataFrame:
+    """The recording behind a standstill, in which the zero of the speed is below nothing and the tyre is not yet inflated."""
+    n = round(seconds * RATE)
+    first = pd.concat([table.iloc[:1]] * n, ignore_index=True)
+    random = np.random.default_rng(7)
+    first = first.assign(V=-0.04 + 0.01 * random.standard_normal(n), P=0.2, SL=-1.0, FY=0.0, FZ=-2.0, MZ=0.0)
+    late = table.assign(ET=table["ET"] + seconds)
+    return pd.concat([first.assign(ET=table["ET"][0] + np.arange(n) / RATE), late], ignore_index=True)
+
+
+@pytest.mark.parametrize("seconds", [0.5, 4.0, 400.0])
+def test_standstill_is_left_out_before_anything_is_judged(read, tmp_path, seconds):
+    """Half a second, a tenth of a minute, and most of the recording."""
+    table = recording(loads=(600.0, 1500.0), cambers=(0.0, 2.0), pressures=(83.0,))
+    plain, behind = read(table), read(stood(table, seconds))
+    assert np.array_equal(behind.points.Fy, plain.points.Fy)
+    assert not [sentence for sentence in behind.warnings if "P" in sentence or "V" in sentence]
+    (left,) = [one for one in behind.left_out if one.rule == "standstill"]
+    assert (left.count, left.why) == (round(seconds * RATE), "the wheel stands")
+    found = sniff([write_mat73(stood(table, seconds), tmp_path / "a.mat")])
+    assert {"V_mps", "p_kPa"} <= found.recordings[0].guesses.keys()
+    assert f"{round(seconds * RATE)} of" in " ".join(found.recordings[0].remarks)
+    np.testing.assert_allclose([level.value for level in found.conditions["pressure"]], [83e3], rtol=0.01)
