@@ -83,6 +83,12 @@ SOFTEST_SLIP_STIFFNESS = Real(
     "-",
     "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
 )
+STIFFEST_SLIP_STIFFNESS = Real(
+    200.0,
+    "-",
+    "Slope of Fx per load over slip that no tyre reaches: four times the stiffest. A channel that moves by less than Fx needs is "
+    "not the slip.",
+)
 WEAKEST_DIRECTION_OF_ZERO = Real(
     1e-3,
     "-",

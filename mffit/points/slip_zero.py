@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
+from mffit.constants import STRAIGHT
 from mffit.errors import InputError
 from mffit.points import constants
 from mffit.scatter import ALARM, robust
@@ -157,6 +158,18 @@ def slip_zero(of: Driven) -> SlipZero | None:
     return zero
 
 
+def unexplained_drive(of: Driven) -> float:
+    """Range of Fx over the usual load, straight ahead; 0 if the slip moves enough to explain it by the stiffest tyre."""
+    load = np.abs(of.Fz)
+    straight = np.all(np.isfinite([of.kappa, of.Fx, load]), axis=0) & (np.abs(of.alpha) < STRAIGHT.rad)
+    straight &= load > constants.UNLOADED * np.nanmedian(load) if np.any(straight) else False
+    if np.sum(straight) < constants.FEWEST_POINTS:
+        return 0.0
+    force, slip = (float(np.ptp(np.percentile(x[straight], constants.CORE))) for x in (of.Fx, of.kappa))
+    drive = force / float(np.median(load[straight]))
+    return drive if drive > max(WEAKEST, constants.STIFFEST_SLIP_STIFFNESS * slip) else 0.0
+
+
 def against_free_rolling(
     sweeps: Sequence[Sweep], config: Config, *, with_errors: bool = False
 ) -> tuple[tuple[Sweep, ...], SlipRemarks]:
@@ -184,6 +197,12 @@ def against_free_rolling(
         if _too_weak(readings):
             raise InputError(
                 _weak(readings, config), file=config.path or config.sweep[0].file, key="columns.Fx_N"
+            )
+        if drive := unexplained_drive(readings):
+            raise InputError(
+                _not_driven_by(heading, drive, any("kappa" in sweeps[k].table for k in rows)),
+                file=config.path or config.sweep[0].file,
+                key="columns.kappa",
             )
         zero = slip_zero(readings)
         if zero is None:
@@ -230,6 +249,20 @@ def _too_weak(of: Driven) -> bool:
     if np.sum(shown) < constants.FEWEST_POINTS or np.ptp(of.kappa[shown]) < constants.SMALLEST_SWEEP_OF_SLIP:
         return False  # a wheel without drive
     return bool(np.max(np.abs(of.Fx[shown] / of.Fz[shown])) < WEAKEST)
+
+
+def _not_driven_by(heading: str, drive: float, recorded: bool) -> str:
+    """The error sentence for a longitudinal force without slip, with the remedy."""
+    force = f"Fx changes by {drive:.2g} times the load straight ahead"
+    if recorded:
+        return (
+            f"{heading} hardly moves while {force}, so it is not the slip: map the column that is, or remove kappa to take slip "
+            "from the speeds of wheel and road"
+        )
+    return (
+        f"{force}, so the wheel is driven or braked, but no slip was recorded, nor speeds of wheel and road that give it: name "
+        "the column of slip, or leave these readings out"
+    )
 
 
 def _weak(of: Driven, config: Config) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
-from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero
+from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero, unexplained_drive
 from mffit.recordings.unstated import Choice, FoundChannel, Guess
 from mffit.sweeps.units import converted
 
@@ -22,12 +22,10 @@ def slip_definition(
     ``candidates`` are columns with a heading of slip, ``found`` those of the other channels, whose units ``unit_of`` gives.
     """
     remarks, judged = [], []
+    live = [column for column in candidates if np.ptp(column.values[np.isfinite(column.values)]) > 0.0]
     for column in candidates:
-        if _wheel_not_recorded(column):
-            usual = f"{np.nanmedian(column.values):.3g} throughout, as of a wheel at rest"
-            remarks.append(
-                f"{column.heading} is {usual}, so the speed of the wheel was not recorded: left out"
-            )
+        if why := _no_slip(column, live, found, unit_of):
+            remarks.append(f"{column.heading} is left out: {why}")
         else:
             judged.append(_judged(column, found, unit_of))
     known = [(guess, zero) for guess, zero in judged if zero is not None]
@@ -41,6 +39,25 @@ def slip_definition(
     ]
     said = sentence(chosen.heading, chosen.against, nearest)
     return chosen._replace(why="; ".join(filter(None, (chosen.why, said)))), tuple(remarks)
+
+
+def _no_slip(
+    column: FoundChannel,
+    live: Sequence[FoundChannel],
+    found: Mapping[str, FoundChannel],
+    unit_of: Callable[[str], str],
+) -> str:
+    """Why a column with a heading of slip holds none; "" if it may. ``live`` are the columns that are not constant."""
+    usual = f"it is {np.nanmedian(column.values):.3g} throughout"
+    if _wheel_not_recorded(column):
+        return f"{usual}, as of a wheel at rest, so the speed of the wheel was not recorded"
+    if live and column not in live:
+        return f"{usual}, and {live[0].heading} is not"
+    readings = _readings(
+        converted(column.values, column.unit, "") if column.unit else column.values, found, unit_of
+    )
+    drive = 0.0 if readings is None else unexplained_drive(readings)
+    return f"it hardly moves while Fx changes by {drive:.2g} times the load straight ahead" if drive else ""
 
 
 def _wheel_not_recorded(column: FoundChannel) -> bool:
@@ -81,6 +98,14 @@ def _zero(
     slip: np.ndarray, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
 ) -> SlipZero | None:
     """The slip at which Fx is zero, from the columns of a file; None without Fx, or if it cannot be found."""
+    readings = _readings(slip, found, unit_of)
+    return None if readings is None else slip_zero(readings)
+
+
+def _readings(
+    slip: np.ndarray, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
+) -> Driven | None:
+    """The readings of a file with this slip [-], in SI; None without Fx."""
     if "Fx_N" not in found:
         return None
 
@@ -89,15 +114,13 @@ def _zero(
             return np.zeros(len(slip))
         return factor * converted(found[name].values, unit_of(name), unit)
 
-    return slip_zero(
-        Driven(
-            kappa=slip,
-            Fx=in_si("Fx_N", "N"),
-            Fz=in_si("Fz_N", "N"),
-            alpha=in_si("alpha_deg", "rad"),
-            gamma=in_si("gamma_deg", "rad"),
-            p=in_si("p_kPa", "Pa"),
-            RL=np.full(len(slip), np.nan),
-            V=np.abs(in_si("V_mps", "m/s")),
-        )
+    return Driven(
+        kappa=slip,
+        Fx=in_si("Fx_N", "N"),
+        Fz=in_si("Fz_N", "N"),
+        alpha=in_si("alpha_deg", "rad"),
+        gamma=in_si("gamma_deg", "rad"),
+        p=in_si("p_kPa", "Pa"),
+        RL=np.full(len(slip), np.nan),
+        V=np.abs(in_si("V_mps", "m/s")),
     )

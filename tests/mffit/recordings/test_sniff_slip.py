@@ -6,10 +6,11 @@ import tomllib
 
 import numpy as np
 import pytest
-from flat_belt import drive_recording, write_mat73
+from flat_belt import drive_recording, recording, write_mat73
 
 from mffit import config as configuration
 from mffit import pipeline, points
+from mffit.errors import InputError
 from mffit.recordings import sniff
 from mffit.report import text
 
@@ -76,3 +77,41 @@ def test_the_column_whose_zero_is_nearest_to_free_rolling_is_taken_whatever_its_
     found, entry, _ = started(write_mat73(swapped, tmp_path / "drive.mat"), tmp_path)
     assert entry["column"] == "SR"
     assert found.points.kappa == pytest.approx(project[0].points.kappa)
+
+
+def test_a_dead_slip_channel_is_not_taken_before_a_live_one(table, project, tmp_path):
+    """SL is the first name of slip; here it was never connected."""
+    dead = table.drop(columns="SR").assign(SR=table["SL"], SL=0.0)
+    found, entry, content = started(write_mat73(dead, tmp_path / "drive.mat"), tmp_path)
+    assert entry["column"] == "SR"
+    assert "SL is left out: it is 0 throughout, and SR is not" in content
+    assert found.points.kappa == pytest.approx(project[0].points.kappa)
+
+
+@pytest.mark.parametrize("noise", [0.0, 2e-3])
+def test_a_channel_that_stands_still_while_the_wheel_is_driven_is_no_slip(table, tmp_path, noise):
+    """No tyre has a force of twice the load within 0.01 of slip. The column named by hand is refused, left to itself left out."""
+    scatter = noise * np.random.default_rng(3).standard_normal(len(table))
+    dead = table.drop(columns=["SL", "SR"]).assign(SL=scatter)
+    file = write_mat73(dead, tmp_path / "drive.mat")
+    found = sniff([file])
+    assert "kappa" not in found.recordings[0].guesses
+    (remark,) = [r for r in found.recordings[0].remarks if r.startswith("SL is left out")]
+    assert "hardly moves while Fx changes by" in remark
+    assert np.ptp(found.points.kappa) > 0.25  # from the speeds of wheel and road
+    _, written = pipeline.init_from([file], tmp_path / "p", **GIVEN)
+    by_hand = written[0].read_text().replace("[columns]", '[columns]\nkappa = "SL"', 1)
+    written[0].write_text(by_hand)
+    with pytest.raises(InputError, match="SL hardly moves while Fx changes by"):
+        points.read(configuration.load(written[0]))
+
+
+def test_driven_readings_without_any_slip_are_not_taken_for_free_rolling(table, tmp_path):
+    blind = table.drop(columns=["SL", "SR", "N"], errors="ignore")
+    with pytest.raises(InputError, match="driven or braked, but no slip was recorded"):
+        sniff([write_mat73(blind, tmp_path / "a.mat")])
+
+
+def test_still_slip_of_a_freely_rolling_wheel_stays(tmp_path):
+    found = sniff([write_mat73(recording(pressures=(83.0,)), tmp_path / "a.mat")])
+    assert found.recordings[0].guesses["kappa"].heading == "SL"
