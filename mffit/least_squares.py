@@ -23,6 +23,13 @@ EXACT = 1e-9
 POLISH_TOLERANCE = 1e-6
 """Predicted decrease of a step, relative to the sum of squares, at which a search ends."""
 
+MOST_STEPS = 1000
+"""Accepted steps after which a search is given up: along a valley of numbers that the data hardly separate, the sum of squares
+falls for two hundred."""
+
+SHORTENED = 0.3
+"""Factor by which an undamped move becomes shorter after each rejection."""
+
 UNDAMPED = 1e-9
 """Smallest damping: it only keeps the quadratic form positive definite against rounding."""
 
@@ -183,7 +190,7 @@ def solve(
     problem: LeastSquaresProblem,
     numbers: Sequence[FreeNumber],
     *,
-    max_steps: int = 200,
+    max_steps: int = MOST_STEPS,
     tolerance: float = POLISH_TOLERANCE,
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
@@ -276,31 +283,42 @@ def _step(
     damping: float,
     least: float,
 ) -> _Step | None:
-    """The best of the steps of all quadratic forms if it reduces the sum of squares, else None; damping grows until one does.
+    """The best of the steps of all quadratic forms if it reduces the sum of squares, else None.
 
-    A damped step with a predicted decrease of ``least`` or less is not tried: at a kink, as between a wheel's play and its stops,
-    such steps alternate, and rounding would decide on which side they end. An undamped step is the last one, near the minimum.
-    Its decrease may be smaller than rounding, so it is accepted unless the sum rises by more than ``least``.
+    After each rejection, damping grows and the undamped moves become shorter, and both are tried. Damping alone gives up where
+    the derivative by one number vanishes, as at the zero of a coefficient that enters as an even function: it must grow until it
+    holds this number, and by then it holds all others.
+
+    A step with a predicted decrease of ``least`` or less is not tried: at a kink, as between a wheel's play and its stops, such
+    steps alternate, and rounding would decide on which side they end. An undamped step is the last one, near the minimum. Its
+    decrease may be smaller than rounding, so it is accepted unless the sum rises by more than ``least``.
     """
-    last = damping == UNDAMPED
+    last, first, share = damping == UNDAMPED, damping, 1.0
+    undamped: list[np.ndarray | None] = []
+
+    def tried(form: _Quadratic, move: np.ndarray | None, damping: float) -> _Step | None:
+        if move is None:
+            return _Step(x, math.inf, damping)
+        promised = form.gain(move)
+        if promised <= least and not last:
+            return None
+        trial = np.clip(x + move, objective.lower, objective.upper)
+        new = objective.cost(trial, *objective.problem.residual(trial))
+        return _Step(trial, new, _next_damping(damping, cost - new, promised))
+
     while damping < 1e12:
-        found = []
-        for form in forms:
-            move = form.move(damping)
-            if move is None:
-                continue
-            promised = form.gain(move)
-            if form is forms[0] and promised <= least and not last:
-                return None
-            trial = np.clip(x + move, objective.lower, objective.upper)
-            new = objective.cost(trial, *objective.problem.residual(trial))
-            found.append(_Step(trial, new, _next_damping(damping, cost - new, promised)))
-        best = min(found, key=lambda step: step.cost, default=None)
-        if best is not None and (best.cost < cost or (last and best.cost <= cost + least)):
+        found = [tried(form, form.move(damping), damping) for form in forms]
+        for form, move in zip(forms, undamped, strict=False):
+            found.append(None if move is None else tried(form, share * move, first))
+        best = min(filter(None, found), key=lambda step: step.cost, default=None)
+        if best is None:
+            return None
+        if best.cost < cost or (last and best.cost <= cost + least):
             return best
         if last:
             return None
-        damping = max(6.0 * damping, 1e-8)
+        undamped = undamped or [form.move(UNDAMPED) for form in forms]
+        damping, share = max(6.0 * damping, 1e-8), SHORTENED * share
     return None
 
 

@@ -206,3 +206,25 @@ def test_residuals_that_stay_large_do_not_slow_a_search_down():
     found = solve(problem, [FreeNumber(*one) for one in start], tolerance=1e-9)
     assert found.cost == pytest.approx(85822.2, abs=0.1)
     assert found.steps < 40
+
+
+def test_numbers_at_the_zero_of_an_even_function_do_not_end_a_search():
+    """Rosenbrock's valley, and three numbers that enter squared: their derivatives vanish at the minimum, near 0.
+
+    Their priors pull them away, and damping that holds them holds the numbers in the valley as well.
+    """
+
+    def residual(x):
+        return np.array([100.0 * (x[1] - x[0] ** 2), 1.0 - x[0], *(1000.0 * x[2:] ** 2), 100.0])
+
+    def linear(x):
+        slope = np.zeros((6, 5))
+        slope[:2, :2] = [[-200.0 * x[0], 100.0], [-1.0, 0.0]]
+        slope[2:5, 2:] = np.diag(2000.0 * x[2:])
+        return Linear(residual(x), slope, np.zeros(0), np.zeros((0, 5)))
+
+    problem = LeastSquaresProblem(lambda x: (residual(x), np.zeros(0)), linear)
+    even = [FreeNumber(f"even {k}", 0.05 * k, expected=10.0, spread=10.0) for k in (1, 2, 3)]
+    found = solve(problem, [FreeNumber("x", -1.2), FreeNumber("y", 1.0), *even], tolerance=1e-6)
+    assert found.left < 1e-6 * found.cost
+    assert found.values["x"] == pytest.approx(1.0, abs=0.15)
