@@ -23,6 +23,7 @@ from mffit.points.left_out import LeftOut, at_standstill, by_hand
 from mffit.points.lost import lost_sweeps
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
+from mffit.points.silent import without_silent_moments
 from mffit.points.slip_zero import SlipZero, against_free_rolling, readings_of
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
@@ -102,7 +103,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
             for index in np.unique(points.file[points.continuous])
         ]
     warnings += _thin(steady, config)
-    kept = points if continuous else steady
+    kept, silent = without_silent_moments(points if continuous else steady)
+    warnings += silent
     if not continuous:
         left_out += _moving_left_out(points)
     stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)

@@ -45,9 +45,9 @@ def recording() -> pd.DataFrame:
             "FX": Fx,
             "FY": 0.2 * alpha * Fz + 5.0 * random.standard_normal(n),
             "FZ": -Fz + 3.0 * random.standard_normal(n),
-            "MX": -40.0 + random.standard_normal(n),
+            "MX": -40.0 + 3e-3 * (Fz - np.mean(LOADS)) + random.standard_normal(n),
             "MY": 6.0 + 0.1 * random.standard_normal(n),
-            "MZ": random.standard_normal(n),
+            "MZ": 4e-3 * alpha * Fz + random.standard_normal(n),
             "RL": 22.0 - 2e-4 * Fz,
             "N": 60.0 / (2.0 * np.pi) * (1.0 + kappa) * SPEED / 0.225,
         }
