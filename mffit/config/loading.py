@@ -11,6 +11,7 @@ from mffit.config.models import Column, Config
 from mffit.config.problems import Keys, known_keys, validated
 from mffit.config.toml_file import TomlKind, read_toml
 from mffit.errors import InputError
+from mffit.sheets import file_of
 
 WILD = frozenset("*?[")
 
@@ -63,7 +64,7 @@ def _is_pattern(entry: object, folder: Path) -> bool:
 
 def is_pattern(file: str, folder: Path) -> bool:
     """Whether the text is a pattern and not the name of an existing file."""
-    return bool(WILD & set(file)) and not (folder / file).exists()
+    return bool(WILD & set(file)) and not file_of(folder / file).exists()
 
 
 def matches(pattern: str, folder: Path) -> list[str]:

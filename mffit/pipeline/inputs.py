@@ -15,6 +15,7 @@ from mffit.fit.known import given_values
 from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading
+from mffit.sheets import file_of, sheet_of
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from tir import Tyre
@@ -91,4 +92,4 @@ def input_hashes(config: Config) -> dict[str, str]:
 def input_names(config: Config) -> list[str]:
     """The files that a configuration names: sweeps in their order, base file, priors."""
     named = (*(sweep.file for sweep in config.sweep), config.tyre.base, config.tyre.priors)
-    return list(dict.fromkeys(name for name in named if name))
+    return list(dict.fromkeys(file_of(name).as_posix() if sheet_of(name) else name for name in named if name))

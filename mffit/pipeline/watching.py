@@ -32,6 +32,7 @@ from mffit.recordings.disc import files_of_folder
 from mffit.recordings.project_file import relative, sweeps_text
 from mffit.recordings.sniffed import rolls_backward
 from mffit.results.campaign import Arrival, WatchedCampaign
+from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.loading import NUMBER
 from tir import Quantity
@@ -118,11 +119,12 @@ class _Watch:
         self._reload()
         listed = {self.config.folder / entry.file: entry for entry in self.config.sweep}
         paths = [*listed, *self._unlisted(listed)]
-        self._arriving.look(paths)
+        self._arriving.look(map(file_of, paths))
         before, self._files = self._files, {}
         waiting = []
         for path in paths:
-            signature, entry, known = self._arriving.signature(path), listed.get(path), before.get(path)
+            signature = self._arriving.signature(file_of(path))
+            entry, known = listed.get(path), before.get(path)
             if signature is None:
                 continue
             if known is not None and known.signature == signature and _as_listed(known, entry):
@@ -162,18 +164,19 @@ class _Watch:
 
     def _read(self, path: Path, signature: Signature, listed: SweepTable | None) -> _File | None:
         """A file that is complete, or that stays unreadable; None while it is being written."""
-        if not self._arriving.rests(path):
+        file = file_of(path)
+        if not self._arriving.rests(file):
             return None
-        final = self._arriving.is_final(path)
+        final = self._arriving.is_final(file)
         entry = listed or SweepTable(file=self._name(path))
         try:
-            if not final and ends_within_line(path):
+            if not final and ends_within_line(file):
                 return None
             entry = listed or self._recognised(path)
             read(self._of([entry]), may_be_empty=True)
         except InputError as error:
             return _File(signature, entry, listed is not None, str(error)) if final else None
-        self._arriving.take(path)
+        self._arriving.take(file)
         return _File(signature, entry, listed is not None)
 
     def _recognised(self, path: Path) -> SweepTable:

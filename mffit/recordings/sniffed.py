@@ -24,6 +24,7 @@ from mffit.points.stretch import MOVE
 from mffit.recordings.guess import ColumnChoice, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
+from mffit.sheets import file_of
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
@@ -100,14 +101,15 @@ def sniff(
 
     Parameters
     ----------
-    paths : files, also as patterns like ``runs/*.csv``
+    paths : files, also as patterns like ``runs/*.csv``; of a workbook, all visible sheets with data, or ``book.xlsx#Sheet``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     chosen : a user's choices for some of the files
 
     Raises
     ------
     InputError
-        A file cannot be read or lacks a required channel, a pattern matches no file, or a file is named twice.
+        A file cannot be read or lacks a required channel, a pattern matches no file, or a file is named twice. Of several
+        sheets of a workbook, those that cannot be read are left out with a warning, unless it is all of them.
     """
     files = [file for path in paths for file in files_of(path)]
     if not files:
@@ -115,10 +117,11 @@ def sniff(
     twice = [file for k, file in enumerate(files) if file in files[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
-    files, summaries = apart(files)
-    recordings = tuple(_recording(file, unloaded_radius, chosen.get(file)) for file in files)
+    named = files
+    files, summaries = apart([table for file in files for table in formats.tables_of(file)])
+    recordings, refused = _recordings(files, unloaded_radius, chosen, optional=set(files) - set(named))
     bad = bad_runs(summaries)
-    if len(bad) == len(files):
+    if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
     axes = _first_axes(recordings)
     config = configuration_of(recordings, axes, bad)
@@ -126,7 +129,10 @@ def sniff(
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
-    of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
+    of_summaries = [
+        *(f"{error} (this sheet is left out)" for error in refused),
+        *(f"{each.recording} is left out: {each.why}" for each in bad),
+    ]
     two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
     of_summaries += [
         moment_reversed.said(found.facts) for found in moment_reversed.find(reading.points, config)
@@ -155,9 +161,31 @@ def files_of(path: str | Path) -> list[Path]:
             else "name a recording"
         )
         raise InputError(f"is a folder; {remedy}", file=file)
-    if not file.exists():
+    if not file_of(file).exists():
         raise InputError("there is no such file; correct its name", file=file)
     return [file]
+
+
+def _recordings(
+    files: Sequence[Path],
+    unloaded_radius: float | None,
+    chosen: Mapping[Path, ChosenFile],
+    *,
+    optional: Collection[Path],
+) -> tuple[tuple[SniffedRecording, ...], list[InputError]]:
+    """The recordings, and the errors about optional sheets whose workbook has others that can be read."""
+    found: list[SniffedRecording] = []
+    refused: dict[Path, InputError] = {}
+    for file in files:
+        try:
+            found.append(_recording(file, unloaded_radius, chosen.get(file)))
+        except InputError as error:
+            refused[file] = error
+    readable = {file_of(recording.path) for recording in found}
+    for file, refusal in refused.items():
+        if file not in optional or file_of(file) not in readable:
+            raise refusal
+    return tuple(found), list(refused.values())
 
 
 def _recording(path: Path, unloaded_radius: float | None, chosen: ChosenFile | None) -> SniffedRecording:

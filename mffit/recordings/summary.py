@@ -11,6 +11,7 @@ from mffit.config.lines import ranges_text
 from mffit.errors import InputError
 from mffit.recordings import constants
 from mffit.recordings.guess import candidates, simplified
+from mffit.sheets import WORKBOOKS, file_of
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME
 from mffit.sweeps.columns import text_of
@@ -60,7 +61,7 @@ def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:
     given = [file for file in files if _may_be_summary(file) and _raw_summary(file) is not None]
     recordings = [file for file in files if file not in given] or list(files)
     folders = dict.fromkeys(file.absolute().parent for file in recordings)
-    known = {file.absolute() for file in files}
+    known = {file_of(file.absolute()) for file in files}
     inside = [file for folder in folders for file in sorted(folder.iterdir())]
     beside = [file for file in inside if file.absolute() not in known and _may_be_summary(file)]
     rows = [row for file in (*given, *beside) for row in _rows(file, recordings)]
@@ -93,7 +94,8 @@ def two_specimens(rows: Iterable[SummaryRow]) -> str:
 
 def _may_be_summary(file: Path) -> bool:
     """Whether a file is a text table or a workbook, and no larger than a list of runs."""
-    endings = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm")
+    endings = (".csv", ".txt", ".tsv", *WORKBOOKS)
+    file = file_of(file)
     return (
         file.name.lower().endswith(endings)
         and not file.name.startswith((".", "~"))

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mffit.errors import check_readable
+from mffit.sheets import WORKBOOKS, file_of, sheet_of
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
 from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.spreadsheet import read_xlsx
+from mffit.sweeps.spreadsheet import read_xlsx, sheets_with_data
 from mffit.sweeps.tydex import read_tydex
 
 
@@ -30,7 +31,7 @@ class Format(NamedTuple):
 FORMATS = (
     Format("CSV", (".csv", ".csv.gz", ".txt", ".txt.gz", ".tsv", ".tsv.gz", ".dat", ".dat.gz"), read_csv),
     Format("MATLAB", (".mat",), read_mat),
-    Format("Excel", (".xlsx", ".xlsm"), read_xlsx),
+    Format("Excel", WORKBOOKS, read_xlsx),
     Format("Parquet", (".parquet",), read_parquet),
     Format("TYDEX", (".tdx", ".tdx.gz", ".tda", ".tdb"), read_tydex, axes="iso"),
 )
@@ -51,7 +52,7 @@ def read(path: Path) -> RawTable:
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
-    check_readable(path)
+    check_readable(file_of(path))
     found = format_of(path).read(path)
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
@@ -73,11 +74,20 @@ def reading_once() -> Iterator[None]:
 
 def format_of(path: Path) -> Format:
     """The format that the file's ending names, CSV by default."""
-    return next((kind for kind in FORMATS if path.name.lower().endswith(kind.endings)), FORMATS[0])
+    name = file_of(path).name.lower()
+    return next((kind for kind in FORMATS if name.endswith(kind.endings)), FORMATS[0])
+
+
+def tables_of(path: Path) -> list[Path]:
+    """The tables of a file by name: the sheets with data of a workbook that has several, else the path itself.
+
+    Raises InputError if the workbook cannot be read.
+    """
+    return sheets_with_data(path) if format_of(path).read is read_xlsx else [path]
 
 
 def stem(path: str) -> str:
-    """The name of a file without folder and without the ending of a known format."""
-    name = Path(path).name
+    """The name of a file without folder and without the ending of a known format; ``book:Sheet`` for a sheet."""
+    name = file_of(path).name
     ending = max((ending for ending in ENDINGS if name.lower().endswith(ending)), key=len, default="")
-    return name[: len(name) - len(ending)]
+    return ":".join(filter(None, (name[: len(name) - len(ending)], sheet_of(path))))

@@ -14,6 +14,7 @@ from mffit.config.lines import ExcludeTable, inside, ranges_text
 from mffit.config.models import SweepTable
 from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
 from mffit.errors import InputError
+from mffit.sheets import file_of, sheet_in
 from mffit.sweeps.assembly import sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
@@ -46,9 +47,12 @@ def load(config: Config) -> Sweeps:
     warnings: list[str] = []
     of_columns: list[tuple[Path, str]] = []
     frames: dict[str, FileFrame] = {}
+    tables: dict[str, RawTable] = {}
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
-        raw, apart = _apart(config, entry, _raw(config, index, entry))
+        whole = _raw(config, index, entry)
+        tables[entry.file] = whole
+        raw, apart = _apart(config, entry, whole)
         for exclusion, rows in apart:
             sweeps, frame = _as_far_as_readable(config, index, entry, rows, setup)
             if frame is not None:
@@ -74,7 +78,7 @@ def load(config: Config) -> Sweeps:
             line=config.line_of("fit.exclude"),
             key="fit.exclude",
         )
-    warnings = _once(of_columns) + warnings
+    warnings = _once(of_columns) + warnings + _sheets_left_out(tables)
     open_loads = [s for s in found if frames[s.file].forces_lean and frames[s.file].load_is_vertical is None]
     vertical = load_is_vertical(open_loads)
     warnings.extend(_about_frames(found, frames, vertical=vertical))
@@ -96,6 +100,28 @@ def load(config: Config) -> Sweeps:
         tuple(replace(rows, sweeps=tuple(in_iso_w(sweep) for sweep in rows.sweeps)) for rows in excluded),
         tuple(at_rest),
     )
+
+
+def _sheets_left_out(tables: Mapping[str, RawTable]) -> list[str]:
+    """Sentences about workbooks with sheets with data of which no table, by the name in ``tyre.toml``, is read."""
+    left: dict[Path, list[str]] = {}
+    for name, raw in tables.items():
+        book = file_of(name)
+        left[book] = [sheet for sheet in left.get(book, raw.others) if sheet in raw.others]
+    said = []
+    for book, sheets in left.items():
+        if sheets:
+            quoted = some([f'"{sheet}"' for sheet in sheets])
+            have = (
+                f"sheet {quoted} has data and is"
+                if len(sheets) == 1
+                else f"sheets {quoted} have data and are"
+            )
+            said.append(
+                f"{book}: {have} left out; to take a sheet, add a [[sweep]] with "
+                f'file = "{sheet_in(book, sheets[0]).as_posix()}"'
+            )
+    return said
 
 
 def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
@@ -132,16 +158,17 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
         if name not in BY_NAME:
             key = f"columns.{name}"
             raise InputError(_unknown(name), file=config.path, line=config.line_of(key), key=key)
-    if not entry.file.lower().endswith(ENDINGS):
+    if not file_of(entry.file).name.lower().endswith(ENDINGS):
         *names, last = (kind.name for kind in FORMATS)
         raise refuse(
             f'"{entry.file}" is not in a known format ({" ".join(ENDINGS)}); export it as {", ".join(names)} or {last}',
             "file",
         )
     path = config.folder / entry.file
-    if not path.exists():
+    if not file_of(path).exists():
         raise refuse(
-            f'there is no file "{entry.file}" in {config.folder.absolute()}; correct its name', "file"
+            f'there is no file "{file_of(entry.file)}" in {config.folder.absolute()}; correct its name',
+            "file",
         )
     return read(path)
 

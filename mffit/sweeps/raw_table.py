@@ -33,6 +33,7 @@ class RawTable:
     path: Path
     heading_line: int | None  #: None in formats without lines
     about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
+    others: tuple[str, ...] = ()  #: other sheets of the workbook that have data
 
     def __post_init__(self) -> None:
         if not self.headings or not len(self.lines):

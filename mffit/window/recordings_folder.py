@@ -62,20 +62,35 @@ class RecordingsFolder:
 
     def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...]]:
         found = [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
-        now = [(path, path.stat().st_mtime_ns) for path in found]
+        now = self._listed, [(path, path.stat().st_mtime_ns) for path in found]
         if now != self._seen:
             with formats.reading_once():
-                self._seen, self._apart = now, apart(found)
+                self._seen, self._apart = now, apart(self._tables(found))
         return self._apart
 
     def _named(self) -> list[Path]:
         """Everything in the folder with the name of a recording."""
         found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        listed = self._listed
+        return [path for path in found if path.resolve() not in listed]
+
+    @property
+    def _listed(self) -> set[Path]:
+        """The files and sheets that the project lists."""
         if self.project is None:
-            return found
+            return set()
         project = config.load(self.project)
-        known = {(project.folder / entry.file).resolve() for entry in project.sweep}
-        return [path for path in found if path.resolve() not in known]
+        return {(project.folder / entry.file).resolve() for entry in project.sweep}
+
+    def _tables(self, files: Sequence[Path]) -> list[Path]:
+        """The files, with the sheets of a workbook in place of it that the project does not list."""
+        found = []
+        for file in files:
+            try:
+                found += formats.tables_of(file)
+            except InputError:  # the table of recordings names it with its fault
+                found.append(file)
+        return [path for path in found if path.resolve() not in self._listed]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -114,7 +129,7 @@ class RecordingsFolder:
             problems += [
                 str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
                 for path in self._named()
-                if path not in files
+                if not path.resolve().is_relative_to(self.folder)
             ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
         known = tyre_found(found, self.folder) if found else Stated(name=slug(self.folder))
