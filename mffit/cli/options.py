@@ -33,6 +33,25 @@ path_centre = click.option(
 unloaded_radius = _unloaded_radius()
 given = _unloaded_radius("given", callback=_as_given)
 """The same option, as values of keys by which :func:`tir.read` completes a property file."""
+
+
+def _headings(context: click.Context, option: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+    from mffit.errors import InputError
+
+    parts = [one.partition("=") for one in given]
+    if wrong := [one for one, (name, _, heading) in zip(given, parts, strict=True) if not (name and heading)]:
+        raise InputError(f'"{wrong[0]}" is not a channel with its heading; write p_kPa=Druck', key="--column")
+    return {name.strip(): heading.strip() for name, _, heading in parts}
+
+
+column = click.option(
+    "--column",
+    "headings",
+    multiple=True,
+    metavar="CHANNEL=HEADING",
+    callback=_headings,
+    help="Heading of a channel, if it is not recognised, such as p_kPa=Druck; may be repeated.",
+)
 strict = click.option(
     "--strict", is_flag=True, help="Exit code 3 also if the result is only in doubt, for automatic runs."
 )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mffit.cli.console import Voice, voiced
-from mffit.cli.options import PATH, out_option, path_centre, unloaded_radius
+from mffit.cli.options import PATH, column, out_option, path_centre, unloaded_radius
 from mffit.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
+@column
 @voiced
-def sniff(files: tuple[Path, ...], voice: Voice) -> None:
+def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> None:
     """Show the content of recordings.
 
     Prints channels, units, axes, conditions and stretches, and a tyre.toml for the recordings.
@@ -28,7 +29,7 @@ def sniff(files: tuple[Path, ...], voice: Voice) -> None:
 
     with voice.progress() as show:
         show("reading recordings")
-        found = recordings.sniff(files)
+        found = recordings.sniff(files, headings=headings)
     voice.say(text.sniff_summary(found))
     voice.give(found)
     voice.say("\n" + recordings.project_text(found, Path()), end="")
@@ -52,6 +53,7 @@ def sniff(files: tuple[Path, ...], voice: Voice) -> None:
     "--belt", is_flag=True, help="With --from: the path was straight, whatever the recordings look like."
 )
 @click.option("--name", help="With --from: of the output files [default: the recording's, or the folder's].")
+@column
 @voiced
 def init(
     paths: tuple[Path, ...],
@@ -62,6 +64,7 @@ def init(
     path_radius: float | None,
     path_centre: str | None,
     belt: bool,
+    headings: dict[str, str],
     voice: Voice,
     **tyre: float | None,
 ) -> None:
@@ -80,7 +83,13 @@ def init(
         with voice.progress() as show:
             show("reading recordings")
             found, written = pipeline.init_from(
-                files, folder, name=name, disc=_disc(disc, path_radius, path_centre, belt), belt=belt, **tyre
+                files,
+                folder,
+                name=name,
+                headings=headings,
+                disc=_disc(disc, path_radius, path_centre, belt),
+                belt=belt,
+                **tyre,
             )
         voice.say(text.sniff_summary(found))
     elif files:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
 from mffit.points.stretch import stretch_table
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
+from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.project_file import load_beyond, slug
 from mffit.recordings.sniffed import configuration_of
 from mffit.sweeps import formats
@@ -29,6 +30,7 @@ def init_from(
     nominal_load: float | None,
     nominal_pressure: float | None = None,
     name: str | None = None,
+    headings: Mapping[str, str] = NOTHING_NAMED,
     disc: DiscPath | None = None,
     belt: bool = False,
 ) -> tuple[Sniffed, list[Path]]:
@@ -42,6 +44,7 @@ def init_from(
     nominal_load : [N]
     nominal_pressure : [kPa]; default the pressure of most samples
     name : name of the output files; default that of the recording, or of the folder for several
+    headings : headings that are not recognised, by channel, such as ``{"p_kPa": "Druck"}``
     disc : path of the disc
     belt : whether the path is straight, whatever the recordings look like
 
@@ -59,7 +62,9 @@ def init_from(
     _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
     stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
-    sniffed, text = project_of(sniff(files, unloaded_radius=unloaded_radius), folder, stated)
+    sniffed, text = project_of(
+        sniff(files, unloaded_radius=unloaded_radius, headings=headings), folder, stated
+    )
     return sniffed, written_project(folder, sniffed, text)
 
 
@@ -105,10 +110,10 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
     """Refuse recordings from which no project can be made."""
     first = sniffed.recordings[0].path
     if stated.nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
-        raise InputError(
-            "no pressure is measured, so the nominal pressure is unknown: give --nominal-pressure KPA",
-            file=first,
-        )
+        asked = [(r.path, said) for r in sniffed.recordings for said in r.remarks if "p_kPa" in said]
+        nothing = "no pressure is measured, so the nominal pressure is unknown: give"
+        path, why = asked[0] if asked else (first, nothing)
+        raise InputError(f"{why}{'; or give' * bool(asked)} --nominal-pressure KPA", file=path)
     if not len(sniffed.points):
         raise InputError(sniffed.reading.warnings[-1], file=first)
     if sniffed.of_two_tyres:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.recordings import constants
+from mffit.recordings.by_unit import is_of_kind, only_ones, questions, taken_for
 from mffit.recordings.slip_definition import SLIP, slip_definition
 from mffit.recordings.unstated import Choice, FoundChannel, Guess, choices
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
@@ -20,7 +21,7 @@ from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.standstill import standing
-from mffit.sweeps.units import UnknownUnitError, converted
+from mffit.sweeps.units import converted
 
 CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
 """A time of day, with or without its date."""
@@ -30,13 +31,14 @@ SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue
 """Characters that headings spell in several ways, and one spelling for each."""
 
 
-MISSED = {"Mz_Nm": "moments", "V_mps": "speeds", "p_kPa": "pressures"}
-"""Optional channels, and the word for their kind of unit; if one is missing, a remark names unused columns in such units."""
 ABOUT_LETTERS = {
     "C": "turned with the wheel carrier, about the wheel centre",
     "H": "horizontal, about the wheel centre",
 }
 """TYDEX letters of axes other than the contact frame W, and their description."""
+
+
+NOTHING_NAMED: Mapping[str, str] = {}
 
 
 class ColumnChoice(NamedTuple):
@@ -55,20 +57,30 @@ class Guesses(NamedTuple):
     remarks: tuple[str, ...]
 
 
-def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
-    """The guessed channels of a file, and remarks; the unloaded radius [m], if known, checks the speed of rotation.
+def guesses(
+    raw: RawTable, *, unloaded_radius: float | None = None, named: Mapping[str, str] = NOTHING_NAMED
+) -> Guesses:
+    """The guessed channels of a file, and remarks.
 
-    Samples of a recording at standstill are not looked at.
+    The unloaded radius [m], if known, checks the speed of rotation. ``named`` are headings that a user names, by channel; they
+    hold instead of those that laboratories use. Samples of a recording at standstill are not looked at.
     """
     raw, of_rest = _rolling(raw)
-    columns = _number_columns(raw)
-    slips = candidates(raw, BY_NAME[SLIP])
+    named = {name: heading for name, heading in named.items() if heading in raw.headings}
+    columns = _number_columns(raw, named)
+    slips = candidates(raw, BY_NAME[SLIP], named)
     columns.pop(SLIP, None)
+    known = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
+    by_unit = only_ones(raw, columns, known)
+    columns |= by_unit
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
     remarks = [*of_rest, *of_axes, *left_out.values(), *of_units]
     columns = {name: column for name, column in columns.items() if name not in left_out}
-    found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw)
+    found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw, named)
+    by_unit = {name: column for name, column in by_unit.items() if name in found}
+    found |= {name: found[name]._replace(why="taken by its unit, see above") for name in by_unit}
+    remarks += map(taken_for, by_unit.values())
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
@@ -76,7 +88,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     remarks += of_slip
     if slip is not None:
         found[SLIP] = slip
-    remarks += _without(raw, found)
+    remarks += questions(raw, found, {guess.heading for guess in found.values()})
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
@@ -126,10 +138,10 @@ def simplified(heading: str) -> str:
     return heading.lower().translate(SPELLINGS)
 
 
-def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
+def _number_columns(raw: RawTable, named: Mapping[str, str]) -> dict[str, FoundChannel]:
     """The column of each numerical channel: the first known name with suitable readings."""
-    named = {c.name: candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
-    return {name: columns[0] for name, columns in named.items() if columns}
+    found = {c.name: candidates(raw, c, named) for c in SWEEP_CHANNELS if c.kind == "number"}
+    return {name: columns[0] for name, columns in found.items() if columns}
 
 
 def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChannel], list[str]]:
@@ -153,36 +165,35 @@ def _in_one_frame(columns: dict[str, FoundChannel]) -> tuple[dict[str, FoundChan
     return kept, remarks
 
 
-def candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:
-    """Columns with a known name of a channel and suitable readings, in the order of the names."""
-    headings = _headings(raw)
-    named = dict.fromkeys(headings.get(simplified(name)) for name in (channel.name, *channel.aliases))
-    columns = [_column(raw, channel, heading) for heading in named if heading is not None]
+def candidates(
+    raw: RawTable, channel: Channel, named: Mapping[str, str] = NOTHING_NAMED
+) -> list[FoundChannel]:
+    """Columns with a known name of a channel and suitable readings, in the order of the names; else the one that is ``named``."""
+    names = [named[channel.name]] if channel.name in named else _known_headings(raw, channel, named.values())
+    columns = [_column(raw, channel, heading) for heading in names]
     return [column for column in columns if column is not None]
+
+
+def _known_headings(raw: RawTable, channel: Channel, others: Collection[str]) -> list[str]:
+    """The headings with a known name of a channel that are none of the ``others``, in the order of the names."""
+    headings = _headings(raw)
+    names = map(simplified, (channel.name, *channel.aliases))
+    found = dict.fromkeys(headings[name] for name in names if name in headings)
+    return [heading for heading in found if heading not in others]
 
 
 def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
     """The column of a heading as this channel; None without readings or with a unit of another dimension."""
-    stated, values = raw.unit(heading), numbers(raw.column(heading))
-    if not np.any(np.isfinite(values)) or (stated and not _is_of_kind(stated, channel)):
-        return None
-    return FoundChannel(channel, heading, stated, values)
+    stated = raw.unit(heading)
+    return None if stated and not is_of_kind(stated, channel) else FoundChannel.of(raw, channel, heading)
 
 
-def _is_of_kind(unit: str, channel: Channel) -> bool:
-    try:
-        converted(np.zeros(1), unit, channel.unit)
-    except UnknownUnitError:
-        return False
-    return True
-
-
-def _labels(raw: RawTable) -> dict[str, Guess]:
+def _labels(raw: RawTable, named: Mapping[str, str]) -> dict[str, Guess]:
     """Columns of labels or directions; a heading in another spelling counts only if its labels differ."""
     headings = _headings(raw)
     found = {}
     for channel in SWEEP_CHANNELS:
-        heading = headings.get(simplified(channel.name))
+        heading = named.get(channel.name, headings.get(simplified(channel.name)))
         if channel.kind == "number" or heading is None:
             continue
         if heading == channel.name or len(np.unique(np.asarray(raw.column(heading)))) > 1:
@@ -201,25 +212,6 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
     step = float(np.median(np.abs(np.diff(seconds))))
     least, most = constants.TIME_BETWEEN_POINTS
     return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
-
-
-def _without(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
-    """Remarks that name unused columns whose unit fits a missing channel."""
-    taken = {guess.heading for guess in found.values()}
-    remarks = []
-    for name, kind in MISSED.items():
-        channel = BY_NAME[name]
-        near = [
-            heading
-            for heading, unit in zip(raw.headings, raw.units, strict=True)
-            if unit and heading not in taken and _is_of_kind(unit, channel)
-        ]
-        if name not in found and near:
-            remarks.append(
-                f"no heading is known to be {name} ({channel.description}); unused columns in a unit of {kind}: "
-                f'{", ".join(near)}; if one of them is {name}, name it under [columns], for example {name} = "{near[0]}"'
-            )
-    return remarks
 
 
 def _without_time(raw: RawTable) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -14,14 +15,15 @@ import numpy as np
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, is_pattern, matches
-from mffit.errors import InputError
+from mffit.errors import InputError, meant
 from mffit.points import levels
 from mffit.points.clock import spread
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import ColumnChoice, corrected, guesses
+from mffit.recordings.by_unit import KINDS, in_unit_of
+from mffit.recordings.guess import NOTHING_NAMED, ColumnChoice, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
 from mffit.sheets import file_of
@@ -29,7 +31,7 @@ from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
-from mffit.sweeps.channels import SWEEP_CHANNELS
+from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted
@@ -96,6 +98,7 @@ def sniff(
     *,
     unloaded_radius: float | None = None,
     chosen: Mapping[Path, ChosenFile] = NOTHING_CHOSEN,
+    headings: Mapping[str, str] = NOTHING_NAMED,
 ) -> Sniffed:
     """The content of recordings.
 
@@ -104,6 +107,7 @@ def sniff(
     paths : files, also as patterns like ``runs/*.csv``; of a workbook, all visible sheets with data, or ``book.xlsx#Sheet``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     chosen : a user's choices for some of the files
+    headings : headings that are not recognised, by channel, for all files that have them
 
     Raises
     ------
@@ -119,7 +123,12 @@ def sniff(
         raise InputError("is named twice; remove one", file=twice[0])
     named = files
     files, summaries = apart([table for file in files for table in formats.tables_of(file)])
-    recordings, refused = _recordings(files, unloaded_radius, chosen, optional=set(files) - set(named))
+    _check_headings(headings, files)
+
+    def of(file: Path) -> SniffedRecording:
+        return _recording(file, unloaded_radius, chosen.get(file), headings)
+
+    recordings, refused = _recordings(files, of, optional=set(files) - set(named))
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
@@ -167,18 +176,14 @@ def files_of(path: str | Path) -> list[Path]:
 
 
 def _recordings(
-    files: Sequence[Path],
-    unloaded_radius: float | None,
-    chosen: Mapping[Path, ChosenFile],
-    *,
-    optional: Collection[Path],
+    files: Sequence[Path], of: Callable[[Path], SniffedRecording], *, optional: Collection[Path]
 ) -> tuple[tuple[SniffedRecording, ...], list[InputError]]:
     """The recordings, and the errors about optional sheets whose workbook has others that can be read."""
     found: list[SniffedRecording] = []
     refused: dict[Path, InputError] = {}
     for file in files:
         try:
-            found.append(_recording(file, unloaded_radius, chosen.get(file)))
+            found.append(of(file))
         except InputError as error:
             refused[file] = error
     readable = {file_of(recording.path) for recording in found}
@@ -188,15 +193,40 @@ def _recordings(
     return tuple(found), list(refused.values())
 
 
-def _recording(path: Path, unloaded_radius: float | None, chosen: ChosenFile | None) -> SniffedRecording:
+def _check_headings(headings: Mapping[str, str], files: Sequence[Path]) -> None:
+    """Refuse headings of channels that there are not, or that no readable file has."""
+    for name, heading in headings.items():
+        if name not in BY_NAME:
+            raise InputError(unknown_channel(name), key=f"--column {name}")
+        there: dict[str, None] = {}
+        for file in files:
+            with suppress(InputError):  # _recording raises it
+                there |= dict.fromkeys(formats.read(file).headings)
+        if there and heading not in there:
+            near = meant(heading, there)
+            hint = f'did you mean "{near}"?' if near else f"the headings are {', '.join(there)}"
+            raise InputError(f'no file has the heading "{heading}"; {hint}', key=f"--column {name}")
+
+
+def _recording(
+    path: Path, unloaded_radius: float | None, chosen: ChosenFile | None, headings: Mapping[str, str]
+) -> SniffedRecording:
     raw = formats.read(path)
-    guessed = guesses(raw, unloaded_radius=unloaded_radius)
+    guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings)
     found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
+    for name, heading in headings.items():
+        if heading in raw.headings and (name not in found or found[name].heading != heading):
+            left_out = (remark for remark in remarks if heading in remark and "left out" in remark)
+            why = next(
+                left_out, f"it holds no numbers in a unit of {KINDS.get(BY_NAME[name].unit, 'this kind')}"
+            )
+            raise InputError(
+                f"cannot be {name} ({BY_NAME[name].description}): {why}", file=path, column=heading
+            )
     missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
-            f"no heading is known to be {' or '.join(channel.name for channel in missing)} (the headings are "
-            f"{', '.join(raw.headings)}); name them under [columns] of a tyre.toml",
+            _unrecognised(missing, raw, {guess.heading for guess in found.values()}),
             file=path,
             line=raw.heading_line,
         )
@@ -214,6 +244,23 @@ def _recording(path: Path, unloaded_radius: float | None, chosen: ChosenFile | N
         gaps=clock.gaps,
         remarks=remarks,
         backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
+    )
+
+
+def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[str]) -> str:
+    """The error sentence about required channels, with the columns whose units fit."""
+    near = {channel: in_unit_of(channel, raw, taken) for channel in missing}
+    fitting = [
+        f"{name.name} may be {' or '.join(columns)} by the unit" for name, columns in near.items() if columns
+    ]
+    example = next(
+        (f"{name.name}={columns[0]}" for name, columns in near.items() if columns),
+        f"{missing[0].name}=HEADING",
+    )
+    names = " or ".join(channel.name for channel in missing)
+    return (
+        f"no heading is known to be {names} (the headings are {', '.join(raw.headings)}"
+        f"{''.join(f'; {words}' for words in fitting)}); give --column '{example}', or name them under [columns] of a tyre.toml"
     )
 
 

@@ -17,7 +17,8 @@ from mffit.points import levels
 from mffit.points.clock import spread
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
-from mffit.sweeps.columns import implausible
+from mffit.sweeps.columns import implausible, numbers
+from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted, spelt
 
 
@@ -62,6 +63,12 @@ class FoundChannel(NamedTuple):
     heading: str
     stated: str  #: unit as the file states it, "" if it does not
     values: np.ndarray  #: (n,), NaN where there is no reading
+
+    @classmethod
+    def of(cls, raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
+        """The column of a heading as this channel; None without readings."""
+        values = numbers(raw.column(heading))
+        return cls(channel, heading, raw.unit(heading), values) if np.any(np.isfinite(values)) else None
 
     @property
     def unit(self) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import resources
 
+from mffit.constants import LIKENESS_OF_MISSPELT
 from mffit.errors import meant
 
 
@@ -66,3 +67,10 @@ def nearest_channel(heading: str, *, likeness: float) -> str:
     """The channel whose name is most similar to a heading; "" if all similarities are below ``likeness``, from 0 to 1."""
     lower = {name.lower(): name for name in BY_NAME}
     return lower.get(meant(heading.lower(), lower, likeness=likeness), "")
+
+
+def unknown_channel(name: str) -> str:
+    """The error sentence about the name of a channel that there is not."""
+    near = nearest_channel(name, likeness=LIKENESS_OF_MISSPELT)
+    hint = f'did you mean "{near}"?' if near else f"known columns are {', '.join(BY_NAME)}"
+    return f"is not a column of a sweep; {hint}"

@@ -12,11 +12,11 @@ import numpy as np
 from mffit.config import Config, setup_names
 from mffit.config.lines import ExcludeTable, inside, ranges_text
 from mffit.config.models import SweepTable
-from mffit.constants import LIKENESS_OF_MISSPELT, NAMED_IN_SENTENCE
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import InputError
 from mffit.sheets import file_of, sheet_in
 from mffit.sweeps.assembly import sweeps_of
-from mffit.sweeps.channels import BY_NAME, nearest_channel
+from mffit.sweeps.channels import BY_NAME, unknown_channel
 from mffit.sweeps.columns import Columns, read_columns
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
 from mffit.sweeps.frames import (
@@ -153,11 +153,11 @@ def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
 
     for name in entry.columns:
         if name not in BY_NAME:
-            raise refuse(_unknown(name), f"columns.{name}")
+            raise refuse(unknown_channel(name), f"columns.{name}")
     for name in config.columns:
         if name not in BY_NAME:
             key = f"columns.{name}"
-            raise InputError(_unknown(name), file=config.path, line=config.line_of(key), key=key)
+            raise InputError(unknown_channel(name), file=config.path, line=config.line_of(key), key=key)
     if not file_of(entry.file).name.lower().endswith(ENDINGS):
         *names, last = (kind.name for kind in FORMATS)
         raise refuse(
@@ -268,12 +268,6 @@ def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Co
             line = config.line_of(error.key)
             raise InputError(error.sentence, file=config.path, line=line, key=error.key) from None
         raise
-
-
-def _unknown(name: str) -> str:
-    near = nearest_channel(name, likeness=LIKENESS_OF_MISSPELT)
-    hint = f'did you mean "{near}"?' if near else f"known columns are {', '.join(BY_NAME)}"
-    return f"is not a column of a sweep; {hint}"
 
 
 def _contradicting(columns: Columns, entry: SweepTable) -> list[str]:

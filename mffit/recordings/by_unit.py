@@ -1,0 +1,110 @@
+"""Columns under unknown headings, by the unit that the file states for them.
+
+A unit of pressure, of speed or of time leaves one channel: the only column in it is taken, with a question. Other units leave
+several channels, or several columns, and only the question.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+
+from mffit.recordings.unstated import FoundChannel
+from mffit.sweeps.channels import SWEEP_CHANNELS, Channel
+from mffit.sweeps.columns import UNCERTAINTIES, implausible, numbers
+from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.units import UnknownUnitError, converted, spelt
+
+KINDS = {
+    "kPa": "pressure", "m/s": "speed", "s": "time", "degC": "temperature", "deg": "angle", "N": "force", "N m": "moment",
+    "rad/s": "rotation", "m": "length",
+}  # fmt: skip
+"""Word for the kind of each of the contract's units."""
+ONE_CHANNEL = ("kPa", "m/s", "s")
+"""Units that leave one channel; a temperature may be that of the air or the track instead."""
+NOT_THE_TYRES = re.compile(r"amb|umgeb|baro|atmos|hydr|air|wind", re.IGNORECASE)
+"""Words in headings of pressures and speeds that are not the tyre's."""
+ANGLE = re.compile(r"deg|rad|°")
+
+
+def is_of_kind(unit: str, channel: Channel) -> bool:
+    """Whether readings in a unit can be converted to that of a channel; a share is no angle."""
+    try:
+        converted(np.zeros(1), unit, channel.unit)
+    except UnknownUnitError:
+        return False
+    return channel.unit != "deg" or ANGLE.search(spelt(unit)) is not None
+
+
+def in_unit_of(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[str]:
+    """The headings of numbers that are not taken and whose stated unit is one of the channel's kind."""
+    return [
+        heading
+        for heading, unit in zip(raw.headings, raw.units, strict=True)
+        if unit
+        and heading not in taken
+        and is_of_kind(unit, channel)
+        and np.any(np.isfinite(numbers(raw.column(heading))))
+    ]
+
+
+def only_ones(
+    raw: RawTable, found: Mapping[str, FoundChannel], taken: Collection[str]
+) -> dict[str, FoundChannel]:
+    """Missing channels that the unit of a single column leaves no choice for."""
+    by_unit = {}
+    for channel in SWEEP_CHANNELS:
+        if channel.unit not in ONE_CHANNEL or channel.name in ("t_s", *found):
+            continue
+        near = in_unit_of(channel, raw, taken)
+        if len(near) == 1 and (column := FoundChannel.of(raw, channel, near[0])) and _fits(column):
+            by_unit[channel.name] = column
+    return by_unit
+
+
+def _fits(column: FoundChannel) -> bool:
+    """Whether the readings can be those of the channel."""
+    if column.channel.name == "time_s":
+        steps = np.diff(column.values)
+        return bool(np.all(steps >= 0.0) and np.any(steps > 0.0))
+    values = converted(column.values, column.stated, column.channel.unit)
+    return not NOT_THE_TYRES.search(column.heading) and not implausible(
+        values, column.channel, may_have_gaps=True
+    )
+
+
+def taken_for(column: FoundChannel) -> str:
+    """The question about a column that is taken because of its unit."""
+    channel = column.channel
+    return (
+        f"{column.heading} [{column.stated}] is taken as {channel.name}, because no other unused column has a unit of "
+        f"{KINDS[channel.unit]}: is it the {channel.description}? If not, remove {channel.name} under [columns]"
+    )
+
+
+def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> list[str]:
+    """A question for every kind of unit with unused columns and missing channels."""
+    asked = []
+    for unit, kind in KINDS.items():
+        missing = [
+            channel
+            for channel in SWEEP_CHANNELS
+            if channel.unit == unit and channel.name not in (*found, *UNCERTAINTIES, "t_s")
+        ]
+        near = in_unit_of(missing[0], raw, taken) if missing else []
+        if near:
+            asked.append(question(missing, near, raw, kind))
+    return asked
+
+
+def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, kind: str) -> str:
+    """Which of the columns ``near`` is which of the missing channels of this kind, and how to say so."""
+    names = [f"{channel.name} ({channel.description})" for channel in missing]
+    columns = ", ".join(f'"{heading}" [{raw.unit(heading)}]' for heading in near)
+    name, heading = missing[0].name, near[0]
+    return (
+        f"no heading is known to be {' or '.join(names)}; unused columns in a unit of {kind}: {columns}; is it one of them? Then "
+        f"give --column '{name}={heading}', or write {name} = \"{heading}\" under [columns]"
+    )
