@@ -14,10 +14,16 @@ import tomli_w
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
-from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from, rolls_backward
+from mffit.recordings.sniffed import (
+    Sniffed,
+    SniffedRecording,
+    axes_reason,
+    holding,
+    points_from,
+    rolls_backward,
+)
 from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
-from mffit.sweeps import formats
 from mffit.sweeps.formats import stem
 
 TYRE_IN_TITLE = re.compile(
@@ -280,17 +286,7 @@ def _axes(sniffed: Sniffed, stated: str | None) -> str:
     if not sniffed.axes:
         wrong = " and ".join(sniffed.wrong[:2])
         return f'axes = "iso"  # no known axes fit: in ISO signs {wrong}; map a column with scale = -1'
-    first, *others = sniffed.axes
-    prescribing = [r.kind for r in sniffed.recordings if formats.format_of(r.path).axes == first]
-    reason = (
-        f"as {prescribing[0]} prescribes"
-        if prescribing
-        else "from the signs of side force, aligning moment, camber thrust and load"
-    )
-    if others:
-        also = " or ".join(f'"{axes}"' for axes in others)
-        reason = f"{also} would fit these recordings, too: they hold too little camber"
-    return f'axes = "{first}"  # {reason}'
+    return f'axes = "{sniffed.axes[0]}"  # {axes_reason(sniffed)}'
 
 
 def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:

@@ -85,6 +85,7 @@ class Sniffed:
 
     of_two_tyres: bool = False  #: whether the last warning of ``reading`` is about two tyres
     bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
+    evidence: tuple[str, ...] = ()  #: what the axes were decided from, as phrases; empty if nothing decides
 
     @property
     def points(self) -> Points:
@@ -148,7 +149,16 @@ def sniff(
     ]
     two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
     reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
-    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), bool(two), bad)
+    return Sniffed(
+        recordings,
+        agreeing,
+        wrong,
+        reading,
+        conditions_of(recordings, reading),
+        bool(two),
+        bad,
+        evidence_of(reading.points, load_falls=axes == "sae"),
+    )
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -330,6 +340,51 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     prescribed = {formats.format_of(Path(file)).axes for file in points.files}
     agreeing = [axes for axes in agreeing if axes in prescribed] or agreeing
     return tuple(agreeing), tuple(contradictions(signatures(points)))
+
+
+SLOPES = {
+    "cornering": "the slope of side force over sideslip",
+    "camber": "the slope of side force over camber",
+    "aligning": "the slope of the aligning moment over sideslip",
+    "backward": "the slope of side force over sideslip in backward runs",
+}
+"""Words for the slopes whose signs depend on the axes."""
+
+
+def evidence_of(points: Points, *, load_falls: bool) -> tuple[str, ...]:
+    """What these points say about the axes: slopes with a significant sign, and a negative load (``load_falls``)."""
+    found = signatures(points)
+    slopes = [word for name, word in SLOPES.items() if getattr(found, name).sign]
+    large = ["the camber thrust at large camber"] if np.isfinite(found.thrust) else []
+    return (*slopes, *large, *(["the negative load"] if load_falls else []))
+
+
+def axes_reason(sniffed: Sniffed) -> str:
+    """What the axes were decided from, and why several axes fit."""
+    first, *others = sniffed.axes
+    prescribing = [r.kind for r in sniffed.recordings if formats.format_of(r.path).axes == first]
+    if prescribing:
+        return f"as {prescribing[0]} prescribes"
+    *most, last = sniffed.evidence or ("",)
+    reasons = [f"from {' and '.join(filter(None, (', '.join(most), last)))}"] if last else []
+    if others:
+        quoted = " or ".join(f'"{axes}"' for axes in others)
+        reasons.append(", ".join((f"{quoted} would fit, too", *_undecided(sniffed))))
+    return "; ".join(reasons)
+
+
+def _undecided(sniffed: Sniffed) -> list[str]:
+    """Why a slope that would decide between axes is unknown: its angle stands still, or the force does not follow it."""
+    angles = {
+        "cornering": (levels.SIDESLIP, sniffed.points.alpha),
+        "camber": (levels.CAMBER, sniffed.points.gamma),
+    }
+    said = []
+    for name, (quantity, angle) in angles.items():
+        if SLOPES[name] not in sniffed.evidence:
+            moves = np.ptp(angle) > quantity.tolerance if len(angle) else False
+            said.append(f"as {SLOPES[name]} is not clear" if moves else f"as {quantity.name} does not change")
+    return said
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:

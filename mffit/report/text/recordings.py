@@ -9,7 +9,7 @@ import numpy as np
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
 from mffit.recordings.project_file import title_of
-from mffit.recordings.sniffed import Level, SniffedRecording
+from mffit.recordings.sniffed import Level, SniffedRecording, axes_reason
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
 
@@ -102,13 +102,7 @@ def _about(recording: SniffedRecording) -> str:
 def _axes(sniffed: Sniffed) -> str:
     if not sniffed.axes:
         return f"axes: none of the known axes fit; in ISO signs {' and '.join(sniffed.wrong)}"
-    names = " or ".join(sniffed.axes)
-    doubt = (
-        ", which these recordings cannot tell apart, as they hold too little camber"
-        if len(sniffed.axes) > 1
-        else ""
-    )
-    return f"axes: {names}{doubt} (from camber thrust, the sign of the load, and the slopes of force and moment over sideslip)"
+    return f"axes: {sniffed.axes[0]} ({axes_reason(sniffed)})"
 
 
 def _conditions(sniffed: Sniffed) -> str:

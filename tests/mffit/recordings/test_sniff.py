@@ -75,7 +75,24 @@ def test_without_camber_the_axes_stay_open_with_a_remark(tmp_path):
     table = iso(recording(cambers=(0.0,), pressures=(83.0,)))
     found = sniff([write_mat73(table, tmp_path / "a.mat")])
     assert found.axes == ("iso", "sae")  # first those that the sign of the load suggests
-    assert "too little camber" in text.sniff_summary(found)
+    said = text.sniff_summary(found)
+    assert '"sae" would fit, too, as camber does not change' in said
+    assert "camber thrust" not in said
+    assert "from the slope of side force over sideslip and" in said
+
+
+def test_the_evidence_for_the_axes_is_what_the_recording_holds(tmp_path):
+    """A negative load and camber are evidence only where they are recorded."""
+
+    def reason(table) -> str:
+        return text.sniff_summary(sniff([write_mat73(table, tmp_path / "a.mat")])).partition("axes: ")[2]
+
+    whole = recording(pressures=(83.0,))
+    assert reason(whole).startswith("sae (from the slope of side force over sideslip")
+    assert "the slope of side force over camber" in reason(whole).partition("\n")[0]
+    assert "and the negative load)" in reason(whole)
+    assert "load" not in reason(iso(whole)).partition("\n")[0]
+    assert "moment" not in reason(whole.drop(columns="MZ")).partition("\n")[0]
 
 
 def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):

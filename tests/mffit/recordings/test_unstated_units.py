@@ -359,7 +359,7 @@ nominal_speed = 11.1  # m/s, LONGVL: the most frequent speed
 
 [rig]
 type = "flat-track"  # a straight path; for a disc, give path_centre and path_radius as well
-axes = "sae"  # from the signs of side force, aligning moment, camber thrust and load
+axes = "sae"  # from the negative load
 
 [columns]  # of all files
 # no time: each of 18 rows is treated as a finished point; if they are samples of a recording, name its time under \
