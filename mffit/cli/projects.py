@@ -115,8 +115,6 @@ def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> D
         raise InputError("--disc and --belt exclude each other; give one of them")
     if radius is None or centre is None:
         raise InputError("a disc needs --path-radius M and --path-centre left|right")
-    if not radius > 0.0:
-        raise InputError(f"{radius:g} m is no radius; correct it", key="--path-radius")
     return DiscPath(radius, centre)
 
 

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from mffit import config as configuration
-from mffit.config.loading import STAND_IN
+from mffit.config.loading import STAND_IN, checked
 from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
+from mffit.points.loading import read
 from mffit.points.stretch import stretch_table
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.project_file import load_beyond, slug
 from mffit.recordings.sniffed import configuration_of
+from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 
 STRETCHES = "stretches.csv"
@@ -56,15 +60,18 @@ def init_from(
     Raises
     ------
     InputError
-        A recording cannot be read, radius, load or pressure is missing or out of range, a file exists already, no axes fit, or
-        the recordings look like those of a disc and neither ``disc`` nor ``belt`` is given.
+        A recording cannot be read, radius, load or pressure is missing, the configuration refuses a value, a file exists
+        already, no axes fit, or the recordings look like those of a disc and neither ``disc`` nor ``belt`` is given, or they
+        contradict the stated disc.
     """
-    _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
     stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
-    sniffed, text = project_of(
-        sniff(files, unloaded_radius=unloaded_radius, headings=headings), folder, stated
-    )
+    _check_given(stated)
+    with _as_options():
+        _check_keys(stated)
+        sniffed = sniff(files, unloaded_radius=unloaded_radius, headings=headings)
+        sniffed, _ = project_of(sniffed, folder, stated)
+        sniffed, text = _as_a_build_reads(sniffed, folder, stated)
     return sniffed, written_project(folder, sniffed, text)
 
 
@@ -87,23 +94,73 @@ def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed,
     return sniffed, project_text(sniffed, folder, stated)
 
 
-def _check_tyre(name: str | None, radius: float | None, load: float | None, pressure: float | None) -> None:
-    """Refuse missing values and values that the configuration would refuse, under the names of their options."""
+def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:
+    """The recordings and the text of the ``tyre.toml``, under the first axes that fit and that a build does not refuse.
+
+    Raises InputError if the recordings contradict the stated disc; another reason for which a build refuses them is a warning.
+    """
+    refusals = []
+    for axes in sniffed.axes if stated.axes is None else (stated.axes,):
+        ordered = tuple(sorted(sniffed.axes, key=lambda one: one != axes))
+        found = replace(sniffed, axes=ordered)
+        refusal = _refusal_of_a_build(found, stated)
+        if refusal is None:
+            return found, project_text(found, folder, stated)
+        refusals.append(refusal)
+    first = refusals[0]
+    if stated.disc is not None and first.key in ("rig.axes", "rig.path_centre", "rig.force_frame"):
+        raise InputError(first.sentence, key="rig.path_centre")
+    reading = sniffed.reading
+    said = f"mffit build refuses these recordings: {first}"
+    found = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, said)))
+    return found, project_text(sniffed, folder, stated)
+
+
+def _refusal_of_a_build(sniffed: Sniffed, stated: Stated) -> InputError | None:
+    """Why a build refuses the points of the ``tyre.toml``; None if it reads them."""
+    here = Path()  # the project's folder may not exist yet
+    try:
+        config = checked(tomllib.loads(project_text(sniffed, here, stated)), path=None, folder=here, lines={})
+        before_the_fit(read(config).points, config)
+    except InputError as error:
+        return error
+    return None
+
+
+def _check_given(stated: Stated) -> None:
+    """Refuse missing values that recordings cannot contain."""
     asked = (
-        (radius, "the free radius", "--unloaded-radius M"),
-        (load, "the nominal load", "--nominal-load N"),
+        (stated.unloaded_radius, "the free radius", "--unloaded-radius M"),
+        (stated.nominal_load, "the nominal load", "--nominal-load N"),
     )
     lacking = [(word, option) for value, word, option in asked if value is None]
     if lacking:
         words, options = (" and ".join(column) for column in zip(*lacking, strict=True))
         raise InputError(f"recordings do not contain {words} of the tyre: give {options}")
-    given = {"name": name, "unloaded_radius": radius, "nominal_load": load, "nominal_pressure": pressure}
-    tyre = {"name": "tyre", **STAND_IN, **{key: value for key, value in given.items() if value is not None}}
+
+
+def _check_keys(stated: Stated) -> None:
+    """Refuse values that the configuration refuses."""
+    given = {"name": "tyre", **STAND_IN}
+    for key in ("name", "unloaded_radius", "nominal_load", "nominal_pressure"):
+        if (value := getattr(stated, key)) is not None:
+            given[key] = value
+    rig: dict[str, object] = {"type": "flat-track"}
+    if stated.disc is not None:
+        rig = {"type": "rotating-disk", "path_radius": stated.disc.radius, "path_centre": stated.disc.centre}
+    configuration.load({"tyre": given, "rig": rig, "sweep": [{"file": "any.csv"}]})
+
+
+@contextmanager
+def _as_options() -> Iterator[None]:
+    """Within this block, errors about keys of [tyre] and [rig] name the options that state them."""
     try:
-        configuration.load({"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "any.csv"}]})
+        yield
     except InputError as error:
-        key = (error.key or "").rpartition(".")[2].replace("_", "-")
-        raise InputError(error.sentence, key=f"--{key}") from None
+        table, _, key = (error.key or "").partition(".")
+        if table not in ("tyre", "rig"):
+            raise
+        raise InputError(error.sentence, file=error.file, key=f"--{key.replace('_', '-')}") from None
 
 
 def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from flat_belt import recording
 
 from mffit import config as configuration
 from mffit.cli import main
@@ -75,12 +76,56 @@ def test_a_belt_may_be_insisted_on(tmp_path):
         (["--disc"], "needs --path-radius"),
         (["--path-radius", "1.3"], "--path-centre"),
         (["--disc", "--path-radius", "1.3", "--path-centre", "left", "--belt"], "exclude each other"),
-        (["--disc", "--path-radius", "0", "--path-centre", "left"], "is no radius"),
+        (
+            ["--disc", "--path-radius", "0", "--path-centre", "left"],
+            "--path-radius: 0 m is outside 0.2 to 100 m",
+        ),
+        (["--disc", "--path-radius", "1323", "--path-centre", "left"], "millimetres, write metres"),
+        (
+            ["--disc", "--path-radius", "nan", "--path-centre", "left"],
+            "--path-radius: nan is not a finite number",
+        ),
+        (["--disc", "--path-radius", "1.323", "--path-centre", "right"], '--path-centre: with axes = "iso"'),
     ],
 )
 def test_half_a_disc_is_refused(tmp_path, capsys, options, word):
     assert run("init", "--from", *DISC, tmp_path / "p", *TYRE, *options) == 2
     assert word in capsys.readouterr().err
+
+
+def test_a_wrong_centre_is_refused_with_the_sentence_of_a_build(tmp_path, capsys):
+    options = ["--disc", "--path-radius", "1.323", "--path-centre"]
+    assert run("init", "--from", *DISC, tmp_path / "p", *TYRE, *options, "left") == 0
+    toml = tmp_path / "p" / "tyre.toml"
+    toml.write_text(toml.read_text().replace('path_centre = "left"', 'path_centre = "right"'))
+    assert run("build", toml, "--out", tmp_path / "out") == 2
+    of_build = capsys.readouterr().err
+    assert run("init", "--from", *DISC, tmp_path / "q", *TYRE, *options, "right") == 2
+    of_init = capsys.readouterr().err
+    assert of_init.partition("--path-centre: ")[2] == of_build.partition("rig.path_centre: ")[2]
+    assert 'the data agree with path_centre = "left"' in of_init
+    assert not (tmp_path / "q").exists()
+
+
+def test_the_path_decides_between_axes_that_camber_leaves_open(tmp_path):
+    """Without camber, a disc at the left in ISO signs gives the readings of a disc at the right in SAE signs."""
+    upright = [file for file in DISC if "camber" not in file.name]
+    options = ["--disc", "--path-radius", "1.323", "--path-centre"]
+    for centre, axes in (("left", "iso"), ("right", "sae")):
+        assert run("init", "--from", *upright, tmp_path / centre, *TYRE, *options, centre) == 0
+        assert configuration.load(tmp_path / centre / "tyre.toml").rig.axes == axes
+
+
+def test_what_a_build_refuses_otherwise_is_a_warning_of_init(tmp_path, capsys):
+    """The project is written, because its user can change it: on a disc, moving sweeps give no points."""
+    moving = recording(loads=(1500.0,), cambers=(0.0,), pressures=(83.0,), sweep_s=4.0, rest_s=0.2)
+    moving.to_csv(tmp_path / "a.csv", index=False)
+    options = ["--disc", "--path-radius", "1.323", "--path-centre", "left"]
+    assert run("init", "--from", tmp_path / "a.csv", tmp_path / "p", *TYRE, *options) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "mffit build refuses these recordings: no sweep rests long enough" in said
+    assert run("build", tmp_path / "p" / "tyre.toml", "--out", tmp_path / "out") == 2
+    assert "no sweep rests long enough" in capsys.readouterr().err
 
 
 def test_sniff_leaves_the_path_of_a_disc_open(capsys):
