@@ -44,8 +44,15 @@ def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> No
     help="A copy of a sample: flat-track, flat-track-combined, front-120-70 or rear-190-55.",
 )
 @unloaded_radius
-@click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
-@click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
+@click.option(
+    "--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons, if the files lack it."
+)
+@click.option(
+    "--nominal-pressure",
+    type=float,
+    metavar="KPA",
+    help="With --from [default: NOMPRES of the files, else as most was run].",
+)
 @click.option("--disc", is_flag=True, help="With --from: the path was that of a disc.")
 @click.option("--path-radius", type=float, metavar="M", help="With --disc: radius of the path, in metres.")
 @path_centre

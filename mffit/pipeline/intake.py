@@ -17,8 +17,8 @@ from mffit.points.loading import read
 from mffit.points.stretch import stretch_table
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
 from mffit.recordings.guess import NOTHING_NAMED
-from mffit.recordings.project_file import load_beyond, slug
-from mffit.recordings.sniffed import configuration_of
+from mffit.recordings.project_file import load_beyond, slug, tyre_found
+from mffit.recordings.sniffed import configuration_of, stated_of_tyre
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 
@@ -30,8 +30,8 @@ def init_from(
     files: Sequence[str | Path],
     folder: str | Path,
     *,
-    unloaded_radius: float | None,
-    nominal_load: float | None,
+    unloaded_radius: float | None = None,
+    nominal_load: float | None = None,
     nominal_pressure: float | None = None,
     name: str | None = None,
     headings: Mapping[str, str] = NOTHING_NAMED,
@@ -44,9 +44,9 @@ def init_from(
     ----------
     files : recordings as the rig wrote them, or patterns; they are not moved
     folder : created if necessary; existing files are never replaced
-    unloaded_radius : [m]
-    nominal_load : [N]
-    nominal_pressure : [kPa]; default the pressure of most samples
+    unloaded_radius : [m]; default that of the recordings (RFREE, or half of OVALLDIA)
+    nominal_load : [N]; default that of the recordings (FNOMIN)
+    nominal_pressure : [kPa]; default that of the recordings (NOMPRES), else the pressure of most samples
     name : name of the output files; default that of the recording, or of the folder for several
     headings : headings that are not recognised, by channel, such as ``{"p_kPa": "Druck"}``
     disc : path of the disc
@@ -66,10 +66,10 @@ def init_from(
     """
     folder = Path(folder)
     stated = Stated(unloaded_radius, nominal_load, nominal_pressure, name=name, disc=disc, belt=belt)
-    _check_given(stated)
     with _as_options():
         _check_keys(stated)
         sniffed = sniff(files, unloaded_radius=unloaded_radius, headings=headings)
+        stated = _with_those_of_files(stated, sniffed, folder)
         sniffed, _ = project_of(sniffed, folder, stated)
         sniffed, text = _as_a_build_reads(sniffed, folder, stated)
     return sniffed, written_project(folder, sniffed, text)
@@ -127,8 +127,16 @@ def _refusal_of_a_build(sniffed: Sniffed, stated: Stated) -> InputError | None:
     return None
 
 
-def _check_given(stated: Stated) -> None:
-    """Refuse missing values that recordings cannot contain."""
+def _with_those_of_files(stated: Stated, sniffed: Sniffed, folder: Path) -> Stated:
+    """What is stated, with radius and load of the tyre from the recordings where they are not.
+
+    Raises InputError if neither states them.
+    """
+    found = tyre_found(sniffed, folder)
+    if stated.unloaded_radius is None:
+        stated = stated._replace(unloaded_radius=found.unloaded_radius)
+    if stated.nominal_load is None:
+        stated = stated._replace(nominal_load=found.nominal_load)
     asked = (
         (stated.unloaded_radius, "the free radius", "--unloaded-radius M"),
         (stated.nominal_load, "the nominal load", "--nominal-load N"),
@@ -136,7 +144,8 @@ def _check_given(stated: Stated) -> None:
     lacking = [(word, option) for value, word, option in asked if value is None]
     if lacking:
         words, options = (" and ".join(column) for column in zip(*lacking, strict=True))
-        raise InputError(f"recordings do not contain {words} of the tyre: give {options}")
+        raise InputError(f"the recordings do not state {words} of the tyre: give {options}")
+    return stated
 
 
 def _check_keys(stated: Stated) -> None:
@@ -166,7 +175,10 @@ def _as_options() -> Iterator[None]:
 def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
     """Refuse recordings from which no project can be made."""
     first = sniffed.recordings[0].path
-    if stated.nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
+    known = "nominal_pressure" in stated_of_tyre(sniffed) or any(
+        "p_kPa" in r.guesses for r in sniffed.recordings
+    )
+    if stated.nominal_pressure is None and not known:
         asked = [(r.path, said) for r in sniffed.recordings for said in r.remarks if "p_kPa" in said]
         nothing = "no pressure is measured, so the nominal pressure is unknown: give"
         path, why = asked[0] if asked else (first, nothing)

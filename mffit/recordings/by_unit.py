@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from mffit.recordings.tyre_constants import NAMES
 from mffit.recordings.unstated import FoundChannel
 from mffit.sweeps.channels import SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import UNCERTAINTIES, implausible, numbers
@@ -19,9 +20,9 @@ from mffit.sweeps.units import UnknownUnitError, converted, spelt
 
 KINDS = {
     "kPa": "pressure", "m/s": "speed", "s": "time", "degC": "temperature", "deg": "angle", "N": "force", "N m": "moment",
-    "rad/s": "rotation", "m": "length",
+    "rad/s": "rotation",
 }  # fmt: skip
-"""Word for the kind of each of the contract's units."""
+"""Word for the kind of each of the contract's units whose readings are seldom anything else; lengths may be of everything."""
 ONE_CHANNEL = ("kPa", "m/s", "s")
 """Units that leave one channel; a temperature may be that of the air or the track instead."""
 NOT_THE_TYRES = re.compile(r"amb|umgeb|baro|atmos|hydr|air|wind", re.IGNORECASE)
@@ -45,6 +46,7 @@ def in_unit_of(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[
         for heading, unit in zip(raw.headings, raw.units, strict=True)
         if unit
         and heading not in taken
+        and heading.upper() not in NAMES
         and is_of_kind(unit, channel)
         and np.any(np.isfinite(numbers(raw.column(heading))))
     ]

@@ -23,6 +23,8 @@ LARGEST_LEVER_ARM_IN_FEET = Real(
     "20 to 60 mm it is 0.07 to 0.2 in feet and 0.8 to 2.4 in inches.",
 )
 TYRE_PRESSURES = Series((40.0, 1200.0), "kPa", "Pressures of tyres, from karts to lorries.")
+RADII_OF_TYRES = Series((0.1, 1.2), "m", "Unloaded radii, from karts to earth movers.")
+LOADS_OF_TYRES = Series((100.0, 100_000.0), "N", "Nominal loads, from karts to lorries.")
 TIME_BETWEEN_POINTS = Series(
     (5.0, 3600.0),
     "s",

@@ -21,6 +21,7 @@ from mffit.recordings.sniffed import (
     holding,
     points_from,
     rolls_backward,
+    stated_of_tyre,
 )
 from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
@@ -80,12 +81,15 @@ def tyre_found(sniffed: Sniffed, folder: Path) -> Stated:
     size = next((tyre for r in sniffed.recordings if (tyre := named_tyre(r.about))), "")
     width, rim_radius = _of_size(size)
     several = len(sniffed.recordings) > 1 and folder.name
+    of_files = {key: one.value for key, one in stated_of_tyre(sniffed).items()}
     return Stated(
+        unloaded_radius=of_files.get("unloaded_radius"),
+        nominal_load=of_files.get("nominal_load"),
         name=slug(folder if several else sniffed.recordings[0].path),
         size=size[:MOST_OF_SIZE] or None,
         width=width,
         rim_radius=rim_radius,
-        nominal_pressure=_pressure(sniffed),
+        nominal_pressure=of_files.get("nominal_pressure", _pressure(sniffed)),
         nominal_speed=_speed(sniffed),
     )
 
@@ -128,13 +132,18 @@ def _text(tables: Sequence[Sequence[str]]) -> str:
 def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
     """The lines of [tyre]; a stated value equal to that of the recordings gets the comment that names them as source."""
     found = tyre_found(sniffed, folder)
+    of_files = {key: f", {one.why}" for key, one in stated_of_tyre(sniffed).items()}
 
-    def line(key: str, unit: str, why: str) -> Iterator[str]:
+    def line(key: str, unit: str, why: str = "", doubt: str = "") -> Iterator[str]:
         value, own = getattr(stated, key), getattr(found, key)
         if value is None or value == own:
-            yield from [] if own is None else [f"{key} = {_value(own)}  # {unit}{why}"]
-        else:
-            yield f"{key} = {_value(value)}" + (f"  # {unit}" if unit else "")
+            value, unit = own, unit + why
+        comment = "; ".join(filter(None, (unit, _one_line(doubt))))
+        if value is not None:
+            yield f"{key} = {_value(value)}" + f"  # {comment}" * bool(comment)
+
+    def asked(key: str, unit: str, why: str = "", doubt: str = "") -> Iterator[str]:
+        yield from [*line(key, unit, of_files.get(key, why), doubt)] or [_given(key, None, unit)]
 
     title = next((title for r in sniffed.recordings if (title := title_of(r.about))), "")
     yield f"name = {quoted(stated.name or str(found.name))}"
@@ -143,11 +152,10 @@ def _tyre(sniffed: Sniffed, folder: Path, stated: Stated) -> Iterator[str]:
     yield from line("size", "", "as the recording names the tyre")
     for key in ("width", "rim_radius"):
         yield from line(key, "m", ", as the size says")
-    yield _given("unloaded_radius", stated.unloaded_radius, "m")
-    yield _load(sniffed, stated.nominal_load)
-    if stated.nominal_pressure is None and found.nominal_pressure is None:
-        yield _given("nominal_pressure", None, "kPa, NOMPRES")
-    yield from line("nominal_pressure", "kPa, NOMPRES", ": the most frequent pressure")
+    yield from asked("unloaded_radius", "m")
+    load = found.nominal_load if stated.nominal_load is None else stated.nominal_load
+    yield from asked("nominal_load", "N, FNOMIN", doubt=load_beyond(sniffed, load))
+    yield from asked("nominal_pressure", "kPa, NOMPRES", ": the most frequent pressure")
     yield from line("nominal_speed", "m/s, LONGVL", ": the most frequent speed")
     if stated.side not in (None, TyreTable.model_fields["side"].default):
         yield f"side = {quoted(str(stated.side))}"
@@ -167,12 +175,6 @@ def _of_size(tyre: str) -> tuple[float | None, float | None]:
     else:
         return None, None
     return float(f"{width:.4g}"), float(f"{0.5 * rim:.4g}")
-
-
-def _load(sniffed: Sniffed, given: float | None) -> str:
-    line = _given("nominal_load", given, "N, FNOMIN")
-    doubt = load_beyond(sniffed, given)
-    return f"{line}; {_one_line(doubt)}" if doubt else line
 
 
 def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,7 @@ from mffit.points.stretch import MOVE
 from mffit.recordings.by_unit import KINDS, in_unit_of
 from mffit.recordings.guess import NOTHING_NAMED, ColumnChoice, corrected, guesses
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
+from mffit.recordings.tyre_constants import StatedByFile, stated_by
 from mffit.recordings.unstated import Guess
 from mffit.sheets import file_of
 from mffit.suspicion import contradictions, signatures, under_axes
@@ -53,6 +55,7 @@ class SniffedRecording(NamedTuple):
     gaps: int  #: number of gaps in time
     remarks: tuple[str, ...]  #: on doubtful columns
     backward: bool = False  #: whether the wheel rolled backwards, by the file's name or a user's choice
+    tyre: Mapping[str, StatedByFile] = MappingProxyType({})  #: keys of [tyre] that it states
 
 
 class ChosenFile(NamedTuple):
@@ -222,6 +225,9 @@ def _recording(
     path: Path, unloaded_radius: float | None, chosen: ChosenFile | None, headings: Mapping[str, str]
 ) -> SniffedRecording:
     raw = formats.read(path)
+    tyre = stated_by(raw)
+    if unloaded_radius is None and "unloaded_radius" in tyre:
+        unloaded_radius = tyre["unloaded_radius"].value
     guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings)
     found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
     for name, heading in headings.items():
@@ -254,6 +260,7 @@ def _recording(
         gaps=clock.gaps,
         remarks=remarks,
         backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
+        tyre=tyre,
     )
 
 
@@ -385,6 +392,14 @@ def _undecided(sniffed: Sniffed) -> list[str]:
             moves = np.ptp(angle) > quantity.tolerance if len(angle) else False
             said.append(f"as {SLOPES[name]} is not clear" if moves else f"as {quantity.name} does not change")
     return said
+
+
+def stated_of_tyre(sniffed: Sniffed) -> dict[str, StatedByFile]:
+    """The keys of [tyre] that recordings state; of several recordings, the first counts."""
+    found: dict[str, StatedByFile] = {}
+    for recording in sniffed.recordings:
+        found = {**recording.tyre, **found}
+    return found
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:

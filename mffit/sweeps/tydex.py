@@ -22,7 +22,7 @@ from mffit.sweeps.tydex_format import (
     REMARK,
     FixedRow,
 )
-from mffit.sweeps.units import is_unit
+from mffit.sweeps.units import is_unit, spelt
 
 Numbered = list[tuple[int, str]]
 """Lines with their numbers, from 1."""
@@ -47,12 +47,14 @@ def read_tydex(path: Path) -> RawTable:
     lines, values = _data(sections.get(DATA, []), len(channels), path)
     columns = {channel.name: _physical(channel, values[:, k]) for k, channel in enumerate(channels)}
     units = {channel.name: channel.unit for channel in channels}
-    for _, line in sections.get(CONSTANTS, []):
-        constant = _entry(line)
+    header = [_entry(line) for _, line in sections.get(HEADER, [])]
+    in_header = [
+        entry for entry in header if entry.unit and spelt(entry.unit)
+    ]  # some programs put constants there
+    for constant in (*(_entry(line) for _, line in sections.get(CONSTANTS, [])), *in_header):
         value = _float(constant.words[0]) if constant.words else math.nan
         if constant.name not in columns and math.isfinite(value):
             columns[constant.name], units[constant.name] = np.full(len(lines), value), constant.unit
-    header = [_entry(line) for _, line in sections.get(HEADER, [])]
     return RawTable(
         headings=tuple(columns),
         units=tuple(units[name] for name in columns),

@@ -1,0 +1,69 @@
+"""What recordings state about the tyre: constants of a TYDEX file, or columns of one value under their names."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.recordings import constants
+from mffit.sweeps.columns import numbers
+from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.units import UnknownUnitError, converted
+
+
+class TyreConstant(NamedTuple):
+    """A constant of recordings that states a key of [tyre]."""
+
+    key: str
+    name: str  #: in the recording
+    unit: str  #: of the key
+    factor: float  #: from the constant to the key
+    limits: tuple[
+        float, ...
+    ]  #: plausible values of the key; programs write others where nothing was measured
+
+
+TYRE_CONSTANTS = (
+    TyreConstant("unloaded_radius", "RFREE", "m", 1.0, constants.RADII_OF_TYRES),
+    TyreConstant("unloaded_radius", "OVALLDIA", "m", 0.5, constants.RADII_OF_TYRES),
+    TyreConstant("nominal_load", "FNOMIN", "N", 1.0, constants.LOADS_OF_TYRES),
+    TyreConstant("nominal_pressure", "NOMPRES", "kPa", 1.0, constants.TYRE_PRESSURES),
+)
+"""Constants by TYDEX's names; of several for one key, the first counts."""
+
+
+NAMES = frozenset(one.name for one in TYRE_CONSTANTS)
+
+
+class StatedByFile(NamedTuple):
+    """A value that a recording states."""
+
+    value: float  #: in the unit of the key
+    why: str  #: where it comes from
+
+
+def stated_by(raw: RawTable) -> dict[str, StatedByFile]:
+    """The keys of [tyre] that a recording states with their units."""
+    found: dict[str, StatedByFile] = {}
+    for one in TYRE_CONSTANTS:
+        value = _value(one, raw)
+        if one.key not in found and one.limits[0] <= value <= one.limits[-1]:
+            part = "half of " * (one.factor == 0.5)
+            found[one.key] = StatedByFile(float(f"{value:.6g}"), f"{part}{one.name} of {raw.path.name}")
+    return found
+
+
+def _value(one: TyreConstant, raw: RawTable) -> float:
+    """The value of the key; NaN without the constant, its unit, or one value in all rows."""
+    names = {heading.upper(): heading for heading in raw.headings}
+    if one.name not in names or not (unit := raw.unit(names[one.name])):
+        return math.nan
+    values = np.unique(numbers(raw.column(names[one.name])))
+    if len(values) != 1:
+        return math.nan
+    try:
+        return one.factor * float(converted(values, unit, one.unit)[0])
+    except UnknownUnitError:
+        return math.nan
