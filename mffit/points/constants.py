@@ -71,6 +71,15 @@ LARGEST_ORDER_OF_NOISE = Count(
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep, and shortest gap in time.")
 NEAR_ZERO = Real(0.25, "-", "Fx over the load below which its curve over slip is nearly straight.")
 
+# Files under like conditions
+UNLIKE_SHARE = Real(
+    0.1,
+    "-",
+    "Difference of the side forces of two files at like conditions, over their size, that is pointed out: 20 K change them by "
+    "6 %, a worn tread by less.",
+)
+FEWEST_COMPARED = Count(6, "-", "Fewest angles at which two files are compared; two zeros are taken off.")
+
 # Definition of slip
 SLIP_OF_ZERO_FORCE = Real(
     0.004,

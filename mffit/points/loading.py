@@ -13,6 +13,7 @@ from mffit import config as configuration
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.loading import STAND_IN, as_declared
+from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.averaging import rows_as_points
@@ -28,6 +29,7 @@ from mffit.points.slip_zero import SlipZero, against_free_rolling, readings_of
 from mffit.points.steady import scale_of
 from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
+from mffit.points.unlike import unlike_files
 from mffit.sweeps.sweep import ExcludedRows
 from tir.conventions import FLIPPED
 
@@ -76,7 +78,11 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     stretches = tuple(note for part in reduced for note in part.stretches)
-    doubts = lost_sweeps((part.ranges for part in reduced), points, stretches)
+    unlike = unlike_files(points.select(~points.continuous) if config.rig.on_disc else points)
+    doubts = (
+        *lost_sweeps((part.ranges for part in reduced), points, stretches),
+        *(pair.sentence for pair in unlike[:NAMED_IN_SENTENCE]),
+    )
     warnings = [
         *doubts,
         *found.warnings,

@@ -25,12 +25,9 @@ from mffit.recordings.sniffed import (
 )
 from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
+from mffit.sweeps.about import named_tyre, title_of
 from mffit.sweeps.formats import stem
 
-TYRE_IN_TITLE = re.compile(
-    r"\b(?:tyre|tire|reifen)\s*[:=]\s*(\S.*?)\s*(?=$|[;|]|\s[^\s:=]+\s*[:=](?:\s|$))", re.IGNORECASE
-)
-"""The name of the tyre within a title, up to the title's next entry."""
 MOST_OF_SIZE = 60
 """Maximum number of characters of a size or title in ``tyre.toml``."""
 ZEROS_OF_A_DISC = [
@@ -51,8 +48,6 @@ METRIC_SIZE = re.compile(r"(?<!\d)([6-9]\d|\d{3})/\d{2}\s*-?\s*[A-Z]{0,3}\s*-?\s
 INCH_SIZE = re.compile(r"(?<!\d)\d{2}(?:\.\d+)?\s*x\s*(\d{1,2}(?:\.\d+)?)\s*-\s*(\d{2})(?!\d)", re.IGNORECASE)
 """``16x7.5-10``: diameter, width and rim in inches."""
 INCH = 0.0254
-SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
-"""The heading of a section in a text file, ``[DATA]``."""
 
 
 class Stated(NamedTuple):
@@ -267,19 +262,6 @@ def _why_backward(recording: SniffedRecording) -> str:
 
 def _comments(remarks: Iterable[str]) -> list[str]:
     return [f"# {_one_line(remark)}" for remark in remarks]
-
-
-def named_tyre(about: Mapping[str, str]) -> str:
-    """The tyre that a recording names; from a title, only the text after the word tyre."""
-    if about.get("tireid"):
-        return about["tireid"]
-    found = TYRE_IN_TITLE.search(title_of(about))
-    return found[1].strip() if found else ""
-
-
-def title_of(about: Mapping[str, str]) -> str:
-    """The title of a recording without the headings of its sections."""
-    return SECTION_IN_TITLE.sub("", about.get("title", "")).strip()
 
 
 def _axes(sniffed: Sniffed, stated: str | None) -> str:

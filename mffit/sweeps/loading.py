@@ -15,6 +15,7 @@ from mffit.config.models import SweepTable
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.errors import InputError
 from mffit.sheets import file_of, sheet_in
+from mffit.sweeps.about import named_tyre, other_names
 from mffit.sweeps.assembly import sweeps_of
 from mffit.sweeps.channels import BY_NAME, unknown_channel
 from mffit.sweeps.columns import Columns, read_columns
@@ -48,6 +49,7 @@ def load(config: Config) -> Sweeps:
     of_columns: list[tuple[Path, str]] = []
     frames: dict[str, FileFrame] = {}
     tables: dict[str, RawTable] = {}
+    tyres: dict[Path, str] = {}
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         whole = _raw(config, index, entry)
@@ -60,6 +62,7 @@ def load(config: Config) -> Sweeps:
             excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
         if raw is None:
             continue
+        tyres[raw.path] = named_tyre(raw.about)
         columns = _columns(config, index, entry, raw)
         if len(columns.standing):
             at_rest.append((entry.file, columns.standing))
@@ -78,7 +81,7 @@ def load(config: Config) -> Sweeps:
             line=config.line_of("fit.exclude"),
             key="fit.exclude",
         )
-    warnings = _once(of_columns) + warnings + _sheets_left_out(tables)
+    warnings = other_names(tyres) + _once(of_columns) + warnings + _sheets_left_out(tables)
     open_loads = [s for s in found if frames[s.file].forces_lean and frames[s.file].load_is_vertical is None]
     vertical = load_is_vertical(open_loads)
     warnings.extend(_about_frames(found, frames, vertical=vertical))

@@ -8,10 +8,10 @@ import numpy as np
 
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
-from mffit.recordings.project_file import title_of
 from mffit.recordings.sniffed import Level, SniffedRecording, axes_reason
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
+from mffit.sweeps.about import title_of
 
 SETTINGS = {
     "load": ("N", 1.0, 0),

@@ -1,0 +1,131 @@
+"""Files whose forces differ under like conditions, as those of two tyres do."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.constants import STRAIGHT
+from mffit.points import constants, levels
+from mffit.points.points import Points
+from mffit.quantities import CONDITIONS
+from mffit.scatter import ALARM, rms
+
+Curve = Mapping[int, tuple[float, float, float]]
+"""Mean sideslip [rad] and side force per load with its standard error (0 of a single reading), by step of sideslip."""
+
+
+class Unlike(NamedTuple):
+    """Two files that differ at conditions that both hold."""
+
+    first: str
+    second: str
+    share: float  #: difference of the side forces, rms, over their own rms; 0 if chance explains it
+    gain: float  #: side force of the second file over that of the first
+    newtons: float  #: difference at the condition at which they differ most, rms
+    where: str  #: this condition, in words
+
+    @property
+    def sentence(self) -> str:
+        """The remark about the two files."""
+        return (
+            f"{self.second} reads side forces that are {self.gain:.2f} times those of {self.first} at like conditions, "
+            f"{self.newtons:.0f} N rms apart at {self.where}: two tyres, two states of one (warm, worn), or a wrong label; make "
+            "a project of each if they are two tyres"
+        )
+
+
+def unlike_files(points: Points) -> tuple[Unlike, ...]:
+    """Pairs of files whose side forces over sideslip differ by more than zeros of the rig explain, the worst pair first.
+
+    Conditions are levels of load, camber, pressure and speed, direction, mount and path; only the freely rolling wheel is
+    compared. What a zero of the force or of the sideslip makes is taken off.
+    """
+    rolling = points.select(
+        points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False
+    )
+    if len(np.unique(rolling.file)) < 2:
+        return ()
+    keys = np.column_stack(
+        [
+            levels.labels_of_sweeps(rolling.Fz, rolling.sweep, levels.LOAD),
+            *(
+                levels.nearest_labels(getattr(rolling, kind), of)
+                for kind, of in (("gamma", levels.CAMBER), ("p", levels.PRESSURE), ("V", levels.SPEED))
+            ),
+            rolling.direction,
+            rolling.mount,
+            np.unique(rolling.phi_t, return_inverse=True)[1],
+        ]
+    )
+    apart: dict[tuple[int, int], list[_Difference]] = {}
+    for rows in levels.rows_of_equal(keys):
+        cell = rolling.select(rows, with_table=False)
+        curves = {int(k): _curve(cell.select(cell.file == k, with_table=False)) for k in np.unique(cell.file)}
+        for one, other in itertools.combinations(curves, 2):
+            found = _difference(curves[one], curves[other], cell)
+            if found is not None:
+                apart.setdefault((one, other), []).append(found)
+    pairs = (_pair(points.files[one], points.files[other], found) for (one, other), found in apart.items())
+    return tuple(
+        sorted((pair for pair in pairs if pair.share > constants.UNLIKE_SHARE), key=lambda pair: -pair.share)
+    )
+
+
+class _Difference(NamedTuple):
+    """Difference of two files at one condition; forces per load."""
+
+    left: np.ndarray  #: (m,) without the effect of zeros
+    size: np.ndarray  #: (m,) force of the first file
+    error: np.ndarray  #: (m,) standard error of the difference
+    gain: float
+    load: float  #: [N]
+    where: str
+
+
+def _curve(part: Points) -> Curve:
+    step = np.round(part.alpha / STRAIGHT.rad).astype(int)
+    y = part.Fy / part.Fz
+    curve = {}
+    for k in np.unique(step).tolist():
+        own = y[step == k]
+        error = float(np.std(own, ddof=1)) / np.sqrt(len(own)) if len(own) > 1 else 0.0
+        curve[k] = float(np.mean(part.alpha[step == k])), float(np.mean(own)), error
+    return curve
+
+
+def _difference(first: Curve, second: Curve, cell: Points) -> _Difference | None:
+    """The difference of two curves at the steps of sideslip that both have; None with too few."""
+    common = sorted(first.keys() & second.keys())
+    if len(common) < constants.FEWEST_COMPARED:
+        return None
+    (x, y, u), (x_other, y_other, u_other) = (
+        np.transpose([curve[k] for k in common]) for curve in (first, second)
+    )
+    slope = np.gradient(y, x)
+    change = y_other - y - slope * (x_other - x)
+    zeros = np.column_stack([np.ones(len(x)), slope])  # of the force, and of the sideslip
+    left = change - zeros @ np.linalg.lstsq(zeros, change, rcond=None)[0]
+    centred = y - zeros @ np.linalg.lstsq(zeros, y, rcond=None)[0]
+    gain = 1.0 + float(centred @ left) / float(centred @ centred) if np.any(centred) else np.nan
+    return _Difference(left, centred, np.hypot(u, u_other), gain, float(np.median(cell.Fz)), _named(cell))
+
+
+def _named(cell: Points) -> str:
+    column = {"Fz_N": cell.Fz, "gamma_deg": np.degrees(cell.gamma), "p_kPa": 1e-3 * cell.p}
+    load, camber, pressure = (CONDITIONS[name].of(float(np.median(x))) for name, x in column.items())
+    return f"{load}, camber {camber}, {pressure}"
+
+
+def _pair(first: str, second: str, found: list[_Difference]) -> Unlike:
+    left, size, error = (
+        np.concatenate([getattr(one, name) for one in found]) for name in ("left", "size", "error")
+    )
+    worst = max(found, key=lambda one: rms(one.left) * one.load)
+    weights = [float(one.size @ one.size) for one in found]
+    gain = float(np.average([one.gain for one in found], weights=weights))
+    share = rms(left) / rms(size) if rms(left) > ALARM * rms(error) else 0.0
+    return Unlike(first, second, share, gain, rms(worst.left) * worst.load, worst.where)
