@@ -16,6 +16,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.noise import Origin
 from mffit.scatter import rms, robust
 from mffit.suspicion.constants import DISTRUSTED_MISFIT
+from mffit.suspicion.others import without_worst
 
 
 class Answer(Enum):
@@ -111,7 +112,7 @@ def _log_odds(ratio: float, n: int) -> float:
 
 
 def _sweeps(found: Explanation) -> Iterator[Rest]:
-    """The sweep with the least probable misfit of each channel, in units of the estimated noise."""
+    """The sweep with the least probable misfit of each channel, in units of the estimated noise, without its worst points."""
     points, noise = found.problem.points, found.problem.noise
     n = len(points)
     row, channel = noise.used % n, noise.used // n
@@ -121,6 +122,7 @@ def _sweeps(found: Explanation) -> Iterator[Rest]:
         worst = Rest(RestKind.SWEEP, name, 0.0)
         for sweep in names:
             own = square[(channel == k) & (points.sweep[row] == sweep)]
+            own = own[without_worst(own)]
             ratio = float(np.sqrt(np.mean(own))) if len(own) else 0.0
             if ratio <= DISTRUSTED_MISFIT:
                 continue

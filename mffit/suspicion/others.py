@@ -223,20 +223,24 @@ def _suspects(campaign: JudgedSweeps, found: Sequence[Group], size: Mapping[str,
     return [found[k] for k in in_order[: constants.MOST_SUSPECTS]]
 
 
+def without_worst(sizes: np.ndarray) -> np.ndarray:
+    """Indices of the points of a sweep by which it is judged: all but the share with the largest errors ``sizes`` (n,)."""
+    return np.argsort(sizes)[: max(1, int((1.0 - constants.SHARE_OF_WORST_POINTS) * len(sizes)))]
+
+
 def _error(name: str, found: LeftOutReadings, size: float) -> Error:
     """Size and significance of a prediction's error, without the worst points."""
     own = np.sqrt(np.diag(found.covariance))
-    number = max(1, int((1.0 - constants.SHARE_OF_WORST_POINTS) * len(own)))
-    kept = np.argsort(np.abs(found.error) / own)[:number]
+    kept = without_worst(np.abs(found.error) / own)
     e, V = found.error[kept], found.covariance[np.ix_(kept, kept)]
     chi2 = float(e @ np.linalg.solve(V, e))
     uncertain = rms(own[kept])
     return Error(
         channel=name,
         rms=rms(e),
-        ratio=float(np.sqrt(chi2 / number)),
+        ratio=float(np.sqrt(chi2 / len(kept))),
         share=max(rms(e) - constants.DOUBTFUL_SIGMA * uncertain, 0.0) / size,
-        chance=float(chdtrc(number, chi2)),
+        chance=float(chdtrc(len(kept), chi2)),
         vague=uncertain / size,
     )
 
