@@ -21,6 +21,7 @@ from mffit.cli import commands
 from mffit.config import Config
 from mffit.config.problems import known_keys
 from mffit.virtual_rig import plan
+from tir import differences
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -199,6 +200,14 @@ def test_every_program_that_a_file_can_be_written_for_is_described():
     page = text_of(DOCS / "property-files.md")
     missing = [name for name in TARGETS if f"`{name}`" not in page]
     assert not missing, f"docs/property-files.md does not describe {', '.join(missing)}"
+
+
+def test_what_programs_compute_otherwise_is_computed():
+    """The numbers of the page are those of the sample, whatever becomes of either."""
+    front = tir.read(ROOT / "samples" / "front-120-70" / "true.tir")
+    text = " ".join(text_of(ROOT / "docs" / "property-files.md").split())
+    for words in (differences.chrono_in_words(front), differences.mbsim_in_words(front)):
+        assert words in text
 
 
 def test_the_readme_names_no_command_that_is_not_there():

@@ -52,8 +52,10 @@ def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
 
 def _broken_rules(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     for rule in target.rules:
-        if rule.concerns(tyre):
-            yield Problem(rule.level, rule.sentence.format(value=tyre[rule.name]), rule.name)
+        said = rule.concerns(tyre)
+        if said:
+            value = tyre[rule.name] if rule.name else ""
+            yield Problem(rule.level, rule.sentence.format(value=value, said=said), rule.name)
 
 
 def _at(level: str, line: FileLine, sentence: str, name: str = "") -> Problem:

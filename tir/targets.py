@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from tir.differences import CHRONO_HOLDS, chrono_in_words, mbsim_in_words
 from tir.errors import TirError, listed
 from tir.mode import asks_for_turn_slip
 from tir.parameters import TABLE
@@ -20,7 +21,7 @@ class TargetRule:
     """Something that a program does with values that others take differently; found in its public source or manual."""
 
     name: str  #: the key at fault
-    concerns: Callable[[TyreRecord], bool]
+    concerns: Callable[[TyreRecord], Any]  #: if this is words, they are ``{said}`` in the sentence
     sentence: str  #: ``{value}`` is that of the key
     level: str = "warning"
 
@@ -75,9 +76,11 @@ OF_MBSIM = (
         "it multiplies the nominal load by LFZO again at every evaluation, so the forces drift: write 1",
         "error",
     ),
-    _if_turn_slip(
-        "with which its Mz is NaN where the spin is zero, and its trail acts on the force of spin "
-        "too: use the file for turn slip off, or expect another Mz on curves"
+    TargetRule(
+        "USE_MODE",
+        lambda p: asks_for_turn_slip(p.values) and mbsim_in_words(p),
+        "USE_MODE asks for turn slip, with which its Mz is NaN {said}, and at no spin at all; its trail acts on the force of "
+        "spin too: use the file for turn slip off, or expect another Mz on curves",
     ),
     TargetRule(
         "QDRP2",
@@ -117,6 +120,17 @@ OF_CHRONO = (
         "USE_MODE",
         lambda p: p["USE_MODE"] not in (1.0, 2.0, 3.0, 4.0),
         "USE_MODE {value:g} is none of 1 to 4, with which alone it computes Fx and Fy: the tyre would have no grip at all",
+    ),
+    TargetRule(
+        "LKY",
+        lambda p: p["LKY"] != 1.0 or p["LMUY"] != 1.0,
+        "it multiplies the cornering stiffness by LMUY instead of LKY: write 1 for both, and the product into PKY1",
+    ),
+    TargetRule(
+        "",
+        chrono_in_words,
+        f"it holds the product of slope factor and slip at {CHRONO_HOLDS:.2f}, so that nothing falls off far behind the peak: a "
+        "PAC2002 file of this tyre differs in {said}",
     ),
 )
 OF_ANSYS = (_if_turn_slip("for which PROPERTY_FILE_FORMAT has to be 'SWIFT'"),)

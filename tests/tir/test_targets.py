@@ -162,10 +162,10 @@ def test_another_formula_is_refused_with_the_reason(tyre, name):
 @pytest.mark.parametrize(
     ("form", "mode", "said"),
     [
-        ("", 124, ["no PROPERTY_FILE_FORMAT", "USE_MODE 124 is none of 1 to 4"]),
-        ("", 4, ["no PROPERTY_FILE_FORMAT"]),
-        ("USER", 124, ["stops at PROPERTY_FILE_FORMAT 'USER'", "USE_MODE 124 is none"]),
-        ("PAC2002", 4, []),
+        ("", 124, ["no PROPERTY_FILE_FORMAT", "USE_MODE 124 is none of 1 to 4", "behind the peak"]),
+        ("", 4, ["no PROPERTY_FILE_FORMAT", "behind the peak"]),
+        ("USER", 124, ["stops at PROPERTY_FILE_FORMAT 'USER'", "USE_MODE 124 is none", "behind the peak"]),
+        ("PAC2002", 4, ["behind the peak"]),
     ],
 )
 def test_what_chrono_does_with_the_file_itself_is_told(tyre, form, mode, said):
@@ -285,6 +285,7 @@ def test_the_order_of_sections_is_the_manuals(tyre):
         ("mbsim", {"USE_MODE": 225.0}, "USE_MODE", "Mz is NaN"),
         ("mfeval", {"USE_MODE": 225.0}, "USE_MODE", "reverses camber thrust"),
         ("ansysmotion", {"USE_MODE": 225.0}, "USE_MODE", "'SWIFT'"),
+        ("chrono", {"LMUY": 0.8}, "LKY", "by LMUY instead of LKY"),
         ("tyredyn", {"USE_MODE": 225.0}, "USE_MODE", "reverses camber thrust"),
         ("teasit", {}, "MC_CONTOUR_A", "sine of camber"),
     ],
