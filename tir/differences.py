@@ -47,7 +47,7 @@ def chrono_in_words(tyre: TyreRecord) -> str:
 
 
 def spin_without_moment_in_mbsim(tyre: TyreRecord) -> float:
-    """Total spin over turn slip below which MBSim's Mz is NaN, about, at nominal load; 1 if it is NaN upright on every gentle curve.
+    """Total spin over turn slip below which MBSim's Mz is NaN, about, at nominal load; 1 if it is NaN upright on gentle curves.
 
     Its moment takes the arc cosine of the moment at 90 deg over that of spin (4.E102), which exceeds 1 where the spin of camber
     cancels most of the path's. The latter moment grows with the spin, the former with the turn slip.
@@ -61,8 +61,8 @@ def mbsim_in_words(tyre: TyreRecord) -> str:
     if share >= 1.0:
         return "on every gentle curve"
     return (
-        f"wherever the total spin is within about {share:.2g} of the turn slip, as where a leaning wheel runs nearly straight: within "
-        f"{share / 5.0:.2g} 1/m on a circle of 5 m"
+        f"wherever the total spin is within about {share:.2g} of the turn slip, as where a leaning wheel runs nearly straight: "
+        f"within {share / 5.0:.2g} 1/m on a circle of 5 m"
     )
 
 

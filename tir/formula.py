@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from tir.document import Document, number_of, unquoted
@@ -50,6 +50,8 @@ NEW_KEYS = frozenset(
     }
 )
 """Coefficients of MF 6 that MF 5.2 and PAC2002 lack. Those of turn slip, of pressure and of Mx are in PAC2002 too."""
+NEUTRAL = {"PKY4": 2.0}
+"""Values with which a coefficient says nothing, where that is neither 0 nor, for a scaling factor, 1."""
 PRESSURES = frozenset({"NOMPRES", "INFLPRES"})
 """Keys that MF 6.1 introduced, and that old files may have got for a program that asks for them."""
 MOTORCYCLE_TAG = re.compile(r"(PAC|MF)_?MC")
@@ -78,32 +80,46 @@ def formula_of(document: Document, fittyp: float | None = None) -> Formula:
     if fittyp is None:
         fittyp = number_of(stated.get("FITTYP", ""))
     if fittyp is not None:
-        return _of_fittyp(fittyp, stated.keys())
-    return _of_keys(stated.keys(), stated.get("PROPERTY_FILE_FORMAT", ""))
+        return _of_fittyp(fittyp, stated)
+    return _of_keys(stated)
 
 
-def _of_fittyp(fittyp: float, keys: Collection[str]) -> Formula:
+def _acting(group: Collection[str], stated: Mapping[str, str]) -> set[str]:
+    """Keys of a group with values that act; files are completed with others for programs that ask for every key."""
+    return {key for key in group if key in stated and not _neutral(key, number_of(stated[key]))}
+
+
+def _neutral(key: str, value: float | None) -> bool:
+    return value is None or value == NEUTRAL.get(key, 1.0 if key.startswith("L") else 0.0)
+
+
+def _of_fittyp(fittyp: float, stated: Mapping[str, str]) -> Formula:
     why = f"FITTYP {fittyp:g}"
     if fittyp in FITTYPS:
         return Formula("6", f"MF 6.{int(fittyp) % 10}", why)
     if fittyp not in OLD_FITTYPS:
         return Formula("unknown", why, f"has {why}, but only {fittyps_text()} are supported")
-    new, old = NEW_KEYS.intersection(keys), OLD_KEYS.intersection(keys)
-    if fittyp in CAR_FITTYPS and new and not old:
+    new = _acting(NEW_KEYS, stated)
+    if fittyp in CAR_FITTYPS and new and not OLD_KEYS.intersection(stated):
         said = f"has {why} ({OLD_FITTYPS[int(fittyp)]}), but coefficients that only MF 6 has ({_shown(new)})"
         return Formula("unknown", why, said)
     kind = "5.2" if fittyp in CAR_FITTYPS else "motorcycle"
     return Formula(kind, OLD_FITTYPS[int(fittyp)], why)
 
 
-def _of_keys(keys: Collection[str], stated: str) -> Formula:
-    tag = re.sub(r"[^A-Z0-9]+", "_", stated.upper()).strip("_")
-    why = f"PROPERTY_FILE_FORMAT '{stated}'"
-    old, new, motorcycle = (group.intersection(keys) for group in (OLD_KEYS, NEW_KEYS, MOTORCYCLE_KEYS))
-    magic = {key for key in keys if key in BY_NAME and BY_NAME[key].section.endswith("_COEFFICIENTS")}
+def _of_keys(stated: Mapping[str, str]) -> Formula:
+    form = stated.get("PROPERTY_FILE_FORMAT", "")
+    tag = re.sub(r"[^A-Z0-9]+", "_", form.upper()).strip("_")
+    why = f"PROPERTY_FILE_FORMAT '{form}'"
+    old, new, motorcycle = (
+        set(group.intersection(stated)) for group in (OLD_KEYS, NEW_KEYS, MOTORCYCLE_KEYS)
+    )
+    if old and new:
+        old, new = _acting(old, stated), _acting(new, stated)
+    magic = {key for key in stated if key in BY_NAME and BY_NAME[key].section.endswith("_COEFFICIENTS")}
     known = [pattern for pattern in (MOTORCYCLE_TAG, OLD_TAG, NEW_TAG) if pattern.search(tag)]
     if OTHER_FORMULA_TAG.search(tag) or not (magic or old or known or tag in ANY_TAG):
-        return Formula("other", stated, why)
+        return Formula("other", form, why)
     if motorcycle or MOTORCYCLE_TAG.search(tag):
         return Formula("motorcycle", "MF-MCTyre", f"keys {_shown(motorcycle)}" if motorcycle else why)
     name = "PAC2002" if "PAC2002" in tag else "MF-Tyre 5.2"
@@ -115,8 +131,8 @@ def _of_keys(keys: Collection[str], stated: str) -> Formula:
         return Formula("6", "MF 6", f"keys {_shown(new)}")
     if known:
         return Formula("5.2", name, why) if OLD_TAG in known else Formula("6", "MF 6", why)
-    if PRESSURES.intersection(keys):
-        return Formula("6", "MF 6", f"keys {_shown(PRESSURES.intersection(keys))}")
+    if PRESSURES.intersection(stated):
+        return Formula("6", "MF 6", f"keys {_shown(PRESSURES.intersection(stated))}")
     return Formula("unknown", "", "does not say which version of the Magic Formula it is of")
 
 

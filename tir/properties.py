@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence
+from difflib import get_close_matches
 from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
 from tir.codegen.program import Switches, trace
 from tir.defaults import completed
-from tir.document import AS_TEXT, Document, FileLine, number_of, unquoted
+from tir.document import AS_TEXT, NUMBER, Document, FileLine, number_of, unquoted
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
-from tir.formula import HEADER, Formula, formula_of
+from tir.formula import HEADER, OLD_KEYS, Formula, formula_of
 from tir.mode import asks_for_turn_slip
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.record import Quantity, TyreRecord
@@ -24,6 +25,8 @@ from tir.units import KINDS, factor
 Kind = TypeVar("Kind", bound=TyreRecord)
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
+LONG_NAME, LIKENESS = 6, 0.85
+"""Characters from which a name without a number is like few others, and the likeness that makes another one a misspelling."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
@@ -52,7 +55,8 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
     problems += _about_a_cut_number(values, document) + _about_values_below(document)
     stated = {line.key for line in document.entries if parameter_of(line)} | added
     complete = completed(values)
-    problems += _about_missing(complete, values, stated) + _about_unknown(extra)
+    problems += _about_empty(complete, values, document)
+    problems += _about_missing(complete, values, stated) + _about_unknown(extra, stated)
     measured, provenance = _structured_comments(document)
     return kind(
         values=MappingProxyType(complete),
@@ -169,7 +173,6 @@ def value_of(
                 line=line.number,
                 name=line.key,
             )
-        problems.append(_warning(f"{line.key} has no value and takes its default", line))
         return None
     said = f'{line.key} is "{text}", but a number was expected' if number is None else ""
     said = said or f"{line.key} is {text}, which no formula can use"
@@ -179,6 +182,10 @@ def value_of(
     remedy = ": give a number"
     if number is None and "," in text:
         remedy = f"; decimal commas are not allowed, write {text.replace(',', '.')}"
+    if number is None and NUMBER.match(text) and "," not in text:
+        remedy = ": only a comment may follow the number, and it begins with $ or !"
+    elif row.name == "FITTYP":
+        remedy = ": write a number, such as 61 for MF 6.1"
     if text.endswith(";") and number_of(text[:-1].strip()) is not None:
         remedy = ": leave the semicolon out"
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
@@ -249,7 +256,8 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
         )
     if not coefficients:
         raise TirError(
-            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is truncated",
+            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is truncated"
+            f"{_otherwise(document)}",
             path=document.path,
         )
 
@@ -265,10 +273,9 @@ def _option(missing: Sequence[str]) -> str:
 def _otherwise(document: Document) -> str:
     """What to do if a line names a coefficient in another form than a property file, such as a table or a script; else empty."""
     for line in document.lines:
-        names = [
-            word for word in re.findall(r"[A-Za-z]\w*", line.text) if word.upper() in ESSENTIAL_COEFFICIENTS
-        ]
-        if names and line.key != names[0].upper():
+        words = [] if line.text.lstrip().startswith(("$", "!")) else re.findall(r"[A-Za-z]\w*", line.text)
+        names = [word for word in words if word.upper().replace("_", "") in ESSENTIAL_COEFFICIENTS]
+        if names and line.key != names[0].upper().replace("_", ""):
             return f"; line {line.number} names {names[0]} in another form: {AS_TEXT}"
     return ""
 
@@ -310,6 +317,22 @@ def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -
         line=line.number,
         name=line.key,
     )
+
+
+def _about_empty(complete: Mapping[str, Any], given: Collection[str], document: Document) -> list[Problem]:
+    """A problem for keys without a value."""
+    lines = {line.key: line for line in reversed(document.entries) if parameter_of(line)}
+    rows = [
+        row
+        for row in TABLE
+        if row.name in lines and row.name not in given and not unquoted(lines[row.name].value)
+    ]
+    if not rows:
+        return []
+    names = _defaults_in_words(rows, complete)
+    verb, taken = ("has", "its default is") if len(rows) == 1 else ("have", "defaults are")
+    first = lines[names[0].split()[0]]
+    return [_warning(f"{counted(len(rows), 'key')} {verb} no value, {taken} taken: {some(names)}", first)]
 
 
 def _about_missing(
@@ -358,17 +381,42 @@ def _acting(turn_slip: bool) -> frozenset[str]:
     return frozenset(trace(Switches(turn_slip), slipping).parameters) | {"INFLPRES"}
 
 
-def _about_unknown(extra: Mapping[str, str]) -> list[Problem]:
+def _about_unknown(extra: Mapping[str, str], given: Collection[str]) -> list[Problem]:
     names = [
         key
         for key in extra
         if not key.startswith(("SHAPE.", "MDI_HEADER.")) and key.removeprefix("MODEL.") not in OF_PROGRAMS
     ]
+    meant = {name: other for name in names if (other := _meant(name.rpartition(".")[2], given))}
+    if meant:
+        said = some([f"{name} (is {other} meant?)" for name, other in meant.items()])
+        verb = "is" if len(meant) == 1 else "are"
+        others = {name: extra[name] for name in names if name not in meant}
+        return [
+            Problem("warning", f"{said} {verb} not known and not used: correct the spelling"),
+            *_about_unknown(others, given),
+        ]
     if not names:
         return []
     said = "is not an MF 6.2 parameter and is" if len(names) == 1 else "are not MF 6.2 parameters and are"
     sentence = f"{counted(len(names), 'key')} {said} kept but not used: {some(names)}"
     return [Problem("warning", sentence)]
+
+
+def _meant(key: str, given: Collection[str]) -> str:
+    """The missing key of MF 6.2 that an unknown key probably is, spelt otherwise; empty if there is none."""
+    plain = _plain(key)
+    missing = [row.name for row in TABLE if row.name not in given]
+    alike = [name for name in missing if _plain(name) == plain]
+    if alike or any(sign.isdigit() for sign in key) or key in OLD_KEYS:
+        return alike[0] if alike else ""  # coefficients differ by one letter or number from one another
+    long = [name for name in missing if len(name) >= LONG_NAME]
+    return next(iter(get_close_matches(key, long, n=1, cutoff=LIKENESS)), "")
+
+
+def _plain(key: str) -> str:
+    """A key without underscores, and with a letter O for each zero."""
+    return key.replace("_", "").replace("0", "O")
 
 
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:

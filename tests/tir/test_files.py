@@ -296,10 +296,13 @@ def test_what_no_force_needs_may_be_blank_or_text(tmp_path, tyre):
     assert found["MASS"] == pytest.approx(8.0 * 1500.0 / 4000.0)  # the default of 4000 N, at this load
     assert found["QSY8"] == 0.0
     assert not {"MASS", "ROAD_INCREMENT", "QSY8"} & found.present
-    for name in ("MASS", "ROAD_INCREMENT", "QSY8"):
-        (problem,) = [p for p in found.problems if p.name == name]
-        assert f"line {problem.line}: {name}" in problem.sentence
-        assert text.splitlines()[problem.line - 1].startswith(name)
+    (text_found,) = [p for p in found.problems if p.name == "MASS"]
+    assert f"line {text_found.line}: MASS" in text_found.sentence
+    (empty,) = [p for p in found.problems if "no value" in p.sentence]
+    assert "2 keys have no value" in empty.sentence
+    assert "ROAD_INCREMENT" in empty.sentence
+    assert "QSY8" in empty.sentence
+    assert text.splitlines()[text_found.line - 1].startswith("MASS")
 
 
 def test_a_pressure_unit_is_honoured(tmp_path, tyre):

@@ -30,7 +30,12 @@ def kind(tag="", more="", fittyp=""):
         ),  # completed for a program that asks for a pressure
         ("PKY6 = -1\n", "6"),
         ("QSX13 = 0\nPKY4 = 2\n", "6"),
-        ("PHY3 = 0.01\nPPY5 = 0\n", "unknown"),
+        ("PHY3 = 0.01\nPPY5 = 0.1\n", "unknown"),
+        (
+            "PHY3 = 0.01\nPPY5 = 0\nPKY4 = 2\nLKYC = 1\n",
+            "5.2",
+        ),  # completed for a program that asks for every key
+        ("PHY3 = 0\nLGAX = 1\nPKY6 = -0.9\n", "6"),
         ("PCY2 = 0.7\nPKY6 = 0.9\nPTY1 = 1\n", "motorcycle"),
     ],
 )
@@ -65,6 +70,7 @@ def test_a_stated_version_comes_first():
     assert kind("", "", "6") == kind("MF61", "", "21") == "5.2"
     assert kind("", "", "52") == "motorcycle"
     assert kind("", "PKY6 = -1\nPPY5 = 0\n", "6") == "unknown"  # it contradicts its keys
+    assert kind("", "PKY4 = 2\nPKY6 = 0\nLKYC = 1\n", "6") == "5.2"
 
 
 def test_the_keys_of_a_formula_are_its_own():

@@ -1,0 +1,90 @@
+"""Property files as other tools leave them: each kind is read as it is meant, or refused with what to do."""
+
+from __future__ import annotations
+
+import pytest
+
+import tir
+from tir.checking import check
+
+BODY = """[DIMENSION]
+UNLOADED_RADIUS = 0.31
+[VERTICAL]
+FNOMIN = 4000
+[LATERAL_COEFFICIENTS]
+PCY1 = 1.4
+PDY1 = 1.1
+PKY1 = -22
+PKY2 = 1.7
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "t.tir"
+    path.write_text(text, encoding="ascii")
+    return tir.read(path)
+
+
+def test_keys_that_a_program_left_empty_are_said_in_one_sentence_forces_first(tmp_path):
+    """A fitting tool writes every key of its template, also those that it has no value for."""
+    empty = "[OPERATING_CONDITIONS]\nINFLPRES =\nNOMPRES = 97000\n[INERTIA]\nMASS =\n"
+    found = read(tmp_path, f"[MODEL]\nFITTYP = 61\nROAD_INCREMENT =   $ none\n{empty}{BODY}")
+    (problem,) = (p for p in found.problems if "no value" in p.sentence)
+    assert "3 keys have no value, defaults are taken: INFLPRES = 97000 Pa, " in problem.sentence
+    assert problem.name == "INFLPRES"
+    assert found["INFLPRES"] == 97e3
+
+
+@pytest.mark.parametrize(
+    ("section", "written", "meant"),
+    [
+        ("SCALING_COEFFICIENTS", "LFZ0 = 0.8", "LFZO"),
+        ("OPERATING_CONDITIONS", "NORMPRES = 90000", "NOMPRES"),
+        ("DIMENSION", "RIMRADIUS = 0.2", "RIM_RADIUS"),
+        ("LATERAL_COEFFICIENTS", "P_EY1 = -0.5", "PEY1"),
+    ],
+)
+def test_a_misspelt_key_is_named_with_the_one_that_is_meant(tmp_path, section, written, meant):
+    found = read(tmp_path, f"[MODEL]\nFITTYP = 61\n{BODY}[{section}]\n{written}\n")
+    assert any(f"(is {meant} meant?)" in p.sentence for p in found.problems)
+
+
+def test_a_key_of_another_generation_is_no_misspelling(tmp_path):
+    """QPZ1 and LGAX are like PPZ1 and LCX, but are what they are."""
+    found = read(tmp_path, f"[MODEL]\nFITTYP = 61\n{BODY}[MORE]\nQPZ1 = 0.1\nLGAX = 1\nPDY4 = 2\nPLANT = 3\n")
+    assert not any("meant" in p.sentence for p in found.problems)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("= 0.31", "= 0.31 m", "only a comment may follow the number"),
+        ("= 4000", "= 4000 [N]", "only a comment may follow the number"),
+        ("= 1.4", "= 1.4 % shape", r"begins with \$ or !"),
+        ("= 1.4", "= 1.4 // shape", r"begins with \$ or !"),
+        ("= 61", "= 'MF61'", "FITTYP .* such as 61"),
+        ("PCY1 = 1.4\nPDY1 = 1.1\nPKY1", "p_Cy1 = 1.4\np_Dy1 = 1.1\np_Ky1", "names p_Cy1 in another form"),
+        (" = ", " : ", "names PCY1 in another form"),
+        (" = ", "  ", "names PCY1 in another form"),
+    ],
+    ids=["unit", "bracket", "percent", "slashes", "words", "underscores", "colons", "blanks"],
+)
+def test_what_cannot_be_read_is_refused_with_the_remedy(tmp_path, before, after, said):
+    with pytest.raises(tir.TirError, match=said):
+        read(tmp_path, f"[MODEL]\nFITTYP = 61\n{BODY}".replace(before, after))
+
+
+def test_a_car_file_under_the_number_of_motorcycles_says_how_to_convert_it(tmp_path):
+    with pytest.raises(tir.TirError, match=r"FITTYP 52.*--fittyp 6"):
+        read(tmp_path, f"[MODEL]\nTYPE = 'CAR'\nFITTYP = 52\n{BODY}PHY3 = 0.01\nPKY4 = 2\nPKY6 = 0\n")
+
+
+def test_a_peak_of_the_other_sign_is_the_same_curve(tmp_path):
+    """Files of other axes have a negative friction; the slope factor turns with it."""
+    tyre, other = (
+        read(tmp_path, f"[MODEL]\nFITTYP = 61\n{BODY.replace('1.1', peak)}") for peak in ("1.1", "-1.1")
+    )
+    assert other(3000.0, 0.08).Fy == pytest.approx(tyre(3000.0, 0.08).Fy, rel=1e-9)
+    found = [(p.name, p.level) for p in check(other)]
+    assert ("PDY1", "warning") in found
+    assert ("PDY1", "error") not in found
