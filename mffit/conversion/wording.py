@@ -9,6 +9,13 @@ from mffit.conversion import constants
 from mffit.conversion.refit import FACTORS
 from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
 from mffit.quantities import MODEL
+from tir.errors import listed
+
+REVERSED = (
+    *("PKY1", "PVY1", "PVY2", "PVY3", "PVY4", "RVY1", "RVY2", "RVY3"),
+    *("QBZ10", "QDZ6", "QDZ7", "QDZ8", "QDZ9", "SSZ1", "SSZ3", "SSZ4", "QSX3", "QSX9"),
+)
+"""Coefficients of MF 5.2 whose signs together reverse Fy and Mz and nothing else."""
 
 
 def headline(found: Conversion | OldConversion) -> str:
@@ -90,5 +97,6 @@ def against_sideslip(found: Conversion) -> list[str]:
         return []
     return [
         f"the side force grows with sideslip at {nominal:.0f} N (PKY1 and PKY2 have one sign), but in ISO-W, the axes of "
-        "property files, every tyre pushes against it: the file is in other axes, and so is the converted one"
+        "property files, every tyre pushes against it: the file is in other axes, and so is the converted one. If they are those "
+        f"of adapted SAE, with the side force and the aligning moment reversed, reverse the signs of {listed(REVERSED)} in it"
     ]

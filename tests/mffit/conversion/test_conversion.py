@@ -13,7 +13,7 @@ import pytest
 import tir
 from mffit import config as configuration
 from mffit.cli import main
-from mffit.conversion import convert, is_old, mf52, read_old, to_old
+from mffit.conversion import convert, is_old, mf52, read_old, to_old, wording
 from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.fit.known import known_before_fit
@@ -281,7 +281,27 @@ def test_a_side_force_that_grows_with_sideslip_is_in_other_axes(tmp_path, capsys
     with pytest.raises(SystemExit) as ended:
         main(["convert", str(tmp_path / "other.tir"), "--out", str(tmp_path / "new.tir")])
     assert ended.value.code == 3
-    assert "the file is in other axes" in " ".join(capsys.readouterr().out.split())
+    said = " ".join(capsys.readouterr().out.split())
+    assert "the file is in other axes" in said
+    assert f"reverse the signs of {', '.join(wording.REVERSED[:-1])} and {wording.REVERSED[-1]} in it" in said
+
+
+def test_the_signs_to_reverse_turn_a_file_from_adapted_sae_to_iso(tmp_path):
+    """In adapted SAE the side force and the aligning moment are reversed at the same angles, the others are not."""
+    text = TEXT
+    for name in wording.REVERSED:
+        text = re.sub(rf"(?m)^({name} +=) *(\S+)", lambda m: f"{m.group(1)} {-float(m.group(2))!r}", text)
+    (tmp_path / "adapted.tir").write_text(text)
+    n, rng = 500, np.random.default_rng(3)
+    Fz, alpha, gamma = rng.uniform(1e3, 7e3, n), rng.uniform(-0.3, 0.3, n), rng.uniform(-0.2, 0.2, n)
+    at = (Fz, alpha, gamma, rng.uniform(-0.2, 0.2, n))
+    iso, adapted = (
+        mf52.forces(mf52.in_terms_of_62(read_old(path).values), *at)
+        for path in (OLD, tmp_path / "adapted.tir")
+    )
+    for name, sign in (("Fx", 1.0), ("Fy", -1.0), ("Mx", 1.0), ("Mz", -1.0)):
+        most = np.max(np.abs(getattr(iso, name)))
+        np.testing.assert_allclose(getattr(adapted, name), sign * getattr(iso, name), atol=1e-6 * most)
 
 
 def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys):
