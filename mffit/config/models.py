@@ -274,16 +274,25 @@ class ModelTable(Table):
 
 
 class Column(Table):
-    """Heading, unit and scale of a sweep column in a file with other headings or units."""
+    """Heading, unit and scale of a sweep column in a file with other headings or units, or one value for all rows."""
 
     column: str | None = None  #: heading in the file; None: the column's own name
+    value: float | None = None  #: of all rows, in place of a column of the file
     unit: str | None = None  #: None: as the file says, else the column's own unit
     scale: float = 1.0
     against: Literal["free-rolling", "loaded-radius"] | None = None  #: of kappa only; None: found from Fx = 0
 
+    @model_validator(mode="after")
+    def _one_source(self) -> Column:
+        if self.column is not None and self.value is not None:
+            raise q.wrong("is given together with column; keep one of the two", "value")
+        return self
+
 
 def _as_column(given: object) -> object:
-    """A heading alone as a table."""
+    """A heading or a value alone as a table."""
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        return {"value": given}
     return {"column": given} if isinstance(given, str) else given
 
 

@@ -30,7 +30,7 @@ from mffit.recordings import sniff
 from mffit.recordings.arriving import ArrivingFiles, Signature, ends_within_line, same_headings
 from mffit.recordings.disc import files_of_folder
 from mffit.recordings.project_file import relative, sweeps_text
-from mffit.recordings.sniffed import rolls_backward
+from mffit.recordings.recording import rolls_backward
 from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.sheets import file_of
 from mffit.sweeps import formats

@@ -22,6 +22,7 @@ from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import converted
+from mffit.sweeps.wide import FROM_NAMES
 
 CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
 """A time of day, with or without its date."""
@@ -58,18 +59,24 @@ class Guesses(NamedTuple):
 
 
 def guesses(
-    raw: RawTable, *, unloaded_radius: float | None = None, named: Mapping[str, str] = NOTHING_NAMED
+    raw: RawTable,
+    *,
+    unloaded_radius: float | None = None,
+    named: Mapping[str, str] = NOTHING_NAMED,
+    given: Collection[str] = (),
 ) -> Guesses:
     """The guessed channels of a file, and remarks.
 
     The unloaded radius [m], if known, checks the speed of rotation. ``named`` are headings that a user names, by channel; they
-    hold instead of those that laboratories use. Samples of a recording at standstill are not looked at.
+    hold instead of those that laboratories use; ``given`` are channels whose value a user gives. Samples of a recording at
+    standstill are not looked at.
     """
     raw, of_rest = _rolling(raw)
     named = {name: heading for name, heading in named.items() if heading in raw.headings}
     columns = _number_columns(raw, named)
     slips = candidates(raw, BY_NAME[SLIP], named)
     columns.pop(SLIP, None)
+    columns |= {name: columns[name]._replace(given=True) for name in given if name in columns}
     known = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
     by_unit = only_ones(raw, columns, known)
     columns |= by_unit
@@ -89,6 +96,8 @@ def guesses(
     if slip is not None:
         found[SLIP] = slip
     remarks += questions(raw, found, {guess.heading for guess in found.values()})
+    if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
+        remarks.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
@@ -212,6 +221,15 @@ def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str,
     step = float(np.median(np.abs(np.diff(seconds))))
     least, most = constants.TIME_BETWEEN_POINTS
     return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
+
+
+def _load_of_names(names: str, load: Guess) -> str:
+    """The question about the unit of a load that names of columns state."""
+    unit = load.unit_of_readings
+    return (
+        f"the load is taken {names}, in {unit}: is it in {unit}? If not, write "
+        f'Fz_N = {{ column = "{load.heading}", unit = "lbf" }} under [columns], with the true unit'
+    )
 
 
 def _without_time(raw: RawTable) -> str:

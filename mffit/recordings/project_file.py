@@ -14,15 +14,8 @@ import tomli_w
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
-from mffit.recordings.sniffed import (
-    Sniffed,
-    SniffedRecording,
-    axes_reason,
-    holding,
-    points_from,
-    rolls_backward,
-    stated_of_tyre,
-)
+from mffit.recordings.recording import SniffedRecording, rolls_backward
+from mffit.recordings.sniffed import Sniffed, axes_reason, holding, points_from, stated_of_tyre
 from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
 from mffit.sweeps.about import named_tyre, title_of
@@ -291,6 +284,8 @@ def _columns(guesses: Mapping[str, Guess]) -> list[str]:
 
 def _column(guess: Guess) -> str:
     name, heading = guess.channel.name, quoted(guess.heading)
+    if guess.value is not None:
+        return f"{name} = {guess.value:g}  # {', '.join(filter(None, (guess.channel.unit, 'as given for all rows')))}"
     if guess.unit or guess.scale != 1.0 or guess.against:
         given = {"unit": guess.unit, "against": guess.against}
         keys = [f"column = {heading}", *(f"{key} = {quoted(value)}" for key, value in given.items() if value)]

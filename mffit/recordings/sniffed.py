@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import re
-import unicodedata
-from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -16,56 +12,28 @@ import numpy as np
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, is_pattern, matches
-from mffit.errors import InputError, meant
+from mffit.errors import InputError
 from mffit.points import levels
-from mffit.points.clock import spread
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
-from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.by_unit import KINDS, in_unit_of
-from mffit.recordings.guess import NOTHING_NAMED, ColumnChoice, corrected, guesses
+from mffit.recordings.guess import NOTHING_NAMED
+from mffit.recordings.recording import (
+    NOTHING_CHOSEN,
+    ChosenFile,
+    SniffedRecording,
+    check_headings,
+    recording_of,
+    recordings_of,
+)
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
-from mffit.recordings.tyre_constants import StatedByFile, stated_by
-from mffit.recordings.unstated import Guess
+from mffit.recordings.tyre_constants import StatedByFile
 from mffit.sheets import file_of
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.all_files import moment_reversed
 from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
-from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, unknown_channel
-from mffit.sweeps.columns import numbers
-from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.units import converted
 from tir.conventions import FLIPPED
-
-
-class SniffedRecording(NamedTuple):
-    """One file."""
-
-    path: Path
-    kind: str  #: name of the format
-    headings: tuple[str, ...]
-    units: tuple[str, ...]
-    samples: int
-    guesses: dict[str, Guess]
-    about: dict[str, str]
-    rate: float  #: samples per second; NaN for finished points
-    seconds: float  #: from first to last sample
-    gaps: int  #: number of gaps in time
-    remarks: tuple[str, ...]  #: on doubtful columns
-    backward: bool = False  #: whether the wheel rolled backwards, by the file's name or a user's choice
-    tyre: Mapping[str, StatedByFile] = MappingProxyType({})  #: keys of [tyre] that it states
-
-
-class ChosenFile(NamedTuple):
-    """A user's choices for one recording."""
-
-    columns: tuple[ColumnChoice, ...]  #: columns that differ from the guess
-    backward: bool  #: whether the wheel rolled backwards
-
-
-NOTHING_CHOSEN: Mapping[Path, ChosenFile] = {}
 
 
 class Level(NamedTuple):
@@ -111,7 +79,7 @@ def sniff(
     paths : files, also as patterns like ``runs/*.csv``; of a workbook, all visible sheets with data, or ``book.xlsx#Sheet``
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     chosen : a user's choices for some of the files
-    headings : headings that are not recognised, by channel, for all files that have them
+    headings : headings that are not recognised, by channel, for all files that have them; or a number, for all rows
 
     Raises
     ------
@@ -127,12 +95,12 @@ def sniff(
         raise InputError("is named twice; remove one", file=twice[0])
     named = files
     files, summaries = apart([table for file in files for table in formats.tables_of(file)])
-    _check_headings(headings, files)
+    check_headings(headings, files)
 
     def of(file: Path) -> SniffedRecording:
-        return _recording(file, unloaded_radius, chosen.get(file), headings)
+        return recording_of(file, unloaded_radius, chosen.get(file), headings)
 
-    recordings, refused = _recordings(files, of, optional=set(files) - set(named))
+    recordings, refused = recordings_of(files, of, optional=set(files) - set(named))
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
@@ -186,118 +154,6 @@ def files_of(path: str | Path) -> list[Path]:
     if not file_of(file).exists():
         raise InputError("there is no such file; correct its name", file=file)
     return [file]
-
-
-def _recordings(
-    files: Sequence[Path], of: Callable[[Path], SniffedRecording], *, optional: Collection[Path]
-) -> tuple[tuple[SniffedRecording, ...], list[InputError]]:
-    """The recordings, and the errors about optional sheets whose workbook has others that can be read."""
-    found: list[SniffedRecording] = []
-    refused: dict[Path, InputError] = {}
-    for file in files:
-        try:
-            found.append(of(file))
-        except InputError as error:
-            refused[file] = error
-    readable = {file_of(recording.path) for recording in found}
-    for file, refusal in refused.items():
-        if file not in optional or file_of(file) not in readable:
-            raise refusal
-    return tuple(found), list(refused.values())
-
-
-def _check_headings(headings: Mapping[str, str], files: Sequence[Path]) -> None:
-    """Refuse headings of channels that there are not, or that no readable file has."""
-    for name, heading in headings.items():
-        if name not in BY_NAME:
-            raise InputError(unknown_channel(name), key=f"--column {name}")
-        there: dict[str, None] = {}
-        for file in files:
-            with suppress(InputError):  # _recording raises it
-                there |= dict.fromkeys(formats.read(file).headings)
-        if there and heading not in there:
-            near = meant(heading, there)
-            hint = f'did you mean "{near}"?' if near else f"the headings are {', '.join(there)}"
-            raise InputError(f'no file has the heading "{heading}"; {hint}', key=f"--column {name}")
-
-
-def _recording(
-    path: Path, unloaded_radius: float | None, chosen: ChosenFile | None, headings: Mapping[str, str]
-) -> SniffedRecording:
-    raw = formats.read(path)
-    tyre = stated_by(raw)
-    if unloaded_radius is None and "unloaded_radius" in tyre:
-        unloaded_radius = tyre["unloaded_radius"].value
-    guessed = guesses(raw, unloaded_radius=unloaded_radius, named=headings)
-    found, remarks = guessed if chosen is None else corrected(guessed, raw, chosen.columns)
-    for name, heading in headings.items():
-        if heading in raw.headings and (name not in found or found[name].heading != heading):
-            left_out = (remark for remark in remarks if heading in remark and "left out" in remark)
-            why = next(
-                left_out, f"it holds no numbers in a unit of {KINDS.get(BY_NAME[name].unit, 'this kind')}"
-            )
-            raise InputError(
-                f"cannot be {name} ({BY_NAME[name].description}): {why}", file=path, column=heading
-            )
-    missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
-    if missing:
-        raise InputError(
-            _unrecognised(missing, raw, {guess.heading for guess in found.values()}),
-            file=path,
-            line=raw.heading_line,
-        )
-    clock = _clock(raw, found.get("time_s"))
-    return SniffedRecording(
-        path=path,
-        kind=formats.format_of(path).name,
-        headings=raw.headings,
-        units=raw.units,
-        samples=len(raw),
-        guesses=found,
-        about=dict(raw.about),
-        rate=clock.rate,
-        seconds=clock.seconds,
-        gaps=clock.gaps,
-        remarks=remarks,
-        backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
-        tyre=tyre,
-    )
-
-
-def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[str]) -> str:
-    """The error sentence about required channels, with the columns whose units fit."""
-    near = {channel: in_unit_of(channel, raw, taken) for channel in missing}
-    fitting = [
-        f"{name.name} may be {' or '.join(columns)} by the unit" for name, columns in near.items() if columns
-    ]
-    example = next(
-        (f"{name.name}={columns[0]}" for name, columns in near.items() if columns),
-        f"{missing[0].name}=HEADING",
-    )
-    names = " or ".join(channel.name for channel in missing)
-    return (
-        f"no heading is known to be {names} (the headings are {', '.join(raw.headings)}"
-        f"{''.join(f'; {words}' for words in fitting)}); give --column '{example}', or name them under [columns] of a tyre.toml"
-    )
-
-
-class _Clock(NamedTuple):
-    """Sampling of a recording; NaN and 0 for finished points."""
-
-    rate: float = np.nan
-    seconds: float = np.nan
-    gaps: int = 0
-
-
-def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
-    if guess is None:
-        return _Clock()
-    time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
-    time = spread(time)
-    step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
-    if not step > 0.0:
-        return _Clock()
-    return _Clock(rate=1.0 / step, seconds=float(time[-1] - time[0]), gaps=len(gaps(time)))
 
 
 def _first_axes(recordings: Sequence[SniffedRecording]) -> str:
@@ -442,16 +298,3 @@ def _levels(values: np.ndarray, quantity: levels.LevelKind) -> tuple[Level, ...]
         Level(float(np.median(values[near == k])), int(np.sum(near == k)))
         for k in range(near.max(initial=-1) + 1)
     )
-
-
-LETTER = "[^\\W\\d_]"
-BACKWARD = re.compile(
-    rf"backward|reverse|(?<!{LETTER})(?:(?:zu)?r(?:ü|ue|u)ck(?:w(?:ä|ae|a)rts|lauf|fahrt|rollen|rollend)?|bwd|rev)(?!{LETTER})",
-    re.IGNORECASE,
-)
-"""Words for rolling backwards in names of files; other words with the same beginning, such as Rückstellmoment, do not match."""
-
-
-def rolls_backward(path: Path) -> bool:
-    """Whether the name of a recording says that the wheel rolled backwards."""
-    return BACKWARD.search(unicodedata.normalize("NFC", formats.stem(path.name))) is not None

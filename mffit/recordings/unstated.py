@@ -43,6 +43,7 @@ class Guess(NamedTuple):
     scale: float = 1.0  #: -1 if the file has the opposite sign
     against: str | None = None
     """Reference radius of longitudinal slip; None for other channels, or if unknown."""
+    value: float | None = None  #: of all rows, as chosen; None for a column of the file
 
     @property
     def unit_of_readings(self) -> str:
@@ -52,6 +53,8 @@ class Guess(NamedTuple):
     @property
     def column(self) -> Column:
         """The guess as an entry of ``[columns]``."""
+        if self.value is not None:
+            return Column(value=self.value)
         given = {"column": self.heading, "unit": self.unit or None, "scale": self.scale}
         return Column.model_validate({**given, "against": self.against})
 
@@ -63,6 +66,7 @@ class FoundChannel(NamedTuple):
     heading: str
     stated: str  #: unit as the file states it, "" if it does not
     values: np.ndarray  #: (n,), NaN where there is no reading
+    given: bool = False  #: whether a user gave the value, which then says nothing of the file's units
 
     @classmethod
     def of(cls, raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
@@ -132,8 +136,9 @@ def choices(
     """Units of columns without a stated unit, reasons for leaving out optional columns, and remarks on doubtful units."""
     chosen: dict[str, Choice] = {}
     for kind in KINDS:
-        for group in _groups(kind, found):
-            chosen |= _shared_unit(kind, group, _Known(found, chosen, radius))
+        for whole in _groups(kind, found):
+            group = {name: column for name, column in whole.items() if not column.given}
+            chosen |= _shared_unit(kind, group, _Known(found, chosen, radius)) if group else {}
     american, remarks = _american(_Known(found, chosen, radius))
     chosen |= american
     turning = _turning(_Known(found, chosen, radius))
@@ -269,7 +274,8 @@ def _american(known: _Known) -> tuple[dict[str, Choice], list[str]]:
     pressure in psi is no such column, because rigs in Europe have gauges in psi, too.
     """
     found, chosen, _ = known
-    stated = {column.channel.unit: column.unit for column in found.values() if column.unit}
+    of_file = [column for column in found.values() if column.unit and not column.given]
+    stated = {column.channel.unit: column.unit for column in of_file}
     doubtful = {
         name: unit
         for name in chosen

@@ -22,6 +22,7 @@ from mffit.sweeps.raw_table import (
     is_spreadsheet_error,
     is_summary,
     with_decimal_point,
+    with_values,
 )
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -86,12 +87,19 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     scale.
 
     Keys that are ``shared`` come from ``[columns]``, which applies to all files; if a file lacks the heading, such a key is
-    ignored unless the column is required. A recording (``time_s``) may have gaps: cells without a number, and rare samples
-    outside the plausible range, which become NaN. In a table of points each of them is an error. Samples of a recording at
-    standstill are left out first: there, speed, pressure and slip may read anything.
+    ignored unless the column is required, and a value yields to a column of that name. A recording (``time_s``) may have gaps:
+    cells without a number, and rare samples outside the plausible range, which become NaN. In a table of points each of them
+    is an error. Samples of a recording at standstill are left out first: there, speed, pressure and slip may read anything.
 
     Raises InputError if a column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
+    mapping = {
+        name: column
+        for name, column in mapping.items()
+        if column.value is None or not (name in shared and name in raw.headings)
+    }
+    given = {name: column.value for name, column in mapping.items() if column.value is not None}
+    raw = with_values(raw, given) if given else raw
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
     raw, warnings = _without_rows_that_are_none(raw, headings)
@@ -197,7 +205,10 @@ def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
             f"{', '.join(entries)}, with the true unit; or let `mffit init --from` or `mffit open` recognise them"
         )
     if lost:
-        said += f"; add {', '.join(lost)}, or give the heading (the headings are {', '.join(raw.headings)})"
+        said += (
+            f"; add {', '.join(lost)}, or give the heading, or one value for all rows such as gamma_deg = 0 "
+            f"(the headings are {', '.join(raw.headings)})"
+        )
     return InputError(said, file=raw.path, line=raw.heading_line, column=first)
 
 

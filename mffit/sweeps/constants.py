@@ -22,6 +22,12 @@ LARGEST_RATIO = Count(
     "Largest size of a table over that of its packed file: readings have noise, which leaves a fifth of a text; a packed row "
     "that repeats is a thousand times smaller.",
 )
+LARGEST_FALL_OF_GRIP = Real(
+    1.6,
+    "-",
+    "Peak side force over load at the smallest load of a test over that at the largest: numbers in the names of columns that "
+    "are loads keep within it, and numbers of wheels, which double from 1 to 2, do not.",
+)
 CAMBER_THAT_TURNS_LOAD = Real(
     5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
 )

@@ -17,6 +17,7 @@ from mffit.sweeps.parquet import read_parquet
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.spreadsheet import read_xlsx, sheets_with_data
 from mffit.sweeps.tydex import read_tydex
+from mffit.sweeps.wide import with_load_of_names
 
 
 class Format(NamedTuple):
@@ -53,7 +54,7 @@ def read(path: Path) -> RawTable:
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
     check_readable(file_of(path))
-    found = format_of(path).read(path)
+    found = with_load_of_names(format_of(path).read(path))
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found

@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,8 @@ from mffit.errors import InputError
 from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import TIME_TO_READ, check_size, damaged, largest, needed, undamaged
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.wide import stacked
 
 KIND = "MATLAB file"
 HDF5_MARK = b"\x89HDF"
@@ -42,25 +43,36 @@ def read_mat(path: Path) -> RawTable:
     vectors, apart = _with_common_conditions(vectors)
     if not vectors:
         raise InputError("has no column of numbers; save every channel as a vector", file=path)
+    names, units = _channels(content)
+    about = {name: text for name, text in content.items() if isinstance(text, str)}
+    if apart:
+        about["left out"] = f"{', '.join(apart)}, at conditions of its own"
+    sets = stacked(vectors)  # with vectors of one length for each load
+    columns: Mapping[str, Cells] = sets.columns if sets else _of_one_length(vectors, names, path)
+    stated = sets.units(units) if sets else units
+    return RawTable(
+        headings=tuple(columns),
+        units=tuple(stated.get(name, "") for name in columns),
+        cells=tuple(columns.values()),
+        lines=range(1, len(next(iter(columns.values()))) + 1),
+        path=path,
+        heading_line=None,
+        about=about | (sets.about if sets else {}),
+    )
+
+
+def _of_one_length(
+    vectors: Mapping[str, np.ndarray], names: Sequence[str], path: Path
+) -> dict[str, np.ndarray]:
+    """The vectors of the most frequent length, those with ``names`` first, in this order."""
     lengths = [len(values) for values in vectors.values()]
     n = max(set(lengths), key=lambda length: (lengths.count(length), length))
-    names, units = _channels(content)
-    ordered = dict.fromkeys([*names, *vectors])
-    kept = [name for name in ordered if name in vectors and len(vectors[name]) == n]
+    kept = [name for name in dict.fromkeys([*names, *vectors]) if name in vectors and len(vectors[name]) == n]
     if len(kept) < 2:
         raise InputError(
             "has no two channels of the same length; save all channels as vectors of one length", file=path
         )
-    return RawTable(
-        headings=tuple(kept),
-        units=tuple(units.get(name, "") for name in kept),
-        cells=tuple(vectors[name] for name in kept),
-        lines=range(1, n + 1),
-        path=path,
-        heading_line=None,
-        about={name: text for name, text in content.items() if isinstance(text, str)}
-        | ({"left out": f"{', '.join(apart)}, at conditions of its own"} if apart else {}),
-    )
+    return {name: vectors[name] for name in kept}
 
 
 def _with_common_conditions(vectors: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], list[str]]:

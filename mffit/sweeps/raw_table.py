@@ -69,6 +69,20 @@ class RawTable:
         return replace(self, cells=tuple(map(some, self.cells)), lines=np.asarray(self.lines)[rows])
 
 
+def with_values(raw: RawTable, values: Mapping[str, float]) -> RawTable:
+    """The table with columns of one value each, without a unit, in place of those with these headings."""
+    kept = [k for k, heading in enumerate(raw.headings) if heading not in values]
+    return replace(
+        raw,
+        headings=(*(raw.headings[k] for k in kept), *values),
+        units=(*(raw.units[k] for k in kept), *("" for _ in values)),
+        cells=(
+            *(raw.cells[k] for k in kept),
+            *(np.full(len(raw), float(value)) for value in values.values()),
+        ),
+    )
+
+
 NUMBER_WITH_COMMA = re.compile(r"[-+]?(?:\d*|\d{1,3}(?:\.\d{3})+),\d+(?:[eE][-+]?\d+)?")
 """A number with a decimal comma, with or without points between thousands: ``-8,0``, ``1.500,0``."""
 THOUSANDS_WITH_POINT = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+")

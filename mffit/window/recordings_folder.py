@@ -23,7 +23,8 @@ from mffit.quantities import CONDITIONS
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, guesses
 from mffit.recordings.project_file import Stated, relative, slug, sweeps_text, tyre_found
-from mffit.recordings.sniffed import ChosenFile, Sniffed, axes_of, rolls_backward, sniff
+from mffit.recordings.recording import ChosenFile, rolls_backward
+from mffit.recordings.sniffed import Sniffed, axes_of, sniff
 from mffit.recordings.summary import SummaryRow, apart, bad_runs, two_specimens
 from mffit.recordings.unstated import Guess
 from mffit.suspicion import before_the_fit

@@ -8,7 +8,8 @@ import numpy as np
 
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
-from mffit.recordings.sniffed import Level, SniffedRecording, axes_reason
+from mffit.recordings.recording import SniffedRecording
+from mffit.recordings.sniffed import Level, axes_reason
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.sweeps.about import title_of

@@ -23,7 +23,7 @@ from mffit.planning.goals import Goal
 from mffit.points.stretch import stretch_table
 from mffit.quantities import column
 from mffit.recordings import Sniffed
-from mffit.recordings.sniffed import SniffedRecording
+from mffit.recordings.recording import SniffedRecording
 from mffit.recordings.summary import BadRun
 from mffit.recordings.unstated import Guess
 from mffit.results.as_json.of_build import estimates, of_rig

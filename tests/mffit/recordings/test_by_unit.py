@@ -111,7 +111,7 @@ def test_a_share_is_no_angle(tmp_path):
 
 def test_a_required_channel_under_an_unknown_heading_can_be_named(tmp_path):
     path = table(tmp_path / "a.csv", **{"Kraft 3 [kN]": 0.0 * ALPHA + 1.5}, without=["Radlast [N]"])
-    with pytest.raises(InputError, match=r"Fz_N may be Kraft 3 by the unit.; give --column 'Fz_N=Kraft 3'"):
+    with pytest.raises(InputError, match=r"Fz_N may be Kraft 3.; give --column 'Fz_N=Kraft 3'"):
         sniff([path])
     project = tmp_path / "p"
     options = ["--unloaded-radius", "0.3", "--nominal-load", "1500", "--column", "Fz_N=Kraft 3"]

@@ -18,7 +18,7 @@ from mffit.points.loading import read
 from mffit.recordings import DiscPath, disc_signs, sniff
 from mffit.recordings.disc import zero_of_upright
 from mffit.recordings.project_file import _of_size
-from mffit.recordings.sniffed import rolls_backward
+from mffit.recordings.recording import rolls_backward
 from mffit.report.text import sniff_summary
 
 SAMPLES = Path(__file__).parents[3] / "samples"
