@@ -273,7 +273,37 @@ def _assembled(
         notes=notes if off or not said else (said, *notes),
         load_note=law.note,
     )
-    return measured, [*([said] if off else []), *_skew_warning(evidence, skew)]
+    elsewhere = _taken_elsewhere(evidence, per_load, nominal.row.load)
+    return measured, [*elsewhere, *([said] if off else []), *_skew_warning(evidence, skew)]
+
+
+def _taken_elsewhere(evidence: DirectEvidence, per_load: Sequence[LoadResult], taken: float) -> list[str]:
+    """A sentence if eps_gamma is not measured at the run load nearest to the nominal one: where it is taken, and why."""
+    points, nominal = evidence.points, evidence.config.tyre.nominal_load
+    steady = points.free_rolling & ~points.continuous
+    loads = levels.level_values(np.where(steady, points.Fz, np.nan), levels.LOAD)
+    if not np.any(np.isfinite(loads)):
+        return []
+    expected = float(loads[np.nanargmin(np.abs(loads - nominal))])
+    if abs(math.log(expected / taken)) < levels.LOAD.tolerance:
+        return []
+    row = next((row for row in per_load if abs(math.log(row.load / expected)) < levels.LOAD.tolerance), None)
+    main = main_pressure(points)
+    there = steady & ~main & (loads == expected)
+    others = {
+        points.sweep_names[k]: float(np.median(points.p[there & (points.sweep == k)]))
+        for k in np.unique(points.sweep[there]).tolist()
+    }
+    said = wording.taken_elsewhere(
+        taken,
+        expected,
+        float(np.median(points.p[main])),
+        others,
+        camber=row is not None and row.C_gamma is not None,
+        zeros=row is not None and row.F_phit is not None,
+        radius=row is not None and row.r_e is not None,
+    )
+    return [said]
 
 
 def _with_measured_skew(

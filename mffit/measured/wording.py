@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, usual_ply_steer
 from mffit.rounding import ascii_only, stated
@@ -14,14 +14,46 @@ ONE_LOAD = "PECP2 is 0: one load was measured."
 EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
 
 
-def nothing_measured(*, camber: bool, zeros: bool, radius: bool) -> str:
-    """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist at any load."""
+def _lacking(*, camber: bool, zeros: bool, radius: bool) -> list[str]:
+    """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist."""
     needed = {
         "a camber sweep at zero sideslip": camber,
         "points at zero sideslip and camber": zeros,
         "the rolling radius (write one turn of the disc under [rolling_radius] of tyre.toml)": radius,
     }
-    lacking = [what for what, there in needed.items() if not there]
+    return [what for what, there in needed.items() if not there]
+
+
+def taken_elsewhere(
+    taken: float,
+    expected: float,
+    pressure: float,
+    others: Mapping[str, float],
+    *,
+    camber: bool,
+    zeros: bool,
+    radius: bool,
+) -> str:
+    """The warning that eps_gamma is taken at another load [N] than expected.
+
+    ``others`` are the sweeps at the expected load and another pressure, with that pressure [Pa]; ``camber``, ``zeros`` and
+    ``radius`` state which of the inputs exist at the expected load.
+    """
+    said = (
+        f"eps_gamma is taken at {taken:.0f} N and not at {expected:.0f} N, the load nearest to the nominal one: at the main "
+        f"pressure of {1e-3 * pressure:.0f} kPa there is no complete measurement there"
+    )
+    if lacking := _lacking(camber=camber, zeros=zeros, radius=radius):
+        said += f", for lack of {' and '.join(lacking)}"
+    if others:
+        named = ", ".join(f"{name} ({1e-3 * p:.0f} kPa)" for name, p in others.items())
+        said += f"; {named} ran at {expected:.0f} N and another pressure: check p_kPa there"
+    return said
+
+
+def nothing_measured(*, camber: bool, zeros: bool, radius: bool) -> str:
+    """The inputs that eps_gamma lacks; ``camber``, ``zeros`` and ``radius`` state whether these exist at any load."""
+    lacking = _lacking(camber=camber, zeros=zeros, radius=radius)
     if not lacking:
         return "eps_gamma could not be measured: camber sweep and zeros are at different loads; it needs both at one load"
     return f"eps_gamma could not be measured, for lack of {' and '.join(lacking)}"

@@ -56,6 +56,25 @@ def test_stiffnesses_force_and_factor_at_every_load(tyre):
     assert not result.misaligned
 
 
+def elsewhere(result) -> list[str]:
+    return [warning for warning in result.warnings if warning.startswith("eps_gamma is taken at")]
+
+
+def test_a_factor_that_is_taken_at_another_load_says_where_and_why():
+    """The camber sweep at the nominal load has the label of another pressure."""
+    points = Plain().campaign(LOADS)
+    leaning = (points.Fz == 1500.0) & (np.abs(points.gamma) > 0.0)
+    assert not elsewhere(measured(Plain(), points=points))
+    result = measured(Plain(), points=points.replace(p=np.where(leaning, 200e3, points.p)))
+    assert result.nominal.load in (1000.0, 2000.0)
+    (said,) = elsewhere(result)
+    assert said.startswith(f"eps_gamma is taken at {result.nominal.load:.0f} N and not at 1500 N")
+    assert "for lack of a camber sweep at zero sideslip;" in said
+    assert "camber (200 kPa) ran at 1500 N" in said
+    (said,) = elsewhere(measured(Plain(), points=points.select(~leaning)))
+    assert said.endswith("for lack of a camber sweep at zero sideslip")
+
+
 @pytest.mark.parametrize("tyre", [Plain(), Plain(epsilon_moment=0.2, side=1)])
 def test_the_opinion_of_the_moments(tyre):
     """Spin moment and camber moment of the plain tyre were made for it."""

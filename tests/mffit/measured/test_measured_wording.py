@@ -58,6 +58,11 @@ NOTES = [
 ]
 WARNINGS = [
     (
+        wording.taken_elsewhere(900.0, 1500.0, 250e3, {"lean": 200e3}, camber=False, zeros=True, radius=True),
+        "at 900 N and not at 1500 N, the load nearest to the nominal one: at the main pressure of 250 kPa there is no complete "
+        "measurement there, for lack of a camber sweep at zero sideslip; lean (200 kPa) ran at 1500 N and another pressure",
+    ),
+    (
         wording.camber_skew_beyond(Quantity(0.4907, 0.0212, "deg"), 0.1),
         "a camber skew of 0.491 +- 0.021 deg, and 0.1 deg are declared (u_camber_skew_deg)",
     ),
