@@ -17,7 +17,8 @@ from mffit.config import Config
 from mffit.constants import STRAIGHT
 from mffit.errors import InputError
 from mffit.points import constants
-from mffit.scatter import ALARM, robust
+from mffit.points.levels import CAMBER, LOAD, PRESSURE, SIDESLIP, SPEED, LevelKind
+from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.sweep import MeasuredRows
@@ -138,7 +139,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
     used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
     x = force[near]
     middle = Driven(*(np.median(np.abs(values), keepdims=True) for values in used))
-    conditions, compliance = _conditions(used, middle), _compliance(used, middle)
+    conditions, compliance = _conditions(used, middle) * _varied(used), _compliance(used, middle)
     design = np.column_stack([conditions, x[:, None] * compliance, x**3])
     solution, scatter = _robust_lines(design, used.kappa)
     k = conditions.shape[1]
@@ -175,13 +176,18 @@ def against_free_rolling(
 ) -> tuple[tuple[Sweep, ...], SlipRemarks]:
     """The sweeps with slip against free rolling, and remarks on its definition and shift.
 
-    Files whose slip has the same heading share the definition and the zero. ``with_errors``: an undeclared zero that is the same
+    Files whose slip has the same heading share the definition and the zero: a file in which the wheel rolls freely shows the zero
+    at its conditions, and one that is driven shows what the slip is against. ``with_errors``: an undeclared zero that is the same
     at every load stays in the slip as a rig error.
     """
     stated: dict[str, tuple[str, str | None]] = {}
     for entry in config.sweep:
         column = entry.columns.get("kappa") or config.columns.get("kappa")
         stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
+    for file, (heading, against) in stated.items():
+        others = {of for other, of in stated.values() if other == heading and of is not None}
+        if against is None and len(others) == 1:
+            stated[file] = (heading, others.pop())
     sweeps, derived = _with_slip(sweeps, config.tyre.unloaded_radius)
     # Slip that was not recorded but computed from speeds.
     stated |= {s.file: (FROM_SPEEDS, None) for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
@@ -207,6 +213,7 @@ def against_free_rolling(
         zero = slip_zero(readings)
         if zero is None:
             continue
+        zero = slip_zero(_with_free_wheels(readings, zero)) or zero
         wrong = _contradiction(heading, zero)
         if wrong:
             raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
@@ -241,6 +248,16 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
     if zero.falls:
         return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
     return f"the zero of {heading} is not free rolling: {found}; taken off"
+
+
+def _with_free_wheels(of: Driven, zero: SlipZero) -> Driven:
+    """The readings, with zero force where it was not measured and all slips are those of a wheel that rolls freely."""
+    unknown = ~np.isfinite(of.Fx)
+    kappa = (1.0 + of.kappa[unknown]) / (1.0 + zero.at(of)[unknown]) - 1.0
+    kappa = kappa[np.isfinite(kappa)]
+    if not len(kappa) or np.max(np.abs(np.percentile(kappa, constants.CORE))) > constants.SLIP:
+        return of
+    return of._replace(Fx=np.where(unknown, 0.0, of.Fx))
 
 
 def _too_weak(of: Driven) -> bool:
@@ -296,17 +313,20 @@ def readings_of(rows: MeasuredRows) -> Driven:
 
 
 def _conditions(of: Driven, middle: Driven) -> np.ndarray:
-    """Columns (n, k) of a linear model of the zero: load, its square, pressure, camber terms, sideslip, squared speed.
+    """Columns (n, k) of a linear model of the zero: load and pressure to second order, camber, sideslip, squared speed.
 
     The speed term stands for the growth of the free radius with the square of the speed.
     """
     load, camber = np.abs(of.Fz) / middle.Fz - 1.0, np.abs(of.gamma)
     nothing = np.zeros(len(load))
+    pressure = of.p / middle.p - 1.0 if middle.p else nothing
     columns = (
         np.ones(len(load)),
         load,
         load**2,
-        of.p / middle.p - 1.0 if middle.p else nothing,
+        pressure,
+        pressure * load,
+        pressure**2,
         camber,
         camber**2,
         camber * load,
@@ -314,6 +334,22 @@ def _conditions(of: Driven, middle: Driven) -> np.ndarray:
         np.nan_to_num((of.V / middle.V) ** 2 - 1.0) if middle.V > 0.0 else nothing,
     )
     return np.column_stack(columns)
+
+
+def _varied(of: Driven) -> np.ndarray:
+    """1 for the columns (k,) of :func:`_conditions` whose settings were run at several levels; 0 for those that only scatter."""
+
+    def several(x: np.ndarray, kind: LevelKind) -> bool:
+        low, high = np.nanpercentile(np.abs(x), constants.CORE)
+        return bool(high - low > kind.tolerance * (high if kind.relative else 1.0))
+
+    load, pressure, camber = several(of.Fz, LOAD), several(of.p, PRESSURE), several(of.gamma, CAMBER)
+    sideslip = several(of.alpha, SIDESLIP)
+    speed = bool(np.any(np.isfinite(of.V))) and several(of.V, SPEED)
+    second = (pressure, pressure and load, pressure)
+    return np.array(
+        (True, load, load, *second, camber, camber, camber and load, sideslip, speed), dtype=float
+    )
 
 
 def _compliance(of: Driven, middle: Driven) -> np.ndarray:
