@@ -18,7 +18,7 @@ from mffit.constants import STRAIGHT
 from mffit.errors import InputError
 from mffit.points import constants
 from mffit.points.levels import CAMBER, LOAD, PRESSURE, SIDESLIP, SPEED, LevelKind
-from mffit.scatter import ALARM, finite_median, robust
+from mffit.scatter import ALARM, robust
 from mffit.sweeps import Sweep
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.sweep import MeasuredRows
