@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from tir.parameters import BY_NAME, TABLE, Parameter
@@ -50,6 +50,26 @@ def completed(given: Mapping[str, Any]) -> dict[str, Any]:
         else:
             values[row.name] = row.default * _growth(row, values)
     return values
+
+
+DECIDING = frozenset({*SAME, *MIRRORED, *(name for powers in SCALES.values() for name in powers)})
+"""Keys on which defaults of others depend."""
+
+
+def followed(
+    values: Mapping[str, Any], present: Collection[str], changes: Mapping[str, Any]
+) -> dict[str, Any]:
+    """The values with some changed; defaults of keys that are not ``present`` follow, as in a file with the new ones."""
+    found = {**values, **changes}
+    if not DECIDING.intersection(changes):
+        return found
+    given = {name: values[name] for name in present}
+    before, after = completed(given), completed({**given, **changes})
+    for name in after:
+        absent = name not in present and name not in changes
+        if absent and name in values and isinstance(values[name], float) and values[name] == before[name]:
+            found[name] = after[name]
+    return found
 
 
 def _growth(row: Parameter, values: Mapping[str, Any]) -> float:

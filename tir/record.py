@@ -17,7 +17,7 @@ from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple, Self
 
 from tir.correction import Correction, read_correction
-from tir.defaults import completed
+from tir.defaults import completed, followed
 from tir.document import Document
 from tir.errors import Problem, TirError
 from tir.mode import asks_for_turn_slip, warn, warn_of_doubt
@@ -118,12 +118,12 @@ class TyreRecord:
         return {}
 
     def replace(self, **changes: float | str) -> Self:
-        """A copy with some values changed; their status is dropped. Raises as :meth:`from_values`."""
+        """A copy with some values changed; their status is dropped, and defaults follow. Raises as :meth:`from_values`."""
         _usable(changes)
         status = {name: text for name, text in self.status.items() if name not in changes}
         return replace(
             self,
-            values=MappingProxyType({**self.values, **changes}),
+            values=MappingProxyType(followed(self.values, self.present, changes)),
             present=self.present | changes.keys(),
             status=MappingProxyType(status),
         )
