@@ -12,7 +12,7 @@ from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
 from tir.record import TyreRecord
 from tir.targets import Target
-from tir.units import KINDS
+from tir.units import KINDS, known_word
 
 FIRST_OF_MODEL = 3
 """Keys of [MODEL] that a program uses that reads by position: version, side, reference speed."""
@@ -99,7 +99,7 @@ def _text(tyre: TyreRecord, document: Document, target: Target) -> Iterator[Prob
 def _other_units(document: Document) -> Iterator[Problem]:
     for line in document.entries:
         kind = KINDS.get(line.key, {}) if line.section == "UNITS" else {}
-        if kind.get(line.value.strip("'\" ").lower(), 1.0) != 1.0:
+        if kind and kind.get(known_word(line.key, line.value), 1.0) != 1.0:
             yield _at(
                 "error", line, f": {line.key} in {line.value} is ignored, and every number is taken as SI"
             )

@@ -36,6 +36,12 @@ NO_TEXT = {
     b"%PDF": "a PDF",
 }
 """What a file is that begins with these bytes."""
+NOT_THE_FILE = {
+    b"<!doctype": "a web page about the file: download the file itself, such as by Raw on its page",
+    b"<html": "a web page about the file: download the file itself, such as by Raw on its page",
+    b"version https://git-lfs": "a pointer of Git LFS: fetch the file itself by git lfs pull",
+}
+"""What stands in for a file that was not fetched, by its first bytes in lower case, and what to do."""
 AS_TEXT = (
     "write each coefficient on a line of its own, such as PCY1 = 1.3, with UNLOADED_RADIUS and FNOMIN, and FITTYP = 62 for MF "
     "6.2; or in Python tir.Tyre.from_values({'PCY1': 1.3, ...}).write('tyre.tir')"
@@ -289,6 +295,9 @@ def _decode(raw: bytes, path: Path) -> tuple[str, str]:
     for begins, what in NO_TEXT.items():
         if raw.startswith(begins):
             raise TirError(f"is {what}, not the text of a property file: {AS_TEXT}", path=path)
+    for begins, what in NOT_THE_FILE.items():
+        if raw[:200].lstrip().lower().startswith(begins):
+            raise TirError(f"is {what}", path=path)
     for encoding, mark in BYTE_ORDER_MARKS.items():
         if raw.startswith(mark):
             try:

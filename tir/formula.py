@@ -57,8 +57,11 @@ PRESSURES = frozenset({"NOMPRES", "INFLPRES"})
 MOTORCYCLE_TAG = re.compile(r"(PAC|MF)_?MC")
 OLD_TAG = re.compile(r"PAC2002|MF_?05|MF_?TYRE$|(^|\D)5(_?[012])?$")
 NEW_TAG = re.compile(r"(^|\D)6(_?[012])?$")
+KNOWN_TAGS = (MOTORCYCLE_TAG, OLD_TAG, NEW_TAG)
 OTHER_FORMULA_TAG = re.compile(r"PAC_?TIME|PAC_?(89|94)")
 """Formulae of Pacejka's family with names of coefficients in common, but with other equations."""
+VERSION = re.compile(r"\bTIRE_VERSION\s*:\s*([^(]*?)\s*(?:\(.*)?$")
+"""A remark with which several programs open their files."""
 ANY_TAG = frozenset({"", "USER", "MF"})
 """Formats that name no formula."""
 
@@ -81,7 +84,8 @@ def formula_of(document: Document, fittyp: float | None = None) -> Formula:
         fittyp = number_of(stated.get("FITTYP", ""))
     if fittyp is not None:
         return _of_fittyp(fittyp, stated)
-    return _of_keys(stated)
+    remarks = (VERSION.search(line.text) for line in document.lines if not line.key)
+    return _of_keys(stated, next((found.group(1) for found in remarks if found), ""))
 
 
 def _acting(group: Collection[str], stated: Mapping[str, str]) -> set[str]:
@@ -107,17 +111,18 @@ def _of_fittyp(fittyp: float, stated: Mapping[str, str]) -> Formula:
     return Formula(kind, OLD_FITTYPS[int(fittyp)], why)
 
 
-def _of_keys(stated: Mapping[str, str]) -> Formula:
+def _of_keys(stated: Mapping[str, str], remark: str) -> Formula:
     form = stated.get("PROPERTY_FILE_FORMAT", "")
-    tag = re.sub(r"[^A-Z0-9]+", "_", form.upper()).strip("_")
-    why = f"PROPERTY_FILE_FORMAT '{form}'"
+    tag, why = _plain(form), f"PROPERTY_FILE_FORMAT '{form}'"
+    if tag in ANY_TAG and any(pattern.search(_plain(remark)) for pattern in KNOWN_TAGS):
+        tag, why = _plain(remark), f"the remark TIRE_VERSION : {remark}"
     old, new, motorcycle = (
         set(group.intersection(stated)) for group in (OLD_KEYS, NEW_KEYS, MOTORCYCLE_KEYS)
     )
     if old and new:
         old, new = _acting(old, stated), _acting(new, stated)
     magic = {key for key in stated if key in BY_NAME and BY_NAME[key].section.endswith("_COEFFICIENTS")}
-    known = [pattern for pattern in (MOTORCYCLE_TAG, OLD_TAG, NEW_TAG) if pattern.search(tag)]
+    known = [pattern for pattern in KNOWN_TAGS if pattern.search(tag)]
     if OTHER_FORMULA_TAG.search(tag) or not (magic or old or known or tag in ANY_TAG):
         return Formula("other", form, why)
     if motorcycle or MOTORCYCLE_TAG.search(tag):
@@ -134,6 +139,11 @@ def _of_keys(stated: Mapping[str, str]) -> Formula:
     if PRESSURES.intersection(stated):
         return Formula("6", "MF 6", f"keys {_shown(PRESSURES.intersection(stated))}")
     return Formula("unknown", "", "does not say which version of the Magic Formula it is of")
+
+
+def _plain(form: str) -> str:
+    """A format in capitals, with an underscore for all other signs."""
+    return re.sub(r"[^A-Z0-9]+", "_", form.upper()).strip("_")
 
 
 def _shown(keys: Collection[str]) -> str:

@@ -20,7 +20,7 @@ from tir.mode import asks_for_turn_slip
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.record import Quantity, TyreRecord
 from tir.targets import TARGETS
-from tir.units import KINDS, factor
+from tir.units import KINDS, factor, known_word
 
 Kind = TypeVar("Kind", bound=TyreRecord)
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
@@ -136,7 +136,7 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
     for line in document.entries:
         if line.section != "UNITS" or line.key not in KINDS or line.key in words:
             continue
-        word = unquoted(line.value).lower()
+        word = known_word(line.key, line.value)
         if word not in KINDS[line.key]:
             known = ", ".join(sorted(KINDS[line.key]))
             raise TirError(

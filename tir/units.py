@@ -62,6 +62,14 @@ PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {
 """Each unit of the table as a product of powers of the file's base units."""
 
 
+def known_word(kind: str, word: str) -> str:
+    """The word of the table for a file's word, which may be in the plural; the word in lower case if it is unknown."""
+    word = word.strip("'\" ").lower()
+    return (
+        word.removesuffix("s") if word not in KINDS[kind] and word.removesuffix("s") in KINDS[kind] else word
+    )
+
+
 def factor(unit: str, words: Mapping[str, str]) -> float:
     """The factor from a number in the file's units to a unit of the table, e.g. "N/m".
 

@@ -231,7 +231,10 @@ CORPUS: dict[str, tuple[Change, str]] = {
         base(WHOLE_TIR.replace("-12", "zwölf")),
         'PKY1 is "zwölf", but a number was expected',
     ),
-    "a page for a base file": (base("<html><body>404</body></html>"), "holds no 'KEY = value' line"),
+    "a page for a base file": (
+        base("<html><body>404</body></html>"),
+        "base.tir: is a web page about the file",
+    ),
     # tables as text
     "a row cut off": (csv(HEAD + "0,0,1500,1,1\n1,0,15"), ":3: has 3 cells under 5 headings"),
     "two rows in one line": (

@@ -65,6 +65,21 @@ def test_the_format_decides_between_keys_that_all_have(tag, expected):
     assert kind(tag) == expected
 
 
+@pytest.mark.parametrize(
+    ("remark", "tag", "expected"),
+    [
+        ("MF61", "", "6"),
+        ("MF-TYRE 5.0 (W-axis system)", "", "5.2"),
+        ("PAC2002 2018", "USER", "5.2"),
+        ("MF61", "MF-TYRE", "5.2"),  # the format comes before a remark
+        ("anything", "", "unknown"),
+    ],
+)
+def test_a_remark_decides_where_no_format_does(remark, tag, expected):
+    head = f"! : TIRE_VERSION :  {remark} \n[MODEL]\nPROPERTY_FILE_FORMAT = '{tag}'\n"
+    assert formula_of(parse_document(head + COMMON)).kind == expected
+
+
 def test_a_stated_version_comes_first():
     assert kind("PAC2002", "PHY3 = 0.01\n", "61") == "6"
     assert kind("", "", "6") == kind("MF61", "", "21") == "5.2"

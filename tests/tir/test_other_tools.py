@@ -74,6 +74,27 @@ def test_what_cannot_be_read_is_refused_with_the_remedy(tmp_path, before, after,
         read(tmp_path, f"[MODEL]\nFITTYP = 61\n{BODY}".replace(before, after))
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("\n<!DOCTYPE html>\n<html lang='en'>PCY1 = 1.3</html>\n", "web page about the file"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:12\nsize 9\n", "git lfs pull"),
+    ],
+)
+def test_what_stands_in_for_the_file_is_named(tmp_path, text, said):
+    with pytest.raises(tir.TirError, match=said):
+        read(tmp_path, text)
+
+
+def test_units_in_the_plural_are_the_same_units(tmp_path):
+    text = f"[UNITS]\nLENGTH = 'Millimeters'\nFORCE = 'newtons'\n[MODEL]\nFITTYP = 61\n{BODY.replace('0.31', '310')}"
+    found = read(tmp_path, text)
+    assert found["UNLOADED_RADIUS"] == pytest.approx(0.31)
+    assert any("LENGTH in 'Millimeters' is ignored" in p.sentence for p in check(found, ["mfeval"]))
+    with pytest.raises(tir.TirError, match="unknown unit"):
+        read(tmp_path, text.replace("newtons", "newtonss"))
+
+
 def test_a_car_file_under_the_number_of_motorcycles_says_how_to_convert_it(tmp_path):
     with pytest.raises(tir.TirError, match=r"FITTYP 52.*--fittyp 6"):
         read(tmp_path, f"[MODEL]\nTYPE = 'CAR'\nFITTYP = 52\n{BODY}PHY3 = 0.01\nPKY4 = 2\nPKY6 = 0\n")
