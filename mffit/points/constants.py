@@ -79,6 +79,9 @@ UNLIKE_SHARE = Real(
     "6 %, a worn tread by less.",
 )
 FEWEST_COMPARED = Count(6, "-", "Fewest angles at which two files are compared; two zeros are taken off.")
+FEWEST_COMPARED_LABELS = Count(
+    4, "-", "Fewest readings by which a sweep is compared with others at another label."
+)
 
 # Definition of slip
 SLIP_OF_ZERO_FORCE = Real(

@@ -22,6 +22,7 @@ from mffit.points.clock import evenly_timed, with_common_clock
 from mffit.points.faulty import DRIVEN
 from mffit.points.left_out import LeftOut, at_standstill, by_hand
 from mffit.points.lost import lost_sweeps
+from mffit.points.other_label import other_labels
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.silent import without_silent_moments
@@ -78,10 +79,12 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     stretches = tuple(note for part in reduced for note in part.stretches)
-    unlike = unlike_files(points.select(~points.continuous) if config.rig.on_disc else points)
+    compared = points.select(~points.continuous) if config.rig.on_disc else points
+    unlike = unlike_files(compared)
     doubts = (
         *lost_sweeps((part.ranges for part in reduced), points, stretches),
         *(pair.sentence for pair in unlike[:NAMED_IN_SENTENCE]),
+        *(one.sentence for one in other_labels(compared)[:NAMED_IN_SENTENCE]),
     )
     warnings = [
         *doubts,

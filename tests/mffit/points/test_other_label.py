@@ -1,0 +1,93 @@
+"""A sweep with a wrong label is named with the label that its neighbours have."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.points import make_points
+from mffit.points.other_label import other_labels
+
+LOADS, PRESSURES = (800.0, 1600.0), (200e3, 250e3)
+NOISE = 4.0
+ANGLES = np.radians(np.arange(-6.0, 7.0))
+
+
+def force(alpha, gamma, Fz, p, *, by_pressure=0.5):
+    """A plain tyre that softens with pressure: at 200 kPa instead of 250 by a tenth."""
+    softer = (p / 250e3) ** by_pressure
+    return -Fz * softer * (1.2 * np.tanh(14.0 * alpha) + 0.9 * np.sin(gamma))
+
+
+def campaign(
+    *, wrong: dict[str, dict[str, float]] | None = None, seed: int = 1, scatter: float = 0.0, **of_tyre
+):
+    """Sweeps of sideslip at every load, camber and pressure, each twice; ``wrong`` are false labels by sweep."""
+    random = np.random.default_rng(seed)
+    rows, names = [], []
+    for Fz in LOADS:
+        for p in PRESSURES:
+            for gamma in (0.0, 0.1):
+                for again in "ab":
+                    name = f"{Fz:.0f}-{1e-3 * p:.0f}-{gamma:g}{again}"
+                    Fy = force(ANGLES, gamma, Fz, p, **of_tyre) * (1.0 + scatter * random.standard_normal())
+                    Fy = Fy + NOISE * random.standard_normal(len(ANGLES))
+                    label = {"gamma": gamma, "Fz": Fz, "p": p} | (wrong or {}).get(name, {})
+                    rows += [(a, *label.values(), y, len(names)) for a, y in zip(ANGLES, Fy, strict=True)]
+                    names.append(name)
+    alpha, gamma, Fz, p, Fy, sweep = np.array(rows).T
+    return make_points(
+        alpha,
+        gamma,
+        Fz,
+        p=p,
+        V=10.0,
+        phi_t=0.0,
+        Fy=Fy,
+        u_Fy=NOISE,
+        sweep=sweep.astype(int),
+        sweep_names=names,
+    )
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_right_labels_are_not_doubted(seed):
+    assert not other_labels(campaign(seed=seed))
+    assert not other_labels(campaign(seed=seed, scatter=0.02))
+
+
+def test_a_label_that_moves_nothing_is_not_doubted():
+    assert not other_labels(campaign(by_pressure=0.0))
+
+
+@pytest.mark.parametrize(
+    ("sweep", "wrong", "column", "other"),
+    [
+        ("1600-250-0a", {"p": 200e3}, "p_kPa", 250.0),
+        ("800-200-0.1b", {"p": 250e3}, "p_kPa", 200.0),
+        ("1600-250-0a", {"Fz": 800.0}, "Fz_N", 1600.0),
+        ("800-250-0.1a", {"gamma": 0.0}, "gamma_deg", np.degrees(0.1)),
+    ],
+)
+def test_a_sweep_that_fits_another_label_is_named_with_it(sweep, wrong, column, other):
+    """It contradicts the sweeps at its own label, and agrees with those at the other."""
+    (found,) = other_labels(campaign(wrong={sweep: wrong}))
+    assert (found.sweep, found.column, found.of_own) == (sweep, column, True)
+    assert found.other == pytest.approx(other)
+    assert found.apart < 2.0 * NOISE
+    assert (
+        f"is its {'load' if column == 'Fz_N' else 'pressure' if column == 'p_kPa' else 'camber'}"
+        in found.sentence
+    )
+
+
+def test_a_label_without_neighbours_is_doubted_if_it_matters_elsewhere():
+    """At 1600 N all sweeps ran at 250 kPa, but one is labelled 200; at 800 N both pressures were run."""
+    points = campaign(wrong={"1600-250-0a": {"p": 200e3}})
+    names = points.sweep_names
+    kept = [k for k, name in enumerate(names) if not name.startswith("1600-200")]
+    (found,) = other_labels(points.select(np.isin(points.sweep, kept)))
+    assert (found.sweep, found.column, found.of_own) == ("1600-250-0a", "p_kPa", False)
+    assert "where 200 kPa moves such readings by about" in found.sentence
+    deaf = campaign(wrong={"1600-250-0a": {"p": 200e3}}, by_pressure=0.0)
+    assert not other_labels(deaf.select(np.isin(deaf.sweep, kept)))
