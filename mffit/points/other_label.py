@@ -162,8 +162,10 @@ def _readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray)
     out: dict[tuple[int, ...], MeanReading] = {}
     for group in levels.rows_of_equal(keys[rows]):
         own = rows[group]
-        mean = [float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha")]
-        out[tuple(keys[own[0]].tolist())] = MeanReading(*mean, 0.0, float(rms(u[own])) / np.sqrt(len(own)))
+        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
+        out[tuple(keys[own[0]].tolist())] = MeanReading(
+            Fy, Fz, alpha, 0.0, float(rms(u[own])) / np.sqrt(len(own))
+        )
     for key, one in out.items():
         beside = [out[near] for near in (_next(key, -1), _next(key, 1)) if near in out]
         if beside:
