@@ -98,10 +98,10 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
-    apart = max(1, round(step / interval))  # samples; slip is too noisy for differences of neighbours
+    apart = max(1, round(step / interval))  # samples; readings are too noisy for differences of neighbours
     for name, most in AVERAGED_RANGE.items():
-        values, samples = getattr(sweep, name)[rows], apart if name == "kappa" else 1
-        change = np.abs(values[samples:] - values[:-samples]) / samples
+        values = getattr(sweep, name)[rows]
+        change = np.abs(values[apart:] - values[:-apart]) / apart
         moved = float(np.median(change)) / interval if len(change) else 0.0
         if moved > 0.0:
             step = min(step, most / moved)

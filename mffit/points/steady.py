@@ -107,13 +107,15 @@ def samples_in(time: np.ndarray, seconds: float) -> int:
 
 def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) -> list[Stretch]:
     """The stretches of a part at constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
-    resting = ~np.any(list(moving.values()), axis=0)
+    creeping = _creeps(settings, ~np.any(list(moving.values()), axis=0))
+    resting = ~np.any([*moving.values(), *creeping.values()], axis=0)
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in rests]
     staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # the rig rests most of the time
     # Between plateaus a movement is a sweep only if it covers most of its setting's range; else it leads to the next plateau.
     span = {
-        name: constants.SWEPT_SHARE * np.ptp(getattr(settings, name)) if staircase else 0.0 for name in STEP
+        name: constants.SWEPT_SHARE * np.ptp(_smoothed(settings, name)[0]) if staircase else 0.0
+        for name in STEP
     }
     shortest = 0.0 if staircase else _shortest_plateau(settings)
     found = [s for s, seconds in zip(rests, held, strict=True) if seconds >= shortest]
@@ -121,7 +123,7 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     for rest in found:
         covered[rest.begin : rest.end] = True
     for begin, end in runs(~covered):
-        found += _swept(settings, moving, begin, end, span)
+        found += _swept(settings, moving, creeping, begin, end, span)
     return found
 
 
@@ -134,21 +136,33 @@ def _shortest_plateau(settings: SteadySettings) -> float:
 def _swept(
     settings: SteadySettings,
     moving: Mapping[str, np.ndarray],
+    creeping: Mapping[str, np.ndarray],
     begin: int,
     end: int,
     span: Mapping[str, float],
 ) -> list[Stretch]:
-    """Sweeps of one setting over at least its ``span`` in a moving part; the remaining samples are moves between plateaus."""
+    """Sweeps of one setting over at least its ``span`` in a moving part; the remaining samples are moves between plateaus.
+
+    Meanwhile the others may drift, by fewer of their steps.
+    """
     found: list[Stretch] = []
+    smooth = {name: _smoothed(settings, name)[0] for name in STEP}
     for name, others in OTHERS.items():
         rests = ~np.any([moving[other][begin:end] for other in others], axis=0)
         for s in found:
             rests[s.begin - begin : s.end - begin] = False
         for b, e in ((begin + b, begin + e) for b, e in runs(rests)):
-            ranges = {each: np.ptp(getattr(settings, each)[b:e]) for each in STEP}
+            ranges = {each: float(np.ptp(smooth[each][b:e])) for each in STEP}
+            steps = {
+                each: ranges[each] / STEP[each]
+                for each in (name, *others)
+                if np.any(moving[each][b:e] | creeping[each][b:e])
+            }
+            if name not in steps or steps[name] < max(steps.values()):
+                continue
             follows = name == "gamma" and ranges["alpha"] > constants.SWEPT_SHARE * ranges["gamma"]
             lasts = settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
-            if np.any(moving[name][b:e]) and ranges[name] >= span[name] and lasts and not follows:
+            if ranges[name] >= span[name] and lasts and not follows:
                 found += [Stretch(i, j, "", SWEEP, name) for i, j in _without_jumps(settings, name, b, e)]
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
@@ -182,29 +196,36 @@ def scale_of(series: Sequence[SteadySettings]) -> Scale:
 
 
 def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
-    """By setting, mask (n,) of the samples at which it changes: a swept setting at any rate, a condition within a short time.
+    """By setting, mask (n,) of the samples at which it changes within a short time.
 
     ``scale`` is the usual size of each setting in the whole recording; if None, that of this series.
     """
     n = len(settings.time)
     scale = scale or scale_of([settings])
     lag = samples_in(settings.time, constants.COMPARED_APART)
-    clear = beyond(FALSE_ALARM / n)  # corrected for n comparisons
     masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
         if not np.ptp(values) > 0.0:
             masks[name] = np.zeros(n, dtype=bool)
             continue
-        smooth = uniform_filter1d(values, lag, mode="nearest")
-        noise = clear * _noise(values) * np.sqrt(2.0 / lag)  # of the difference of two means
+        smooth, noise = _smoothed(settings, name)
+        step: float | np.ndarray
         if name in STEP:
-            masks[name] = _wanders(smooth, max(STEP[name], noise), lag)
+            step = STEP[name]
         else:
             usual = max(scale[name], float(np.median(np.abs(values))))
             step = usual * _step_of_condition(masks["kappa"][lag:])
-            masks[name] = _changes(smooth, np.maximum(step, noise), lag)
+        masks[name] = _changes(smooth, np.maximum(step, noise), lag)
     return masks
+
+
+def _smoothed(settings: SteadySettings, name: str) -> tuple[np.ndarray, float]:
+    """Means (n,) of a setting over a short time, and the difference of two of them that noise does not reach."""
+    values = getattr(settings, name)
+    lag = samples_in(settings.time, constants.COMPARED_APART)
+    clear = beyond(FALSE_ALARM / len(values))  # corrected for n comparisons
+    return uniform_filter1d(values, lag, mode="nearest"), float(clear * _noise(values) * np.sqrt(2.0 / lag))
 
 
 def _changes(values: np.ndarray, step: float | np.ndarray, lag: int) -> np.ndarray:
@@ -220,18 +241,22 @@ def _changes(values: np.ndarray, step: float | np.ndarray, lag: int) -> np.ndarr
     return np.asarray(np.cumsum(begun)[:n] > 0)
 
 
-def _wanders(values: np.ndarray, step: float, lag: int) -> np.ndarray:
-    """As :func:`_changes`, for changes at any rate: pairs further and further apart within what rested so far.
+def _creeps(settings: SteadySettings, resting: np.ndarray) -> dict[str, np.ndarray]:
+    """By swept setting, mask (n,) of the samples at which it moves too slowly for :func:`moves`, in the rests of a mask (n,).
 
-    The distance doubles, so that the samples marked before a slow movement and behind it take less time than one ``step`` of it.
+    Pairs further and further apart are compared within what rested so far. The distance doubles, so that the samples marked
+    before a slow movement and behind it take less time than one step of it.
     """
-    n = len(values)
-    moving = _changes(values, step, lag)
-    while (lag := 2 * lag) < n:
-        for begin, end in runs(~moving):
-            if end - begin > lag:
-                moving[begin:end] = _changes(values[begin:end], step, lag)
-    return moving
+    masks = {}
+    for name, step in STEP.items():
+        smooth, noise = _smoothed(settings, name)
+        creeps, lag = np.zeros(len(smooth), dtype=bool), samples_in(settings.time, constants.COMPARED_APART)
+        while (lag := 2 * lag) < len(smooth):
+            for begin, end in runs(resting & ~creeps):
+                if end - begin > lag:
+                    creeps[begin:end] = _changes(smooth[begin:end], max(step, noise), lag)
+        masks[name] = creeps
+    return masks
 
 
 def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:

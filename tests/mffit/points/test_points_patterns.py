@@ -181,3 +181,43 @@ def test_a_build_without_the_sweeps_of_its_recording_is_not_sound(tmp_path):
     result = build(configuration.load(content, folder=tmp_path))
     assert result.trust.doubts[0] == next(w for w in result.warnings if w.startswith("kappa moves"))
     assert verdict.judged(result) != "sound"
+
+
+def drifting(table: pd.DataFrame, column: str, by: float) -> pd.DataFrame:
+    return table.assign(**{column: table[column] + by * np.linspace(0.0, 1.0, len(table))})
+
+
+@pytest.mark.parametrize(("seconds", "rate"), [(8.0, 50.0), (400.0, 5.0)])
+def test_a_held_setting_that_drifts_ends_no_sweep(read, seconds, rate):
+    """Camber by 0.6 deg and pressure by a tenth over three sweeps, at 1.2 and at 0.025 deg/s."""
+    alpha = np.tile(triangle(seconds, rate, 5.0), 3)
+    table = drifting(drifting(recording(rate, alpha_deg=alpha), "gamma_deg", 0.6), "p_kPa", 12.0)
+    found = read(table)
+    sweeps = of_kind(found, SWEEP)
+    assert {note.swept for note in sweeps} == {"alpha_deg"}
+    assert sum(note.end_s - note.begin_s for note in sweeps) > 0.9 * 3.0 * seconds
+
+
+def test_a_held_setting_that_drifts_ends_no_plateau(read):
+    """Nine plateaus of ten seconds; camber drifts by 0.6 deg from the first to the last."""
+    corners = [(12.0 * k + x, a) for k, a in enumerate(np.arange(-4.0, 5.0)) for x in (0.0, 10.0)]
+    table = drifting(recording(20.0, alpha_deg=at_rate(corners, 20.0)), "gamma_deg", 0.6)
+    assert len(of_kind(read(table), PLATEAU)) == 9
+
+
+def test_a_slow_camber_sweep_is_one_of_camber_although_sideslip_drifts(read):
+    table = recording(5.0, alpha_deg=np.zeros(2000))
+    table["gamma_deg"] += triangle(400.0, 5.0, 20.0)
+    table["Fy_N"] -= 0.8 * LOAD * np.sin(np.radians(triangle(400.0, 5.0, 20.0)))
+    (sweep,) = of_kind(read(drifting(table, "alpha_deg", 0.5)), SWEEP)
+    assert sweep.swept == "gamma_deg"
+
+
+@pytest.mark.parametrize("scatter", [0.01, 0.4])
+def test_noise_of_an_angle_does_not_shorten_its_averages(read, scatter):
+    """Ten samples to a point at 100 Hz; with 0.4 deg of noise each, the mean angle is known to 0.13 deg."""
+    alpha = triangle(20.0, 100.0, 8.0)
+    found = read(recording(100.0, alpha_deg=alpha, scatter=scatter)).points
+    assert np.median(np.diff(found.time)) == pytest.approx(0.1, abs=0.011)
+    truth = np.interp(found.time, np.arange(len(alpha)) / 100.0, alpha)
+    assert np.std(np.degrees(found.alpha) - truth) < 0.02 + 0.4 * scatter
