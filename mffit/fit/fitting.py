@@ -94,7 +94,7 @@ def fit(
     if found.at_temperature:
         special = deliver(config, known, points, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
-        temperature = at_temperature(found, points, special.files.by_use[use], own)
+        temperature = at_temperature(found, points, special.files.by_use[use], own, left_by_formula)
 
     runs = between_runs(found, points)
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))

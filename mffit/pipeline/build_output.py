@@ -17,6 +17,7 @@ from mffit.csv_tables import write_csv
 from mffit.fit import Posterior, name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
+from mffit.pipeline.provenance import TEMPERATURE
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
@@ -53,7 +54,13 @@ def write_build(
         write_csv(points_table(result), folder / "points.csv")
         fitted = result.files[result.fitted]
         if result.prediction is not None:
-            prediction.write(folder / prediction.FILE, result.prediction, result.tir_path, fitted)
+            known, of_fit = (
+                result.prediction,
+                fitted,
+            )  # of the plain file, unless temperature terms take it further
+            if result.fit.temperature is not None and result.files[result.fitted] == result.tir_path:
+                known, of_fit = result.fit.temperature.prediction, result.files[TEMPERATURE]
+            prediction.write(folder / prediction.FILE, known, result.tir_path, of_fit)
         if result.correction is not None:
             prediction.write_correction(folder / result.correction_name, result.correction, fitted)
         if stretches:

@@ -22,6 +22,9 @@ from mffit.rig import Readings, Simulation
 from mffit.rig_errors import BESIDE, ZEROS, error_of
 from tir import Tyre
 
+T_REF = "T_ref_degC"
+"""Rig number with the temperature at which the fitted model holds."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MissedChannel:
@@ -93,7 +96,9 @@ class Predictor:
     channels: Mapping[str, MissedChannel]
     zeros: Mapping[str, float]
     """Fitted zeros of the rig, each the largest of all set-ups; they are part of a reading."""
-    beside: Mapping[str, float]  #: effects of the tyre for which a property file has no coefficient
+    beside: Mapping[str, float]
+    """Effects of the tyre for which a property file has no coefficient, and its temperature terms."""
+    T_range: tuple[float, float] | None = None  #: tested temperatures [degC], to which the terms are held
 
     @property
     def curved(self) -> bool:
@@ -130,6 +135,27 @@ class Predictor:
         ``file`` and ``fitted`` simulate a file of the build and the fitted model on a rig without errors.
         """
         names = [name for name in self.channels if channels is None or name in channels]
+        if self.T_range is None:
+            return self._forces(file, fitted, points, names)
+        unstated = ~np.isfinite(points.T)
+        held = points.replace(T=np.clip(points.T, *self.T_range))
+        if not np.any(unstated):
+            return self._forces(file, fitted, held, names)
+        each = [
+            self._forces(file, fitted, held.replace(T=np.where(unstated, T, held.T)), names)
+            for T in self._usual_temperatures()
+        ]
+        return {name: _mixed([one[name] for one in each]) for name in names}
+
+    def _usual_temperatures(self) -> tuple[float, ...]:
+        """Temperatures [degC] over which a prediction that states none averages."""
+        inputs = itertools.chain.from_iterable(one.smooth.inputs for one in self.channels.values())
+        found = next((one.averaged for one in inputs if one.name == "T"), ())
+        return found or (float(self.beside[T_REF]),)
+
+    def _forces(
+        self, file: Simulation, fitted: Simulation, points: Points, names: Sequence[str]
+    ) -> dict[str, PredictedForce]:
         fitted = fitted.with_numbers(self.beside)
         plain = file.readings(points, names)
         forces, slopes = fitted.sensitivities(points, self.names, names)
@@ -207,6 +233,15 @@ class Predictor:
         return found
 
 
+def _mixed(each: Sequence[PredictedForce]) -> PredictedForce:
+    """The prediction where one of several conditions holds, none of which is stated."""
+    best = np.array([one.best for one in each])
+    variance, of_run = (
+        np.mean([getattr(one, name) for one in each], axis=0) for name in ("variance", "of_run")
+    )
+    return PredictedForce(each[0].file, best.mean(axis=0), variance, of_run + best.var(axis=0))
+
+
 def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
     """The conditions (n, d), once for every combination of values of the conditions that are not stated."""
     unstated = np.full(len(points), np.nan)
@@ -217,11 +252,16 @@ def _settings(points: Points, inputs: Sequence[Input]) -> Iterator[np.ndarray]:
 
 
 def predictor(
-    points: Points, left: LinearisedFit, rig: Mapping[str, float], known: Collection[str] = ()
+    points: Points,
+    left: LinearisedFit,
+    rig: Mapping[str, float],
+    known: Collection[str] = (),
+    terms: Collection[str] = (),
 ) -> Predictor:
     """The predictor of a build, from the linear model of its residuals and the fitted rig errors.
 
-    Rig errors ``known`` are taken as exact, to find how much they widen the bands.
+    Rig errors ``known`` are taken as exact, to find how much they widen the bands. ``terms`` are names of the temperature terms
+    of the fit, with their reference.
     """
     zeros: dict[str, float] = {}
     for number, value in rig.items():
@@ -246,8 +286,9 @@ def predictor(
         for name, own in left.channels.items()
     }
     names = tuple(left.numbers[i].name for i in kept)
-    beside = {error.name: rig[error.name] for error in BESIDE if error.name in rig}
-    return Predictor(main_path(points), names, channels, zeros, beside)
+    beside = {name: rig[name] for name in (*(error.name for error in BESIDE), *terms) if name in rig}
+    T_range = (float(np.nanmin(points.T)), float(np.nanmax(points.T))) if terms else None
+    return Predictor(main_path(points), names, channels, zeros, beside, T_range)
 
 
 def _root(own: LinearisedChannel, kept: Sequence[int], spread: Mapping[int, float]) -> np.ndarray:

@@ -43,6 +43,7 @@ def write(path: Path, found: Predictor, file: str, fitted: str) -> None:
         "coefficients": found.names,
         "zeros": dict(found.zeros),
         "beside": dict(found.beside),
+        "T_range_degC": found.T_range,
         "channels": {
             name: {
                 "inputs": [asdict(one) for one in own.smooth.inputs],
@@ -132,13 +133,14 @@ def _beyond_ranges(points: Points, tyre: Tyre) -> Iterator[str]:
 
 
 def _predictor(content: dict[str, Any]) -> Predictor:
-    names, channels = tuple(content["coefficients"]), content["channels"]
+    names, channels, T_range = tuple(content["coefficients"]), content["channels"], content["T_range_degC"]
     if not (set(names) <= {*BY_NAME, *ERROR_OF} and set(channels) <= set(CHANNELS)):
         raise ValueError("an unknown name")
     return Predictor(
         path=float(content["phi_t_per_m"]),
         names=names,
         channels={name: _channel(own, len(names)) for name, own in channels.items()},
+        T_range=None if T_range is None else (float(T_range[0]), float(T_range[1])),
         **{
             key: {ERROR_OF[name].name: float(value) for name, value in content[key].items()}
             for key in ("zeros", "beside")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,10 @@ from mffit.fit.influences.nuisance_choice import Gaps
 from mffit.fit.influences.nuisances import of_run
 from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.written.misfit import FileFigures
+from mffit.linearised import LinearisedFit
 from mffit.points import Points
+from mffit.prediction import Predictor, predictor
+from mffit.prediction.predictor import T_REF
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN
 from mffit.scatter import ALARM
@@ -73,20 +76,26 @@ class AtTemperature:
     left_out_plain: Gaps  #: by channel, rms error of left-out sweeps of the plain file
     moved: Mapping[str, tuple[float, float, float]]
     """Coefficient -> (value in the plain file, value here, standard error here) if they clearly differ, largest change first."""
+    prediction: Predictor = field(repr=False)  #: of forces at any conditions and tested temperatures
 
 
 def at_temperature(
-    found: NuisanceFit, points: Points, file: FileFigures, coefficients: Mapping[str, Coefficient]
+    found: NuisanceFit,
+    points: Points,
+    file: FileFigures,
+    coefficients: Mapping[str, Coefficient],
+    left: LinearisedFit,
 ) -> AtTemperature:
-    """The record of a fit that models the temperature."""
+    """The record of a fit that models the temperature; ``left`` is the linear model of its residuals."""
     full = found.full
     terms = {name: full.rig[name] for name in SCALED_BY if name in full.rig}
+    rig, T_ref = {name: value for name, (value, _) in full.rig_stated.items()}, full.simulation.faults[T_REF]
     simulation = without_runs(full.simulation)
     alone = simulation.with_numbers(dict.fromkeys(terms, 0.0))
     verdict = next(v for v in found.choice.verdicts if v.modelled and set(v.nuisance.numbers) & set(terms))
     return AtTemperature(
         file=file,
-        T_ref=full.simulation.faults["T_ref_degC"],
+        T_ref=T_ref,
         T_range=(float(np.nanmin(points.T)), float(np.nanmax(points.T))),
         terms=terms,
         rig=full.rig_stated,
@@ -96,6 +105,7 @@ def at_temperature(
         left_out=verdict.beside,
         left_out_plain=verdict.without,
         moved=_moved(found),
+        prediction=predictor(points, left, {**rig, T_REF: T_ref}, terms=(*terms, T_REF)),
     )
 
 

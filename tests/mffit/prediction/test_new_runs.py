@@ -165,8 +165,27 @@ def test_stated_temperature_counts_and_a_missing_one_widens(warming: Built):
     assert np.mean(between[large] < 0.0) > 0.95
     assert np.all(none.u_Fy_run_N[large] > warm.u_Fy_run_N[large])
     mixed = warming.predict(**conditions, T_degC=[46.0, np.nan] * 100)
-    assert np.array_equal(mixed.Fy_best_N[::2], cold.Fy_best_N[::2])
-    assert np.array_equal(mixed.Fy_best_N[1::2], none.Fy_best_N[1::2])
+    np.testing.assert_allclose(mixed.Fy_best_N[::2], cold.Fy_best_N[::2], rtol=1e-12)
+    np.testing.assert_allclose(mixed.Fy_best_N[1::2], none.Fy_best_N[1::2], rtol=1e-12)
+
+
+@pytest.mark.parametrize("T", [46.0, 52.0, 58.0])
+def test_the_best_estimate_is_the_tyre_at_the_stated_temperature(warming: Built, T: float):
+    """A plain file takes part of the warming up: added to it, the temperature would count twice."""
+    conditions = drawn(200, alpha=9.5, gamma=4.0, loads=(800.0, 3400.0))
+    found = warming.predict(**conditions, T_degC=T)
+    Fy, _ = brush(np.radians(conditions.alpha_deg), np.radians(conditions.gamma_deg), conditions.Fz_N)
+    error = found.Fy_best_N - Fy * (1.0 - 0.01 * (T - 50.0))
+    assert np.sqrt(np.mean(error**2)) < 0.01 * np.max(np.abs(Fy))
+    assert np.mean(np.abs(error) < COVERAGE_FACTOR_95 * found.u_Fy_best_N) > 0.9
+
+
+def test_temperature_acts_as_far_as_it_was_tested(warming: Built):
+    conditions = drawn(20, alpha=9.5, gamma=4.0, loads=(800.0, 3400.0))
+    low, high = warming.result.fit.temperature.T_range
+    for beyond, end in ((20.0, low), (90.0, high)):
+        at_end, further = (warming.predict(**conditions, T_degC=T) for T in (end, beyond))
+        np.testing.assert_allclose(further.Fy_best_N, at_end.Fy_best_N, rtol=1e-12)
 
 
 def test_on_another_path_what_was_missed_is_known_in_part(foreign: Built):
