@@ -61,7 +61,7 @@ def belt(
 ) -> Path:
     """Sideslip sweeps of the brush tyre on a flat belt at every load and camber, each with a zero of Fy of its own.
 
-    ``warm``: the runs are warmer and warmer, and lose 1 % of the side force per kelvin around 50 degC. Returns ``tyre.toml``.
+    ``warm``: runs at higher loads are warmer, and lose 1 % of the side force per kelvin around 50 degC. Returns ``tyre.toml``.
     """
     random = np.random.default_rng(seed)
     runs = []
@@ -71,7 +71,7 @@ def belt(
         )
         Fy, Mz = brush(np.radians(table.alpha_deg), np.radians(camber), load)
         if warm:
-            table["T_degC"] = 44.0 + (4 * k) % 15 + 2.0 * np.abs(np.sin(np.arange(25)))
+            table["T_degC"] = 41.0 + load / 260.0 + 4.0 * np.abs(np.sin(np.arange(25)))
             Fy = Fy * (1.0 - 0.01 * (table["T_degC"] - 50.0))
         table["Fz_N"] = load
         table["Fy_N"] = Fy + offset * random.standard_normal() + FY_NOISE * random.standard_normal(25)
