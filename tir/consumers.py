@@ -22,11 +22,20 @@ def target_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")
-        found = [*_broken_rules(tyre, target)]
-    else:
-        found = [*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())]
-    for problem in found:
-        yield Problem(problem.level, f"for {target.name}: {problem.sentence}", problem.name, problem.line)
+        yield from rule_problems(tyre, target)
+        return
+    for problem in (*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())):
+        yield _named(problem, target)
+
+
+def rule_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
+    """Problems of the tyre's values in a program, whatever the form of its file."""
+    for problem in _broken_rules(tyre, target):
+        yield _named(problem, target)
+
+
+def _named(problem: Problem, target: Target) -> Problem:
+    return Problem(problem.level, f"for {target.name}: {problem.sentence}", problem.name, problem.line)
 
 
 def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:

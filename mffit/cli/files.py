@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import webbrowser
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from mffit.cli.console import NOT_TRUSTED, Voice, voiced
 from mffit.cli.options import PATH, given, out_option, tir_file
+
+if TYPE_CHECKING:
+    from tir import Problem
 
 
 @click.command()
@@ -25,16 +29,18 @@ from mffit.cli.options import PATH, given, out_option, tir_file
 def check(file: Path, targets: str, given: dict[str, float], voice: Voice) -> None:
     """Check a property file.
 
-    Looks at units, missing and unknown keys, and physics over the ranges of the file.
+    Looks at units, missing and unknown keys, and physics over the ranges of the file. A file of PAC2002 is checked for programs
+    that read it (--for chrono).
     """
     import tir
     from tir.errors import LEVELS, counted
 
-    tyre = tir.read(file, **given)
-    names = [name.strip() for name in targets.split(",")]
-    problems = sorted(
-        [*tyre.problems, *tir.check(tyre, filter(None, names))], key=lambda p: LEVELS.index(p.level)
-    )
+    names = [*filter(None, (name.strip() for name in targets.split(",")))]
+    found = _of_old(file, names, given)
+    if found is None:
+        tyre = tir.read(file, **given)
+        found = [*tyre.problems, *tir.check(tyre, names)]
+    problems = sorted(found, key=lambda problem: LEVELS.index(problem.level))
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors, warnings = (sum(p.level == level for p in problems) for level in ("error", "warning"))
@@ -42,6 +48,17 @@ def check(file: Path, targets: str, given: dict[str, float], voice: Voice) -> No
     voice.give({"file": file, "problems": problems})
     if errors:
         raise SystemExit(2)
+
+
+def _of_old(file: Path, programs: list[str], given: dict[str, float]) -> list[Problem] | None:
+    """Problems of an old file in programs that read it; None if another file, or another program, is asked about."""
+    if not programs:
+        return None
+    from mffit import conversion
+
+    if not set(programs) <= set(conversion.READERS) or not conversion.is_old(file):
+        return None
+    return conversion.check_old(file, programs, given)
 
 
 @click.command()

@@ -3,6 +3,18 @@
 from mffit.conversion.backwards import KINDS, to_old
 from mffit.conversion.convert import convert, write
 from mffit.conversion.old_files import is_old, read_old
+from mffit.conversion.old_programs import READERS, check_old
 from mffit.conversion.result import Conversion, OldConversion
 
-__all__ = ["KINDS", "Conversion", "OldConversion", "convert", "is_old", "read_old", "to_old", "write"]
+__all__ = [
+    "KINDS",
+    "READERS",
+    "Conversion",
+    "OldConversion",
+    "check_old",
+    "convert",
+    "is_old",
+    "read_old",
+    "to_old",
+    "write",
+]

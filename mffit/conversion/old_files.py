@@ -78,8 +78,10 @@ def read_old(
             name=missing[0],
         )
     _refuse_incomplete_curves(values, document)
-    if unused:
-        keys = [key.partition(".")[2] for key in unused]
+    keys = [
+        key.partition(".")[2] for key in unused if not key.startswith("MODEL.")
+    ]  # those control a program
+    if keys:
         problems.append(Problem("warning", f"keys that are not used: {some(keys)}"))
     present = frozenset(values)
     return OldFile(kind, MappingProxyType(old_completed(values)), present, tuple(problems), document)

@@ -13,13 +13,14 @@ import pytest
 import tir
 from mffit import config as configuration
 from mffit.cli import main
-from mffit.conversion import convert, is_old, mf52, read_old, to_old, wording
+from mffit.conversion import check_old, convert, is_old, mf52, read_old, to_old, wording
 from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.fit.known import known_before_fit
 from mffit.pipeline.inputs import base_warnings, read_base
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
+from tir import differences
 
 ROOT = Path(__file__).parents[3]
 OLD = Path(__file__).parent / "old_52.tir"
@@ -284,6 +285,28 @@ def test_a_side_force_that_grows_with_sideslip_is_in_other_axes(tmp_path, capsys
     said = " ".join(capsys.readouterr().out.split())
     assert "the file is in other axes" in said
     assert f"reverse the signs of {', '.join(wording.REVERSED[:-1])} and {wording.REVERSED[-1]} in it" in said
+
+
+def test_an_old_file_is_checked_for_the_programs_that_read_it(tmp_path, capsys):
+    """The file that is made for Chrono has no error there, and its clamp is said; another format stops it."""
+    source = Path(__file__).parents[2] / "tir" / "vectors" / "MagicFormula62.tir"
+    text = to_old(source, "pac2002").text
+    (tmp_path / "pac.tir").write_text(text)
+    main(["check", str(tmp_path / "pac.tir"), "--for", "chrono"])
+    said = capsys.readouterr().out
+    assert "0 errors, 1 warning" in said
+    of_source, of_file = (
+        differences.beyond_the_peak_in_chrono(tir.read(source)),
+        re.findall(r"by \+(\d+) %", said),
+    )
+    for percent, channel in zip(of_file, ("Fx", "Fy"), strict=True):
+        assert float(percent) == pytest.approx(100.0 * of_source[channel], abs=2.0)
+    text = re.sub(r"(?m)^USE_MODE .*$", "USE_MODE = 14", text.replace("'PAC2002'", "'DELFT'"))
+    (tmp_path / "other.tir").write_text(text)
+    names = [p.name for p in check_old(tmp_path / "other.tir", ["chrono"])]
+    assert names[:2] == ["PROPERTY_FILE_FORMAT", "USE_MODE"]
+    with pytest.raises(SystemExit):  # MF 6 is needed elsewhere
+        main(["check", str(tmp_path / "pac.tir"), "--for", "chrono,mfeval"])
 
 
 def test_the_signs_to_reverse_turn_a_file_from_adapted_sae_to_iso(tmp_path):
