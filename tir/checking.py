@@ -213,6 +213,13 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
             "CAMMAX",
             f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations limit camber to it silently",
         )
+    low, high = sorted(("INFLPRES", "NOMPRES"), key=lambda name: float(tyre[name]))
+    if 0.0 < tyre[low] * float(constants.PRESSURES_APART) < tyre[high]:
+        yield _error(
+            low,
+            f"{high} {tyre[high]:g} Pa is {tyre[high] / tyre[low]:.3g} times {low} {tyre[low]:g} Pa: one is in another unit; write "
+            "both in Pa",
+        )
     stated = {"PRESMIN", "PRESMAX"} & tyre.present
     for name in ("INFLPRES", "NOMPRES"):
         if stated and not tyre["PRESMIN"] <= tyre[name] <= tyre["PRESMAX"]:

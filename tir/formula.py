@@ -22,22 +22,9 @@ CAR_FITTYPS = (5, 6, 21)
 HEADER = ("MDI_HEADER", "UNITS")
 OLD_KEYS = frozenset(
     {
-        *(
-            "PHY3",
-            "PTX1",
-            "PTX2",
-            "PTX3",
-            "PTX4",
-            "PTY1",
-            "PTY2",
-            "PTY3",
-            "QTZ1",
-            "MBELT",
-            "QPX1",
-            "QPZ1",
-            "QPZ2",
-        ),
-        *("LGAX", "LGAY", "LGAZ", "LGYR", "LKYG", "LSGKP", "LSGAL", "IP", "IP_NOM"),
+        *("PHY3", "QTZ1", "MBELT", "QPX1", "QPZ1", "QPZ2", "IP", "IP_NOM"),
+        *("PTX1", "PTX2", "PTX3", "PTX4", "PTY1", "PTY2", "PTY3"),
+        *("LGAX", "LGAY", "LGAZ", "LGYR", "LKYG", "LSGKP", "LSGAL"),
     }
 )
 """Keys that only files of the 5.2 generation have, PAC2002 and the old formula for motorcycles among them."""

@@ -95,6 +95,21 @@ def test_units_in_the_plural_are_the_same_units(tmp_path):
         read(tmp_path, text.replace("newtons", "newtonss"))
 
 
+def test_two_pressures_in_two_units_contradict_one_another(tmp_path):
+    found = check(
+        read(
+            tmp_path,
+            f"[MODEL]\nFITTYP = 61\n[OPERATING_CONDITIONS]\nNOMPRES = 220\nINFLPRES = 220000\n{BODY}",
+        )
+    )
+    (sentence,) = (p.sentence for p in found if p.level == "error")
+    assert "INFLPRES 220000 Pa is 1e+03 times NOMPRES 220 Pa" in sentence
+    both = read(
+        tmp_path, f"[MODEL]\nFITTYP = 61\n[OPERATING_CONDITIONS]\nNOMPRES = 120000\nINFLPRES = 300000\n{BODY}"
+    )
+    assert not [p for p in check(both) if p.level == "error"]
+
+
 def test_a_car_file_under_the_number_of_motorcycles_says_how_to_convert_it(tmp_path):
     with pytest.raises(tir.TirError, match=r"FITTYP 52.*--fittyp 6"):
         read(tmp_path, f"[MODEL]\nTYPE = 'CAR'\nFITTYP = 52\n{BODY}PHY3 = 0.01\nPKY4 = 2\nPKY6 = 0\n")
