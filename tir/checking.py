@@ -217,8 +217,8 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
     if 0.0 < tyre[low] * float(constants.PRESSURES_APART) < tyre[high]:
         yield _error(
             low,
-            f"{high} {tyre[high]:g} Pa is {tyre[high] / tyre[low]:.3g} times {low} {tyre[low]:g} Pa: one is in another unit; write "
-            "both in Pa",
+            f"{high} {tyre[high]:g} Pa is {tyre[high] / tyre[low]:.3g} times {low} {tyre[low]:g} Pa: one is in another unit; "
+            "write both in Pa",
         )
     stated = {"PRESMIN", "PRESMAX"} & tyre.present
     for name in ("INFLPRES", "NOMPRES"):
