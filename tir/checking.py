@@ -74,16 +74,25 @@ SINGLE = (
     ),
 )
 """Dimensions, limits and masses."""
-SHAPES = tuple(
-    PlausibleRule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
-    for name, what, amplitude in (
-        ("PCX1", "shape factor", "PDX1"),
-        ("PCY1", "shape factor", "PDY1"),
-        ("QCZ1", "shape factor", "QDZ1"),
-        ("QBZ1", "slope factor", "QDZ1"),
-        ("LCX", "scale of a shape factor", "PDX1"),
-        ("LCY", "scale of a shape factor", ""),
-    )
+SHAPES = (
+    PlausibleRule(
+        ("PKY2",),
+        lambda x: x == 0.0,
+        "the load is divided by it, so that the cornering stiffness is unknown; give its value",
+        "error",
+        "PKY1",
+    ),
+    *(
+        PlausibleRule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
+        for name, what, amplitude in (
+            ("PCX1", "shape factor", "PDX1"),
+            ("PCY1", "shape factor", "PDY1"),
+            ("QCZ1", "shape factor", "QDZ1"),
+            ("QBZ1", "slope factor", "QDZ1"),
+            ("LCX", "scale of a shape factor", "PDX1"),
+            ("LCY", "scale of a shape factor", ""),
+        )
+    ),
 )
 """Coefficients of the shape of the curves."""
 

@@ -14,7 +14,7 @@ import tir
 from mffit.conversion import mf52, wording
 from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, camber_range, misfits
 from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
-from mffit.conversion.old_files import OF_62, OWN, old_completed
+from mffit.conversion.old_files import OF_62, OWN, old_completed, refuse_load_of_zero
 from mffit.conversion.refit import UNBOUNDED
 from mffit.conversion.result import ROUNDING, OldConversion
 from mffit.least_squares import FreeNumber, of_model, solve
@@ -80,9 +80,10 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
     Raises
     ------
     TirError
-        If the file cannot be read.
+        If the file cannot be read, or has no cornering stiffness.
     """
     tyre = tir.read(path, **given)
+    refuse_load_of_zero(tyre.values, path)
     reach = reach_of(tyre.values, tyre.present)
     at = conditions(reach)
     goal = dict(zip(CHANNELS_COMPARED, _forces(tyre, at), strict=True))

@@ -78,6 +78,7 @@ def read_old(
             name=missing[0],
         )
     _refuse_incomplete_curves(values, document)
+    refuse_load_of_zero(values, path)
     keys = [
         key.partition(".")[2] for key in unused if not key.startswith("MODEL.")
     ]  # those control a program
@@ -106,10 +107,21 @@ def _refuse_incomplete_curves(values: Mapping[str, Any], document: Document) -> 
         )
 
 
+def refuse_load_of_zero(values: Mapping[str, Any], path: str | Path) -> None:
+    """Raise TirError if the load is divided by 0 in the cornering stiffness, which is then unknown."""
+    if values.get("PKY1") and values.get("PKY2") == 0.0:
+        raise TirError(
+            "PKY2 is 0, but the cornering stiffness divides the load by it: give its value",
+            path=path,
+            name="PKY2",
+        )
+
+
 def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:
     """Every parameter of 6.2 and of :data:`OWN`: the given values, and defaults for all others.
 
-    Missing coefficients are 0, except where the formulae of 6.2 need another value to be those of 5.2.
+    Missing coefficients are 0, except where the formulae of 6.2 need another value to be those of 5.2, and PKY2, by which loads
+    are divided: it does not matter where there is no side force.
     """
     values = completed({name: x for name, x in given.items() if name in BY_NAME})
     for row in TABLE:
@@ -117,7 +129,7 @@ def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:
             row.section.endswith("_COEFFICIENTS")
             and not row.scaling
             and row.section != TURN_SLIP
-            and row.name not in given
+            and row.name not in {*given, "PKY2"}
         ):
             values[row.name] = OF_62.get(row.name, 0.0)
     return {**values, **{name: row.default for name, row in OWN.items()}, **given}

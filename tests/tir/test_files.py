@@ -506,6 +506,7 @@ class TestCheck:
             ({"LATERAL_STIFFNESS": 0.0}, "warning", "relaxation"),
             ({"LONGITUDINAL_STIFFNESS": -3e5}, "warning", "relaxation"),
             ({"PCX1": 0.0}, "error", "PCX1"),
+            ({"PKY2": 0.0}, "error", "PKY2 is 0: the load is divided by it"),
             ({"LCY": -1.0}, "error", "LCY"),
             ({"QBZ1": -1.0}, "error", "QBZ1"),
             ({"MASS": -4.4}, "error", "MASS is -4.4 kg"),

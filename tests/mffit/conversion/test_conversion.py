@@ -210,6 +210,7 @@ UNTOLD = re.sub(
         (re.sub(r"FNOMIN.*\n", "", TEXT), "lacks FNOMIN"),
         (re.sub(r"PKY[12].*\n", "", TEXT), "lacks PKY1 and PKY2, without which its side force"),
         (re.sub(r"P[CDK][XY]\d.*\n", "", TEXT), "has no force"),
+        (re.sub(r"(?m)^PKY2 .*$", "PKY2 = 0", TEXT), "PKY2 is 0"),
         (TEXT.replace("-0.8\n", "-0,8\n"), 'PEY1 is "-0,8"'),
     ],
 )
@@ -272,6 +273,20 @@ def test_a_file_of_the_side_force_alone_is_converted(tmp_path):
     assert found.tyre(600.0, 0.05).Mz == found.tyre(600.0, 0.0, 0.0, 0.1).Fx == 0.0
     assert found.tyre["PDY1"] > 0.0  # a negative peak is the same curve; one sign is written
     assert not [p.sentence for p in tir.check(found.tyre) if p.level == "error"]
+
+
+def test_a_file_of_the_longitudinal_force_alone_is_converted(tmp_path):
+    """No side force: nothing is divided by its coefficients, and the longitudinal force is the old one."""
+    head = "[MODEL]\nFITTYP = 6\n[DIMENSION]\nUNLOADED_RADIUS = 0.3\n[VERTICAL]\nFNOMIN = 4000\n"
+    (tmp_path / "along.tir").write_text(
+        f"{head}[LONGITUDINAL_COEFFICIENTS]\nPCX1 = 1.6\nPDX1 = 1.1\nPKX1 = 22\n"
+    )
+    found = convert(tmp_path / "along.tir")
+    D, K = 1.1 * 3000.0, 22.0 * 3000.0
+    assert found.tyre(3000.0, 0.0, 0.0, 0.04).Fx == pytest.approx(
+        D * math.sin(1.6 * math.atan(K / (1.6 * D) * 0.04))
+    )
+    assert found.tyre(3000.0, 0.1).Fy == found.tyre(3000.0, 0.1).Mz == 0.0
 
 
 def test_a_side_force_that_grows_with_sideslip_is_in_other_axes(tmp_path, capsys):
