@@ -128,6 +128,10 @@ CONDITIONS = (
 )
 
 
+OF_THE_SIDE_FORCE = ("PDY1", "PKY1", "PKY3")
+"""Conditions that a tyre without a side force need not fulfil."""
+
+
 def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     """Problems for the conditions that the tyre violates within its ranges or just outside.
 
@@ -138,7 +142,8 @@ def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
     around = np.array([inside[0] - reach, inside[1] + reach])
     around[0, 0] = max(around[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
     around[0, 2] = max(around[0, 2], constants.IN_USE[0] * tyre["NOMPRES"])
-    for condition in CONDITIONS:
+    skipped = OF_THE_SIDE_FORCE if _along_only(tyre) else ()
+    for condition in (one for one in CONDITIONS if one.name not in skipped):
         margin, point = worst(tyre, condition.measure, inside)
         if np.isnan(margin):
             yield Problem(
@@ -155,6 +160,12 @@ def over_the_range(tyre: TyreRecord) -> Iterator[Problem]:
         if sentence:
             text = sentence.format(where=_place(point, condition), worst=condition.value(margin))
             yield Problem(level, text, condition.name)
+
+
+def _along_only(tyre: TyreRecord) -> bool:
+    """Whether the file states a longitudinal force and no side force."""
+    along = all(name in tyre.present and tyre[name] != 0.0 for name in ("PDX1", "PKX1"))
+    return along and tyre["PDY1"] == tyre["PKY1"] == 0.0
 
 
 def _level(level: str, condition: Condition, tyre: TyreRecord, stated: np.ndarray) -> str:

@@ -287,6 +287,7 @@ def test_a_file_of_the_longitudinal_force_alone_is_converted(tmp_path):
         D * math.sin(1.6 * math.atan(K / (1.6 * D) * 0.04))
     )
     assert found.tyre(3000.0, 0.1).Fy == found.tyre(3000.0, 0.1).Mz == 0.0
+    assert not [p.sentence for p in tir.check(found.tyre) if p.level == "error"]
 
 
 def test_a_side_force_that_grows_with_sideslip_is_in_other_axes(tmp_path, capsys):
