@@ -87,7 +87,7 @@ def _rolled_in(sweep: Sweep, stretch: Stretch) -> Stretch:
     """A sweep without its first metres of rolling; dropped if its load is not held."""
     begin, end = stretch.begin, stretch.end
     low, middle, high = np.nanpercentile(sweep.Fz[begin:end], [constants.CORE[0], 50.0, constants.CORE[1]])
-    if high - low > constants.HELD_LOAD * middle:
+    if stretch.swept != "Fz" and high - low > constants.HELD_LOAD * middle:
         return stretch._replace(dropped=f"the load wanders from {low:.0f} to {high:.0f} N")
     return stretch._replace(begin=min(_rolled_from(begin, settings_of(sweep), end), end - 1))
 

@@ -12,8 +12,8 @@ from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
 
-COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
-"""Column of each setting."""
+COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa", "Fz": "Fz_N"}
+"""Column of each setting that a sweep moves."""
 
 
 def faulty(sweep: Sweep, wrong: Sequence[Fault]) -> tuple[str, ...]:

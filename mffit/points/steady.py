@@ -118,13 +118,22 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
         for name in STEP
     }
     shortest = 0.0 if staircase else _shortest_plateau(settings)
-    found = [s for s, seconds in zip(rests, held, strict=True) if seconds >= shortest]
+    found = [
+        _with_its_load(settings, s) for s, seconds in zip(rests, held, strict=True) if seconds >= shortest
+    ]
     covered = np.zeros(len(settings.time), dtype=bool)
     for rest in found:
         covered[rest.begin : rest.end] = True
     for begin, end in runs(~covered):
         found += _swept(settings, moving, creeping, begin, end, span)
     return found
+
+
+def _with_its_load(settings: SteadySettings, rest: Stretch) -> Stretch:
+    """A rest of the angles and the slip, as a sweep of the load if the load is not held."""
+    load = _smoothed(settings, "Fz")[0][rest.begin : rest.end]
+    wanders = len(load) > 0 and np.ptp(load) > constants.HELD_LOAD * np.median(load)
+    return rest._replace(kind=SWEEP, swept="Fz") if wanders else rest
 
 
 def _shortest_plateau(settings: SteadySettings) -> float:

@@ -18,7 +18,7 @@ class Stretch(NamedTuple):
     end: int
     dropped: str = ""  #: why the samples give no point; empty if they do
     kind: str = PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle or the slip moves; ``MOVE``: anything else
-    swept: str = ""  #: setting that a sweep moves: "alpha", "gamma" or "kappa"; empty for other kinds
+    swept: str = ""  #: setting that a sweep moves: "alpha", "gamma", "kappa" or "Fz"; empty for other kinds
 
 
 class StretchNote(NamedTuple):

@@ -221,3 +221,22 @@ def test_noise_of_an_angle_does_not_shorten_its_averages(read, scatter):
     assert np.median(np.diff(found.time)) == pytest.approx(0.1, abs=0.011)
     truth = np.interp(found.time, np.arange(len(alpha)) / 100.0, alpha)
     assert np.std(np.degrees(found.alpha) - truth) < 0.02 + 0.4 * scatter
+
+
+def test_a_load_that_moves_at_a_held_angle_is_a_sweep_of_the_load(read):
+    """400 N to 1600 N and back in 40 s: the mean of all of it is a point of no load."""
+    table = recording(20.0, alpha_deg=np.full(800, 3.0))
+    load = at_rate([(0.0, 400.0), (20.0, 1600.0), (40.0, 400.0)], 20.0)
+    table = table.assign(Fz_N=load, Fy_N=-load * sine(np.radians(3.0)))
+    found = read(table)
+    (sweep,) = of_kind(found, SWEEP)
+    assert sweep.swept == "Fz_N"
+    assert not of_kind(found, PLATEAU)
+    assert np.ptp(found.points.Fz) > 1150.0
+    np.testing.assert_allclose(found.points.Fy, -found.points.Fz * sine(found.points.alpha), rtol=0.01)
+
+
+def test_a_load_that_wanders_by_a_tenth_is_held(read):
+    table = recording(20.0, alpha_deg=np.full(800, 3.0))
+    table["Fz_N"] *= 1.0 + 0.1 * np.sin(np.arange(800) / 100.0)
+    assert len(of_kind(read(table), PLATEAU)) == 1
