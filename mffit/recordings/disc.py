@@ -12,6 +12,7 @@ import numpy as np
 from mffit.constants import UPRIGHT
 from mffit.points import Points
 from mffit.recordings import constants
+from mffit.recordings.recording import rolls_backward
 from mffit.recordings.sniffed import Sniffed
 from mffit.sweeps import formats
 
@@ -26,9 +27,10 @@ class DiscPath(NamedTuple):
 def disc_signs(sniffed: Sniffed) -> list[str]:
     """Each sign of a disc, as a phrase; empty for recordings of a belt."""
     found = []
-    backward = [r.path.name for r in sniffed.recordings if r.backward]
+    backward = [r.path for r in sniffed.recordings if r.backward]
     if backward:
-        found.append(f"{backward[0]} is named as rolling backwards")
+        why = "is named as rolling backwards" if rolls_backward(backward[0]) else "has negative speeds"
+        found.append(f"{backward[0].name} {why}")
     if any(_both_ways(sniffed.points, r.path) for r in sniffed.recordings):
         found.append("the wheel rolls both ways")
     zero = zero_of_upright(sniffed.points)

@@ -80,6 +80,10 @@ def guesses(
     known = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
     by_unit = only_ones(raw, columns, known)
     columns |= by_unit
+    speed = columns.get("V_mps")
+    negative = speed is not None and float(np.nanmedian(speed.values)) < 0.0
+    if speed is not None and negative:
+        columns["V_mps"] = speed._replace(values=-speed.values)
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
     remarks = [*of_rest, *of_axes, *left_out.values(), *of_units]
@@ -88,6 +92,10 @@ def guesses(
     by_unit = {name: column for name, column in by_unit.items() if name in found}
     found |= {name: found[name]._replace(why="taken by its unit, see above") for name in by_unit}
     remarks += map(taken_for, by_unit.values())
+    if negative and "V_mps" in found:
+        known_unit = found["V_mps"].why
+        why = "; ".join(filter(None, (known_unit, "the speed is negative in the file")))
+        found["V_mps"] = found["V_mps"]._replace(scale=-1.0, why=why)
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)

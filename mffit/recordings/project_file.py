@@ -14,7 +14,7 @@ import tomli_w
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.disc import DiscPath, disc_signs
-from mffit.recordings.recording import SniffedRecording, rolls_backward
+from mffit.recordings.recording import SniffedRecording, rolls_backward, speed_is_negative
 from mffit.recordings.sniffed import Sniffed, axes_reason, holding, points_from, stated_of_tyre
 from mffit.recordings.unstated import Guess
 from mffit.suspicion.all_files import LevelsOfLoad
@@ -250,7 +250,9 @@ def _content(recording: SniffedRecording, shared: Mapping[str, Column]) -> tuple
 
 
 def _why_backward(recording: SniffedRecording) -> str:
-    return "from the name of the file" if rolls_backward(recording.path) else "as chosen"
+    if rolls_backward(recording.path):
+        return "from the name of the file"
+    return "from the sign of the speed" if speed_is_negative(recording.guesses) else "as chosen"
 
 
 def _comments(remarks: Iterable[str]) -> list[str]:

@@ -143,7 +143,8 @@ def recording_of(
         seconds=clock.seconds,
         gaps=clock.gaps,
         remarks=remarks,
-        backward="direction" not in found and (rolls_backward(path) if chosen is None else chosen.backward),
+        backward="direction" not in found
+        and (rolls_backward(path) or speed_is_negative(found) if chosen is None else chosen.backward),
         tyre=tyre,
     )
 
@@ -199,3 +200,8 @@ BACKWARD = re.compile(
 def rolls_backward(path: Path) -> bool:
     """Whether the name of a recording says that the wheel rolled backwards."""
     return BACKWARD.search(unicodedata.normalize("NFC", formats.stem(path.name))) is not None
+
+
+def speed_is_negative(guesses: Mapping[str, Guess]) -> bool:
+    """Whether a file has negative speeds."""
+    return "V_mps" in guesses and guesses["V_mps"].scale < 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -25,6 +25,8 @@ from mffit.recordings.recording import (
     check_headings,
     recording_of,
     recordings_of,
+    rolls_backward,
+    speed_is_negative,
 )
 from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
 from mffit.recordings.tyre_constants import StatedByFile
@@ -105,9 +107,13 @@ def sniff(
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
     axes = _first_axes(recordings)
-    config = configuration_of(recordings, axes, bad)
-    reading = read(config, may_be_empty=True)
-    agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
+    for directed in _either_way(recordings):
+        recordings = directed
+        config = configuration_of(recordings, axes, bad)
+        reading = read(config, may_be_empty=True)
+        agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
+        if axes in agreeing:
+            break
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
     of_summaries = [
@@ -154,6 +160,22 @@ def files_of(path: str | Path) -> list[Path]:
     if not file_of(file).exists():
         raise InputError("there is no such file; correct its name", file=file)
     return [file]
+
+
+def _either_way(recordings: Sequence[SniffedRecording]) -> Iterator[tuple[SniffedRecording, ...]]:
+    """The recordings, and then, if only a negative speed says that some roll backwards, these as rolling forwards.
+
+    Some rigs count the speed of a belt that runs forwards as negative.
+    """
+    yield tuple(recordings)
+    doubtful = [
+        r.backward and speed_is_negative(r.guesses) and not rolls_backward(r.path) for r in recordings
+    ]
+    if any(doubtful):
+        yield tuple(
+            r._replace(backward=r.backward and not d) for r, d in zip(recordings, doubtful, strict=True)
+        )
+        yield tuple(recordings)
 
 
 def _first_axes(recordings: Sequence[SniffedRecording]) -> str:

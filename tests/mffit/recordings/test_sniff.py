@@ -198,3 +198,23 @@ def test_bad_usage_is_one_sentence(arguments, tmp_path, monkeypatch, capsys):
     error = capsys.readouterr().err
     assert error.startswith("mffit: ")
     assert error.count("\n") == 1
+
+
+def test_negative_speeds_are_rolling_backwards_if_the_forces_say_so(tmp_path):
+    """Backwards, the slip force of a reading turns, and camber thrust does not; a belt that counts backwards turns nothing."""
+    table = iso(recording(loads=(600.0, 1500.0), cambers=(0.0, 4.0), pressures=(83.0,)))
+    alpha, gamma = np.radians(table["SA"]), np.radians(table["IA"])
+    slip = side_force(alpha, 0.0 * gamma, table["FZ"], side=0.0)
+    lean = side_force(0.0 * alpha, gamma, table["FZ"], side=0.0)
+    belt = table.assign(V=-table["V"])
+    back = belt.assign(FY=lean - slip)
+    for name, one, backward in (("belt", belt, False), ("wheel", back, True)):
+        (recorded,) = sniff([write_mat(one, tmp_path / f"{name}.mat")]).recordings
+        assert recorded.backward == backward
+        assert recorded.guesses["V_mps"].scale == -1.0
+    _, written = pipeline.init_from([tmp_path / "wheel.mat"], tmp_path / "p", **GIVEN, belt=True)
+    content = written[0].read_text()
+    assert 'direction = "backward"  # from the sign of the speed' in content
+    found = pipeline.inputs.read_points(configuration.load(written[0])).points
+    assert np.all(found.direction == -1)
+    assert np.median(found.V) == pytest.approx(11.0, rel=0.01)
