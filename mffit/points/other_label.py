@@ -196,7 +196,7 @@ def _compared(setting: str, readings: MeansOfSweep, others: list[MeansOfSweep]) 
     if len(all_of) < constants.FEWEST_COMPARED_LABELS:
         return None
     apart, u, force = np.transpose(all_of)
-    if not np.all(u > 0.0):
+    if not np.all(u > 0.0) or not np.any(force):  # without noise, or of a dead channel
         return None
     chi2 = float(np.sum((apart / u) ** 2))
     return _Compared(len(apart), rms(apart), rms(u), rms(force), float(chdtrc(len(apart), chi2)))

@@ -110,7 +110,9 @@ def _difference(first: Curve, second: Curve, cell: Points) -> _Difference | None
     zeros = np.column_stack([np.ones(len(x)), slope])  # of the force, and of the sideslip
     left = change - zeros @ np.linalg.lstsq(zeros, change, rcond=None)[0]
     centred = y - zeros @ np.linalg.lstsq(zeros, y, rcond=None)[0]
-    gain = 1.0 + float(centred @ left) / float(centred @ centred) if np.any(centred) else np.nan
+    if not np.any(centred):  # a dead channel
+        return None
+    gain = 1.0 + float(centred @ left) / float(centred @ centred)
     return _Difference(left, centred, np.hypot(u, u_other), gain, float(np.median(cell.Fz)), _named(cell))
 
 

@@ -9,6 +9,8 @@ from flat_belt import recording, write_mat
 
 from mffit import build, points
 from mffit import config as configuration
+from mffit.points.other_label import other_labels
+from mffit.points.unlike import unlike_files
 from mffit.recordings import sniff
 from mffit.report import verdict
 
@@ -114,3 +116,9 @@ def test_a_title_names_its_tyre(tmp_path):
         w for w in sniff([tmp_path / "0.csv", tmp_path / "1.csv"]).reading.warnings if "name 2 tyres" in w
     ]
     assert '"Soft 10" (0.csv), "Hard 13" (1.csv)' in said
+
+
+def test_a_dead_force_is_like_nothing(config):
+    one, two = tyre().assign(Fy_N=0.0), tyre(seed=2).assign(Fy_N=0.0)
+    assert not unlike_files(points.read(config(one, two)).points)
+    assert not other_labels(points.read(config(one, two)).points)
