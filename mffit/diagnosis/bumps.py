@@ -103,7 +103,7 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
     spread = {
         name: constants.USUAL_MISS_OF_A_FORMULA * float(np.nanmax(np.abs(points.channel(name))))
         for name in noise.channels
-        if np.any(np.isfinite(points.channel(name)))
+        if np.any(np.nan_to_num(points.channel(name)))  # nothing is missing from a channel of zeros
     }
     bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
     return BumpScan(noise, bumps, tuple(regions), spread)

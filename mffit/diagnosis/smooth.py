@@ -49,8 +49,8 @@ def smooth_basis(
     explained.
     """
     angles, others = _conditions(points)
-    shapes = _functions({**angles, **others}, divisions)
-    gains = _functions(others, divisions)[:, 1:]
+    shapes = _functions({**angles, **others}, divisions, len(points))
+    gains = _functions(others, divisions, len(points))[:, 1:]
     rows = []
     for name, model in simulated.items():
         size = float(np.nan_to_num(rms(points.channel(name))))
@@ -70,7 +70,7 @@ def _conditions(points: Points) -> tuple[dict[str, np.ndarray], dict[str, np.nda
     return varying[0], varying[1]
 
 
-def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.ndarray:
+def _functions(conditions: Mapping[str, np.ndarray], divisions: float, n: int) -> np.ndarray:
     """Smooth functions (n, k) of some conditions, the constant first; unknown values are replaced by the middle of the range."""
     inputs, at = [], []
     for name, x in conditions.items():
@@ -80,7 +80,7 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float) -> np.nda
         inputs.append(Input(name, lower, upper, (upper - lower) / max(min(steps.get(name, 1), distinct), 1)))
         at.append(np.where(np.isfinite(x), x, 0.5 * (lower + upper)))
     if not inputs:
-        return np.ones((len(conditions), 1))
+        return np.ones((n, 1))
     functions = SmoothFunctions.over(tuple(inputs))
     share, _ = functions.log_variance(np.array([one.spacing for one in inputs]))
     found: np.ndarray = functions.columns(np.column_stack(at)) * np.exp(0.5 * share)

@@ -421,4 +421,6 @@ def _over_load(slip: np.ndarray, Fz: np.ndarray) -> np.ndarray:
     """Parabola of the slip over load, at each load (n,): the slip of free rolling against the unloaded radius."""
     if np.ptp(Fz) < constants.CONDITION * np.median(Fz):
         return np.full(len(slip), np.median(slip))
-    return np.polynomial.Polynomial.fit(Fz, slip, 2)(Fz)
+    powers = np.vander((Fz - np.mean(Fz)) / np.ptp(Fz), 3)
+    solution, *_ = np.linalg.lstsq(powers, slip, rcond=1e-6)  # two loads leave the shortest parabola
+    return np.asarray(powers @ solution)
