@@ -30,6 +30,9 @@ falls for two hundred."""
 SHORTENED = 0.3
 """Factor by which an undamped move becomes shorter after each rejection."""
 
+HOLDS_ALL = 1e3
+"""Growth of the damping within one step from which undamped moves are tried beside it: it then holds numbers that need none."""
+
 UNDAMPED = 1e-9
 """Smallest damping: it only keeps the quadratic form positive definite against rounding."""
 
@@ -285,7 +288,7 @@ def _step(
 ) -> _Step | None:
     """The best of the steps of all quadratic forms if it reduces the sum of squares, else None.
 
-    After each rejection, damping grows and the undamped moves become shorter, and both are tried. Damping alone gives up where
+    After each rejection damping grows; where it has grown far, undamped moves, ever shorter, are tried, too. Damping alone gives up where
     the derivative by one number vanishes, as at the zero of a coefficient that enters as an even function: it must grow until it
     holds this number, and by then it holds all others.
 
@@ -308,8 +311,11 @@ def _step(
 
     while damping < 1e12:
         found = [tried(form, form.move(damping), damping) for form in forms]
-        for form, move in zip(forms, undamped, strict=False):
-            found.append(None if move is None else tried(form, share * move, first))
+        if damping > HOLDS_ALL * first:
+            undamped = undamped or [form.move(UNDAMPED) for form in forms]
+            share *= SHORTENED
+            for form, move in zip(forms, undamped, strict=True):
+                found.append(None if move is None else tried(form, share * move, first))
         best = min(filter(None, found), key=lambda step: step.cost, default=None)
         if best is None:
             return None
@@ -317,8 +323,7 @@ def _step(
             return best
         if last:
             return None
-        undamped = undamped or [form.move(UNDAMPED) for form in forms]
-        damping, share = max(6.0 * damping, 1e-8), SHORTENED * share
+        damping = max(6.0 * damping, 1e-8)
     return None
 
 

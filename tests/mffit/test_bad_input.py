@@ -163,8 +163,6 @@ CASES = {
     "side force in kN": (scaled(Fy_N=1e-3), "kN"),
     "wrong axes": (setting("rig", "axes", "adapted-sae"), 'agree with axes = "iso"'),
     "wrong axes, SAE": (setting("rig", "axes", "sae"), 'agree with axes = "iso"'),
-    "wrong frame": (setting("rig", "force_frame", "C"), 'agree with force_frame = "W"'),
-    "undeclared frame": (in_wheel_carrier, 'agree with force_frame = "C"'),
     "wrong path centre": (setting("rig", "path_centre", "right"), 'agree with path_centre = "left"'),
     "turn-slip force inwards": (inward, "path_centre"),
     "R in millimetres": (setting("rig", "path_radius", 1323.0), "rig.path_radius"),
