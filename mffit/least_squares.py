@@ -288,9 +288,9 @@ def _step(
 ) -> _Step | None:
     """The best of the steps of all quadratic forms if it reduces the sum of squares, else None.
 
-    After each rejection damping grows; where it has grown far, undamped moves, ever shorter, are tried, too. Damping alone gives up where
-    the derivative by one number vanishes, as at the zero of a coefficient that enters as an even function: it must grow until it
-    holds this number, and by then it holds all others.
+    After each rejection damping grows; where it has grown far, undamped moves, ever shorter, are tried, too. Damping alone gives
+    up where the derivative by one number vanishes, as at the zero of a coefficient that enters as an even function: it must grow
+    until it holds this number, and by then it holds all others.
 
     A step with a predicted decrease of ``least`` or less is not tried: at a kink, as between a wheel's play and its stops, such
     steps alternate, and rounding would decide on which side they end. An undamped step is the last one, near the minimum. Its

@@ -280,7 +280,10 @@ class Column(Table):
     value: float | None = None  #: of all rows, in place of a column of the file
     unit: str | None = None  #: None: as the file says, else the column's own unit
     scale: float = 1.0
-    against: Literal["free-rolling", "loaded-radius"] | None = None  #: of kappa only; None: found from Fx = 0
+    against: Literal["free-rolling", "loaded-radius", "unloaded-radius"] | None = None
+    """Radius of kappa; None: found from Fx = 0."""
+    over: Literal["road", "wheel", "larger"] | None = None
+    """Speed by which kappa is divided; None: the road's, unless the recorded speeds show another."""
 
     @model_validator(mode="after")
     def _one_source(self) -> Column:

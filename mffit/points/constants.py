@@ -101,6 +101,15 @@ STIFFEST_SLIP_STIFFNESS = Real(
     "Slope of Fx per load over slip that no tyre reaches: four times the stiffest. A channel that moves by less than Fx needs is "
     "not the slip.",
 )
+RIGHT_FORM = Real(
+    0.25,
+    "-",
+    "Change of the radius that slip and speeds imply, over that of slip over the road's speed, below which another form of the "
+    "slip is the right one.",
+)
+LARGEST_BRAKE_SLIP_OF_FORM = Real(
+    0.9, "-", "Slip of braking beyond which the wheel nearly stands and speeds imply no radius."
+)
 WEAKEST_DIRECTION_OF_ZERO = Real(
     1e-3,
     "-",

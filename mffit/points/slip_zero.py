@@ -18,14 +18,15 @@ from mffit.constants import STRAIGHT
 from mffit.errors import InputError
 from mffit.points import constants
 from mffit.points.levels import CAMBER, LOAD, PRESSURE, SIDESLIP, SPEED, LevelKind
-from mffit.scatter import ALARM, robust
+from mffit.points.slip_form import ROAD, Over, SlipForm, over_road, slip_form
+from mffit.scatter import ALARM, finite_median, robust
 from mffit.sweeps import Sweep
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
 
-FREE, LOADED = "free-rolling", "loaded-radius"
+FREE, LOADED, UNLOADED = "free-rolling", "loaded-radius", "unloaded-radius"
 """Possible references of a slip column."""
 WEAKEST = constants.SOFTEST_SLIP_STIFFNESS * constants.SMALLEST_SWEEP_OF_SLIP
 """|Fx| over load that every driven tyre exceeds."""
@@ -98,6 +99,15 @@ class SlipZero:
         """Whether the slip of zero force changes with load, as it does for slip against the loaded radius."""
         slips = [level.slip for level in self.levels]
         return max(slips) - min(slips) > constants.SLIP_OF_ZERO_FORCE
+
+    @property
+    def against(self) -> str | None:
+        """The reference of the slip; None if it is another one. The loaded radius is smaller than that of free rolling."""
+        if self.is_free_rolling:
+            return FREE
+        if not self.falls:
+            return None
+        return LOADED if max(self.levels, key=lambda level: abs(level.slip)).slip < 0.0 else UNLOADED
 
     @property
     def within(self) -> str:
@@ -180,25 +190,23 @@ def against_free_rolling(
     at its conditions, and one that is driven shows what the slip is against. ``with_errors``: an undeclared zero that is the same
     at every load stays in the slip as a rig error.
     """
-    stated: dict[str, tuple[str, str | None]] = {}
-    for entry in config.sweep:
-        column = entry.columns.get("kappa") or config.columns.get("kappa")
-        stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
-    for file, (heading, against) in stated.items():
-        others = {of for other, of in stated.values() if other == heading and of is not None}
-        if against is None and len(others) == 1:
-            stated[file] = (heading, others.pop())
+    stated = _stated(config)
     sweeps, derived = _with_slip(sweeps, config.tyre.unloaded_radius)
     # Slip that was not recorded but computed from speeds.
-    stated |= {s.file: (FROM_SPEEDS, None) for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
+    from_speeds = _Stated(FROM_SPEEDS, None, ROAD)
+    stated |= {s.file: from_speeds for s in sweeps if "kappa" not in s.table and np.any(s.kappa)}
     out = list(sweeps)
     notes: list[str] = []
     warnings: list[str] = [*derived]
     taken_off: dict[str, tuple[SlipZero, str]] = {}
-    for heading, against in dict.fromkeys(stated.values()):
-        rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
+    for of in dict.fromkeys(stated.values()):
+        heading, against, over = of
+        rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == of]
+        if over is not None and over != ROAD:
+            for k in rows:
+                out[k] = _with(out[k], over_road(out[k].kappa, over))
         readings = Driven(
-            *(np.concatenate(values) for values in zip(*(readings_of(sweeps[k]) for k in rows), strict=True))
+            *(np.concatenate(values) for values in zip(*(readings_of(out[k]) for k in rows), strict=True))
         )
         if _too_weak(readings):
             raise InputError(
@@ -217,37 +225,114 @@ def against_free_rolling(
         wrong = _contradiction(heading, zero)
         if wrong:
             raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
+        form = None if heading == FROM_SPEEDS else form_of(readings, _wheel_speed([out[k] for k in rows]))
+        if form is not None and form.over != ROAD:
+            if over is not None:
+                wrong = f'{heading} is declared over = "{over}", which contradicts the recorded speeds: '
+                wrong += form.said(heading if over == ROAD else "what follows from it")
+                raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa.over")
+            warnings.append(_of_form(heading, form))
+            if form.over is not None:
+                for k in rows:
+                    out[k] = _with(out[k], over_road(out[k].kappa, form.over))
+                readings = readings._replace(kappa=over_road(readings.kappa, form.over))
+                zero = slip_zero(_with_free_wheels(readings, zero)) or zero
         if with_errors and against is None and not zero.falls:
             continue
         said = sentence(heading, against, zero)
         if not (against == FREE and zero.is_free_rolling):  # no remark if the declaration is right
-            expected = against is None if zero.is_free_rolling else against == LOADED
+            expected = against is None if zero.is_free_rolling else against not in (None, FREE)
             (notes if expected else warnings).append(said)
-        if against == LOADED or (against is None and not zero.is_free_rolling):
+        if against in (LOADED, UNLOADED) or (against is None and not zero.is_free_rolling):
             if against is None:
                 taken_off |= {sweeps[k].file: (zero, said) for k in rows}
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
-                kappa = (1.0 + out[k].kappa) / (1.0 + shift) - 1.0
-                out[k] = replace(out[k], kappa=kappa, table=out[k].table.assign(kappa_free_rolling=kappa))
+                out[k] = _with(out[k], (1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
     return tuple(out), SlipRemarks(tuple(notes), tuple(warnings), taken_off)
+
+
+class _Stated(NamedTuple):
+    """What ``tyre.toml`` says about the slip of a file."""
+
+    heading: str
+    against: str | None
+    over: Over | None
+
+
+def _stated(config: Config) -> dict[str, _Stated]:
+    """By file, what is declared about its slip, by the file itself or by the only other declaration for the same heading."""
+    columns = {
+        entry.file: entry.columns.get("kappa") or config.columns.get("kappa") for entry in config.sweep
+    }
+    said = {
+        file: _Stated("kappa", None, None) if c is None else _Stated(c.column or "kappa", c.against, c.over)
+        for file, c in columns.items()
+    }
+    alike: dict[str, list[_Stated]] = {}
+    for one in said.values():
+        alike.setdefault(one.heading, []).append(one)
+
+    def completed(one: _Stated) -> _Stated:
+        against = {of.against for of in alike[one.heading] if of.against is not None}
+        over = {of.over for of in alike[one.heading] if of.over is not None}
+        return _Stated(
+            one.heading,
+            one.against or (against.pop() if len(against) == 1 else None),
+            one.over or (over.pop() if len(over) == 1 else None),
+        )
+
+    return {file: completed(one) for file, one in said.items()}
+
+
+def _with(sweep: Sweep, kappa: np.ndarray) -> Sweep:
+    """The sweep with another slip, which its table shows beside the one as read."""
+    return replace(sweep, kappa=kappa, table=sweep.table.assign(kappa_free_rolling=kappa))
+
+
+def _wheel_speed(sweeps: Sequence[Sweep]) -> np.ndarray:
+    """Speed of the wheel (n,) of all sweeps [rad/s]; NaN where it or the road's speed was not recorded."""
+    return np.concatenate([s.omega if "V_mps" in s.table else np.full(len(s), np.nan) for s in sweeps])
+
+
+def form_of(of: Driven, omega: np.ndarray) -> SlipForm | None:
+    """The form of the slip that the speed of the wheel (n,) [rad/s] shows, NaN where it or the road's was not recorded.
+
+    None if the speeds do not show it.
+    """
+    along = of.V * np.cos(of.alpha)
+    rolling = along > constants.UNLOADED * finite_median(along)
+    turns = np.where(rolling, np.abs(omega) / np.where(rolling, along, 1.0), np.nan)
+    middle = Driven(*(np.full(1, finite_median(np.abs(x))) for x in of))
+    return slip_form(of.kappa, turns, _conditions(of, middle) * _varied(of))
+
+
+def _of_form(heading: str, form: SlipForm) -> str:
+    """A sentence on a slip that is not over the road's speed, as nothing declares."""
+    if form.over is None:
+        return form.said(heading)
+    return f'{form.said(heading)}; converted (over = "{form.over}" for kappa under [columns] says the same)'
 
 
 def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
     """A sentence on the reference of a slip column, and on the subtracted shift."""
     found = f"Fx = 0 lies at slip {zero.said}"
     if zero.is_free_rolling:
-        if against == LOADED:
-            return f"{heading} is declared against the loaded radius, but {found}, as against free rolling; taken off"
+        if against in (LOADED, UNLOADED):
+            return f"{heading} is declared against the {_word(against)}, but {found}, as against free rolling; taken off"
         return f"{heading} is against free rolling: {zero.within}"
     if against == FREE:
         return (
-            f"{heading} is declared against free rolling, but {found}; if it is against the loaded radius, write "
-            f'against = "{LOADED}" for kappa under [columns]'
+            f"{heading} is declared against free rolling, but {found}; if it is against the {_word(zero.against or LOADED)}, "
+            f'write against = "{zero.against or LOADED}" for kappa under [columns]'
         )
-    if zero.falls:
-        return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
+    if zero.against is not None:
+        return f"{heading} is against the {_word(zero.against)}: {found}; taken off, so that slip is against free rolling"
     return f"the zero of {heading} is not free rolling: {found}; taken off"
+
+
+def _word(against: str) -> str:
+    return against.replace("-", " ")
 
 
 def _with_free_wheels(of: Driven, zero: SlipZero) -> Driven:

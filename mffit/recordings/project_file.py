@@ -288,8 +288,8 @@ def _column(guess: Guess) -> str:
     name, heading = guess.channel.name, quoted(guess.heading)
     if guess.value is not None:
         return f"{name} = {guess.value:g}  # {', '.join(filter(None, (guess.channel.unit, 'as given for all rows')))}"
-    if guess.unit or guess.scale != 1.0 or guess.against:
-        given = {"unit": guess.unit, "against": guess.against}
+    if guess.unit or guess.scale != 1.0 or guess.against or guess.over:
+        given = {"unit": guess.unit, "over": guess.over, "against": guess.against}
         keys = [f"column = {heading}", *(f"{key} = {quoted(value)}" for key, value in given.items() if value)]
         if guess.scale != 1.0:
             keys.append(f"scale = {guess.scale:g}")

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
-from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero, unexplained_drive
+from mffit.points.slip_form import ROAD, SlipForm, over_road
+from mffit.points.slip_zero import Driven, SlipZero, form_of, sentence, slip_zero, unexplained_drive
 from mffit.recordings.unstated import Choice, FoundChannel, Guess
 from mffit.sweeps.units import converted
 
@@ -90,8 +91,27 @@ def _judged(
         why = "braking is positive in the file, as Fx falls with it"
         guess = guess._replace(scale=-1.0, why="; ".join(filter(None, (guess.why, why))))
         zero = zero.reversed
-    against = FREE if zero.is_free_rolling else LOADED if zero.falls else None
-    return guess._replace(against=against), zero
+    scale = guess.scale * (0.01 if choice is not None else 1.0)
+    slip = scale * (converted(column.values, column.unit, "") if column.unit else column.values)
+    form, in_form = _form(slip, found, unit_of)
+    if form is not None and form.over not in (None, ROAD):
+        why = "; ".join(filter(None, (guess.why, form.said(column.heading))))
+        guess, zero = guess._replace(over=form.over, why=why), in_form or zero
+    return guess._replace(against=zero.against), zero
+
+
+def _form(
+    slip: np.ndarray, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
+) -> tuple[SlipForm | None, SlipZero | None]:
+    """The form of a slip of the right sign and unit, and its zero over the road's speed; None where they cannot be found."""
+    readings = _readings(slip, found, unit_of)
+    if readings is None or not {"omega_radps", "V_mps"} <= found.keys():
+        return None, None
+    omega = converted(found["omega_radps"].values, unit_of("omega_radps"), "rad/s")
+    form = form_of(readings, omega)
+    if form is None or form.over is None:
+        return form, None
+    return form, slip_zero(readings._replace(kappa=over_road(slip, form.over)))
 
 
 def _zero(

@@ -44,6 +44,8 @@ class Guess(NamedTuple):
     against: str | None = None
     """Reference radius of longitudinal slip; None for other channels, or if unknown."""
     value: float | None = None  #: of all rows, as chosen; None for a column of the file
+    over: str | None = None
+    """Speed that longitudinal slip is divided by; None for the road's."""
 
     @property
     def unit_of_readings(self) -> str:
@@ -56,7 +58,7 @@ class Guess(NamedTuple):
         if self.value is not None:
             return Column(value=self.value)
         given = {"column": self.heading, "unit": self.unit or None, "scale": self.scale}
-        return Column.model_validate({**given, "against": self.against})
+        return Column.model_validate({**given, "against": self.against, "over": self.over})
 
 
 class FoundChannel(NamedTuple):

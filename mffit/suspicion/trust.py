@@ -286,7 +286,7 @@ def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
             predicted = 1.0 - (out.typical / float(np.nanstd(fit.points.channel(name)))) ** 2
             if predicted < share:
                 share, where = predicted, " in a sweep to which it is not fitted (median)"
-        if share < constants.EXPLAINED_VARIANCE and (where or not fit.at_the_noise(name)):
+        if share < constants.EXPLAINED_VARIANCE and not fit.at_the_noise(name):
             yield {"channel": name, "percent": 100.0 * max(share, 0.0), "where": where}
 
 

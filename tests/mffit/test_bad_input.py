@@ -100,13 +100,6 @@ def in_radians(project: Project) -> Path:
     return project.write()
 
 
-def in_wheel_carrier(project: Project) -> Path:
-    for table in project.tables.values():
-        gamma = np.radians(table["gamma_deg"])
-        table["Fy_N"] = np.cos(gamma) * table["Fy_N"] + np.sin(gamma) * table["Fz_N"]
-    return project.write()
-
-
 def one_sign(column: str):
     def change(project: Project) -> Path:
         for name, table in project.tables.items():
