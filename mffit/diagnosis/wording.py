@@ -15,7 +15,7 @@ from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Validation
 from mffit.effects import NAMES, Effect
-from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
@@ -82,6 +82,8 @@ def reasons(diagnosis: Diagnosis) -> tuple[str, ...]:
             return (remark.sentence.rstrip("."),)
     first = diagnosis.rest[0]
     sweep = f", most in {first.sweep}" if first.sweep else ""
+    if first.kind is RestKind.SCATTER:
+        return (f"{_remains(first, diagnosis)}; {_cure(diagnosis)}",)
     missed = ", and ".join(
         f"{name} by {short(size)} {unit} where the noise is {short(noise)} {unit}"
         for name, unit, noise in _measured(diagnosis.noise)
@@ -100,6 +102,8 @@ def _cure(diagnosis: Diagnosis) -> str:
         return f"check {first.sweep} or repeat it"
     if first.kind is RestKind.LOCAL and diagnosis.bump is not None:
         return f"repeat the points around {_around(diagnosis.bump)}"
+    if first.kind is RestKind.SCATTER:
+        return f"if all readings of the rig scatter so, state u_{column(first.channel)} as large as that"
     return "no single sweep is at fault; give the model of this tyre, or fit it first (mffit build)"
 
 
@@ -110,11 +114,12 @@ def advice(diagnosis: Diagnosis) -> list[str]:
         return listed([one.effect.name for one in diagnosis.repaired if one.effect.kind in kinds])
 
     file, rig, beside = diagnosis.model_after, names("rig"), names("environment")
-    found = [
-        f"Use {file}: it contains {names('tyre')}."
-        if diagnosis.delivers
-        else f"Keep {file}: nothing in it is corrected."
-    ]
+    if diagnosis.delivers:
+        found = [f"Use {file}: it contains {names('tyre')}."]
+    elif reasons(diagnosis):
+        found = [f"Nothing in {file} is corrected."]
+    else:
+        found = [f"Keep {file}: nothing in it is corrected."]
     if rig:
         found.append(
             f"The rest is your rig: {rig}. Correct these readings, or mend the rig, as stated below."
@@ -125,8 +130,11 @@ def advice(diagnosis: Diagnosis) -> list[str]:
         found.append(
             f"{diagnosis.model_with_terms} is the given file with its coefficients estimated anew in addition to these."
         )
-    runs = [separation(one.separation) for one in diagnosis.effects if one.separation is not None]
-    found += [f"To decide, add {run}." for run in dict.fromkeys(runs)]
+    tied = [one.separation for one in diagnosis.effects if one.separation is not None]
+    runs = dict.fromkeys(separation(one) for one in tied if one.worthwhile)
+    found += [f"To decide, add {run}." for run in runs]
+    if tied and not runs:
+        found.append("No usual run decides between them at this size.")
     return found
 
 
@@ -142,6 +150,8 @@ def _misfit(diagnosis: Diagnosis) -> str:
     parts = []
     for name, unit, noise in _measured(diagnosis.noise):
         was, is_ = short(given.rms(name)), short(after.rms(name))
+        if effects and was == is_ and given.rms(name) < constants.MISFIT_AT_NOISE * noise:
+            continue
         now = f"{is_} {unit} instead of {was} {unit}" if effects else f"{was} {unit}"
         parts.append(
             f"{now} in {CHANNELS[name].word} ({_as_read(diagnosis, name)}noise {short(noise)} {unit}"

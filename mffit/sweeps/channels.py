@@ -51,12 +51,16 @@ BY_NAME = {channel.name: channel for channel in SWEEP_CHANNELS}
 
 
 def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
-    """The heading that most likely names this channel; "" if none does."""
+    """The heading that most likely names this channel; "" if none does. One that names another channel is not it."""
     headings = list(headings)
     written = {heading.lower(): heading for heading in headings}
     for alias in (channel.name, *channel.aliases):
         if alias.lower() in written:
             return written[alias.lower()]
+    taken = {
+        name.lower() for one in SWEEP_CHANNELS if one is not channel for name in (one.name, *one.aliases)
+    }
+    written = {low: heading for low, heading in written.items() if low not in taken}
     near = meant(channel.name.lower(), written)
     stem = channel.name.rpartition("_")[0].lower() or channel.name.lower()
     starts = [heading for low, heading in written.items() if low.startswith(stem)]
