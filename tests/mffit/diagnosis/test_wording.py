@@ -87,6 +87,11 @@ def test_a_bump_is_stated_with_its_size_and_place(nothing):
             "Fy scatters by 19.7 times its stated noise, most in coupled",
             "check coupled or repeat it",
         ),
+        (
+            Rest(RestKind.SCATTER, "Fy", 90.0, 4.9),
+            "Fy scatters by 4.9 times its stated noise",
+            "if all readings of the rig scatter so, state u_Fy_N as large as that",
+        ),
         (Rest(RestKind.ALL, "Mz", np.inf, 41.7), "42 times the stated noise, so that the model hardly is one", "fit it first"),
         (SMOOTH, "changes smoothly", "give the model of this tyre, or fit it first (mffit build)"),
     ],
@@ -95,7 +100,10 @@ def test_what_remains_has_words_and_a_cure(nothing, rest, remains, cure):
     found = unknown(nothing, rest)
     assert remains in wording.headline(found)
     (reason,) = wording.reasons(found)
-    assert reason.startswith("no effect of the library explains what remains: the model misses ")
+    scatters = rest.kind is RestKind.SCATTER
+    assert reason.startswith(
+        remains if scatters else "no effect of the library explains what remains: the model misses "
+    )
     assert cure in reason
 
 
