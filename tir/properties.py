@@ -198,11 +198,16 @@ def _needed() -> frozenset[str]:
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
-def _refuse_other_formulas(formula: Formula, document: Document) -> None:
+def refuse_strange_formulas(formula: Formula, document: Document) -> None:
+    """Raise TirError for a formula that is neither MF 6 nor one that is converted to it."""
     if formula.kind == "motorcycle":
-        raise TirError(of_motorcycles(formula), path=document.path)
+        raise TirError(_of_motorcycles(formula), path=document.path)
     if formula.kind == "other":
-        raise TirError(of_another_model(formula), path=document.path)
+        raise TirError(_of_another_model(formula), path=document.path)
+
+
+def _refuse_other_formulas(formula: Formula, document: Document) -> None:
+    refuse_strange_formulas(formula, document)
     if formula.kind == "5.2":
         raise TirError(
             f"is a file of the MF 5.2 generation ({formula.why}: {formula.name}); its coefficients have another meaning in "
@@ -221,7 +226,7 @@ def _refuse_unknown(formula: Formula, document: Document) -> None:
         )
 
 
-def of_motorcycles(formula: Formula) -> str:
+def _of_motorcycles(formula: Formula) -> str:
     """Why a file of the old formula for motorcycles cannot be used, and what to do."""
     return (
         f"is of MF-MCTyre, the old formula for motorcycles ({formula.why}: {formula.name}), whose camber force is another one: "
@@ -230,7 +235,7 @@ def of_motorcycles(formula: Formula) -> str:
     )
 
 
-def of_another_model(formula: Formula) -> str:
+def _of_another_model(formula: Formula) -> str:
     """Why a file of another tyre model cannot be used, and what to do."""
     return (
         f"is of another tyre model, {formula.name} ({formula.why}), whose coefficients are not those of MF 5.2 or MF 6: take the "

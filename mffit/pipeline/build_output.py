@@ -54,12 +54,10 @@ def write_build(
         write_csv(points_table(result), folder / "points.csv")
         fitted = result.files[result.fitted]
         if result.prediction is not None:
-            known, of_fit = (
-                result.prediction,
-                fitted,
-            )  # of the plain file, unless temperature terms take it further
-            if result.fit.temperature is not None and result.files[result.fitted] == result.tir_path:
-                known, of_fit = result.fit.temperature.prediction, result.files[TEMPERATURE]
+            known, of_fit, warm = result.prediction, fitted, result.fit.temperature
+            # The file at temperature holds the fitted model where the plain file does.
+            if warm is not None and fitted == result.tir_path:
+                known, of_fit = warm.prediction, result.files[TEMPERATURE]
             prediction.write(folder / prediction.FILE, known, result.tir_path, of_fit)
         if result.correction is not None:
             prediction.write_correction(folder / result.correction_name, result.correction, fitted)

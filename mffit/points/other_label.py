@@ -11,14 +11,12 @@ from scipy.special import chdtrc
 from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, STRAIGHT
 from mffit.points import constants, levels
 from mffit.points.noise import neighbour_noise, stating
-from mffit.points.points import Points
+from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
 LABELS = {"Fz": ("Fz_N", levels.LOAD), "p": ("p_kPa", levels.PRESSURE), "gamma": ("gamma_deg", levels.CAMBER)}
 """By setting, its column and its levels."""
-FACTOR = {"Fz": 1.0, "p": 1e-3, "gamma": 180.0 / np.pi}
-"""From SI to the unit of the column."""
 
 
 class MeanReading(NamedTuple):
@@ -130,7 +128,7 @@ def _under(setting: str, points: Points, u: np.ndarray) -> Iterator[OtherLabel]:
             else:
                 continue
             if expected > ALARM * fit.noise * np.sqrt(2.0 / fit.n):
-                scale = FACTOR[setting]
+                scale = of_si(column)
                 yield OtherLabel(
                     points.sweep_names[k],
                     column,

@@ -117,8 +117,10 @@ def _difference(first: Curve, second: Curve, cell: Points) -> _Difference | None
 
 
 def _named(cell: Points) -> str:
-    column = {"Fz_N": cell.Fz, "gamma_deg": np.degrees(cell.gamma), "p_kPa": 1e-3 * cell.p}
-    load, camber, pressure = (CONDITIONS[name].of(float(np.median(x))) for name, x in column.items())
+    load, camber, pressure = (
+        CONDITIONS[column].of(float(np.median(cell.condition(column))))
+        for column in ("Fz_N", "gamma_deg", "p_kPa")
+    )
     return f"{load}, camber {camber}, {pressure}"
 
 

@@ -200,9 +200,9 @@ def unusual(part: Points, config: Config) -> list[Unusual]:
 def _explained(found: list[Unusual], part: Points, config: Config) -> tuple[Unusual, Mistake] | None:
     """What a known mistake explains, and the mistake: without it the least is unusual, and nothing that was usual before."""
     before, best = {one.column for one in found}, None
-    for mistake in MISTAKES if found else ():
+    for mistake in (one for one in MISTAKES if found and one.beyond_doubt):
         left = {one.column for one in unusual(mistake.undone(part, AS_READ), config)}
-        if mistake.beyond_doubt and left < before:
+        if left < before:
             before = left
             best = next(one for one in found if one.column not in left), mistake
     return best

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -62,17 +62,17 @@ class RecordingsFolder:
         return self._parted()[1]
 
     def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...]]:
-        found = [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
-        now = self._listed, [(path, path.stat().st_mtime_ns) for path in found]
+        listed = self._listed
+        found = [path for path in self._named(listed) if path.resolve().is_relative_to(self.folder)]
+        now = listed, [(path, path.stat().st_mtime_ns) for path in found]
         if now != self._seen:
             with formats.reading_once():
-                self._seen, self._apart = now, apart(self._tables(found))
+                self._seen, self._apart = now, apart(_tables(found, listed))
         return self._apart
 
-    def _named(self) -> list[Path]:
-        """Everything in the folder with the name of a recording."""
+    def _named(self, listed: Collection[Path]) -> list[Path]:
+        """Everything in the folder with the name of a recording that is not listed."""
         found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
-        listed = self._listed
         return [path for path in found if path.resolve() not in listed]
 
     @property
@@ -82,16 +82,6 @@ class RecordingsFolder:
             return set()
         project = config.load(self.project)
         return {(project.folder / entry.file).resolve() for entry in project.sweep}
-
-    def _tables(self, files: Sequence[Path]) -> list[Path]:
-        """The files, with the sheets of a workbook in place of it that the project does not list."""
-        found = []
-        for file in files:
-            try:
-                found += formats.tables_of(file)
-            except InputError:  # the table of recordings names it with its fault
-                found.append(file)
-        return [path for path in found if path.resolve() not in self._listed]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -129,7 +119,7 @@ class RecordingsFolder:
             readable = {file["name"] for group in groups for file in group["files"]}
             problems += [
                 str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
-                for path in self._named()
+                for path in self._named(self._listed)
                 if not path.resolve().is_relative_to(self.folder)
             ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
@@ -337,6 +327,17 @@ def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> Ch
         if one != _choice(_column(raw, one.heading, guessed.get(one.heading))):
             chosen.append(one)
     return ChosenFile(tuple(chosen), backward)
+
+
+def _tables(files: Sequence[Path], listed: Collection[Path]) -> list[Path]:
+    """The files, with the sheets of a workbook in place of it; without those that are ``listed``."""
+    found = []
+    for file in files:
+        try:
+            found += formats.tables_of(file)
+        except InputError:  # the table of recordings names it with its fault
+            found.append(file)
+    return [path for path in found if path.resolve() not in listed]
 
 
 def _choice(row: Mapping[str, Any]) -> ColumnChoice:
