@@ -1,4 +1,6 @@
-"""Sphinx extension: navigation from the lists of the index, table of parameters, links to files outside docs, MathML."""
+"""Sphinx extension: navigation from the lists of the index, tables of parameters and constants, links to files outside docs,
+MathML.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,7 @@ from docutils import nodes
 from docutils.parsers.rst import Directive
 from docutils.utils.math.latex2mathml import tex2mathml
 
+from mffit.reference import constants
 from tir.parameters import TABLE, Parameter
 
 SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
@@ -24,6 +27,8 @@ def adapted(app: Any, page: str, source: list[str]) -> None:
     text = source[0]
     if page == "index":
         text = text + "\n" + navigation(text)
+    elif page == "constants":
+        text = text + constants.tables()
     if "/" not in page:
         # The site contains docs/ only; a link to another file of the repository becomes its path.
         text = OUTSIDE.sub(r"\1 (`\2` in the repository)", text)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from mffit.reference.constants import tables
 from tir.constant import Count, Real, Series
 
 ROOT = Path(__file__).parents[1]
@@ -63,6 +64,13 @@ def test_only_degrees_have_radians():
     assert Real(180.0, "deg", "x").rad == pytest.approx(3.141592653589793)
     with pytest.raises(ValueError, match="not in degrees"):
         _ = Real(1.0, "m", "x").rad
+
+
+def test_the_site_lists_every_constant_with_its_reason():
+    listed = dict(re.findall(r"^\| `(\w+)` \| .* \| (.*) \|$", tables(), re.MULTILINE))
+    stated = {name: x for module in MODULES for name, x in constants(module).items()}
+    assert listed.keys() == stated.keys()
+    assert all(listed[name].replace("\\", "").startswith(x.why) for name, x in stated.items())
 
 
 def test_every_constant_is_used():

@@ -1,6 +1,6 @@
 """Numbers of judgement: constants with their unit, the reason for their value and the study that set it.
 
-Each folder keeps its own in a module ``constants.py``, and ``docs/constants.md`` lists them all.
+Each folder keeps its own in a module ``constants.py``, and the page ``constants`` of the documentation's site lists them all.
 
 >>> from tir.constant import Real
 >>> NARROW = Real(0.5, "deg", "Width of a bin.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mffit.reference import constants, effects, rig_errors, suspicion
+from mffit.reference import effects, rig_errors, suspicion
 
 
 def pages() -> dict[str, str]:
@@ -12,7 +12,6 @@ def pages() -> dict[str, str]:
     return {
         "effects.md": effects.page(),
         "rig-errors.md": rig_errors.page(),
-        "constants.md": constants.page(),
         "suspicion.md": suspicion.page(),
     }
 

@@ -1,4 +1,4 @@
-"""The page of all numbers of judgement."""
+"""Tables of all numbers of judgement."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tir.constant import Count, Real, Series
 
 
 def modules() -> Iterator[ModuleType]:
-    """The modules ``constants`` of both packages, by name; this one is none of them."""
+    """The modules ``constants`` of both packages by name, without this one."""
     for package in (mffit, tir):
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             name = found.name
@@ -26,21 +26,13 @@ def constants(module: ModuleType) -> dict[str, Real | Count | Series]:
     return {name: x for name, x in vars(module).items() if isinstance(x, Real | Count | Series)}
 
 
-def page() -> str:
-    """The page in Markdown: a table per folder."""
-    found = {module.__name__.rpartition(".")[0]: constants(module) for module in modules()}
-    lines = [
-        "# Numbers of judgement",
-        "",
-        "Limits, tolerances and starting points that somebody judged, with the reason for each. A study or publication that set "
-        "the value is named behind it; without one the value is plain judgement. This page is written from the records in the "
-        "modules `constants.py`. Sizes and limits of rig errors are in [their own table](rig-errors.md).",
-        "",
-        f"{sum(map(len, found.values()))} numbers in {len(found)} folders.",
-    ]
-    for folder, rows in found.items():
+def tables() -> str:
+    """A table in Markdown for each folder, which the build of the site adds to ``docs/constants.md``."""
+    lines = []
+    for module in modules():
+        folder = module.__name__.rpartition(".")[0]
         lines += ["", f"## {folder}", "| name | value | unit | why |", "|---|---|---|---|"]
-        lines += [_row(name, x) for name, x in rows.items()]
+        lines += [_row(name, x) for name, x in constants(module).items()]
     return "\n".join(lines) + "\n"
 
 
