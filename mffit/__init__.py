@@ -63,7 +63,6 @@ if TYPE_CHECKING:
         predict,
         show,
         spin,
-        verify,
         watch,
         write_tydex,
     )
@@ -80,7 +79,6 @@ __all__ = [
     "predict",
     "show",
     "spin",
-    "verify",
     "watch",
     "write_c",
     "write_fmu",

@@ -18,7 +18,7 @@ FEWEST_TYRES_TO_COMPARE = 2
 
 
 @click.command()
-@click.argument("tyre_tomls", nargs=-1, type=PATH, metavar="TYRE_TOML...")
+@click.argument("tyre_tomls", nargs=-1, required=True, type=PATH, metavar="TYRE_TOML...")
 @out_option(
     "Folder to write to [default: out/ beside each TYRE_TOML]. With several tyres, each gets a folder of its name, and a page "
     "compares them."
@@ -44,14 +44,6 @@ FEWEST_TYRES_TO_COMPARE = 2
 @strict
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
-@click.option(
-    "--verify",
-    "stored",
-    type=PATH,
-    metavar="DIR",
-    help="Instead of building, repeat the build of this folder and compare every number; nothing is written. Exit code 3 if "
-    "a number does not come out again, 2 if an input was changed.",
-)
 @voiced
 def build(
     tyre_tomls: tuple[Path, ...],
@@ -63,22 +55,12 @@ def build(
     strict: bool,
     jobs: int,
     dask: str | None,
-    stored: Path | None,
     voice: Voice,
 ) -> None:
     """Make the property file from the sweeps.
 
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
-    if stored is not None:
-        if tyre_tomls or out is not None or ensemble or dask or coefficients or no_report or strict:
-            raise click.UsageError(
-                "--verify reads everything from its folder: give no TYRE_TOML and no other option"
-            )
-        _verify(stored, voice)
-        return
-    if not tyre_tomls:
-        raise click.UsageError("Missing argument 'TYRE_TOML...'.")
     if len(tyre_tomls) > 1 or dask:
         if coefficients:
             raise click.UsageError(
@@ -118,19 +100,6 @@ def _build(
         voice.distrust(f"{result.tir_path} is not to be trusted: see above")
     if strict and result.trust.doubts:
         voice.distrust(f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}")
-
-
-def _verify(stored: Path, voice: Voice) -> None:
-    """Repeat an earlier build; exit code 3 if a number does not come out again."""
-    from mffit import pipeline
-    from mffit.report import text
-
-    with voice.progress() as show:
-        found = pipeline.verify(stored, progress=show)
-    voice.say(text.verification_summary(found))
-    voice.give(found)
-    if not found.same:
-        voice.distrust(f"mffit: {stored}: {found.headline}")
 
 
 def _build_many(

@@ -3,7 +3,7 @@
 from mffit.fleet.hierarchy import Hierarchy, TyreEstimate, estimate
 from mffit.fleet.information import Information, information, to_json
 from mffit.fleet.record import EPSILON, Fleet, Row
-from mffit.fleet.specimen import INFORMATION, Specimen, read, read_information
+from mffit.fleet.specimen import INFORMATION, Specimen, read
 
 __all__ = [
     "EPSILON",
@@ -17,6 +17,5 @@ __all__ = [
     "estimate",
     "information",
     "read",
-    "read_information",
     "to_json",
 ]

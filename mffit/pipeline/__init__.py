@@ -10,7 +10,6 @@ from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
 from mffit.pipeline.showing import show
-from mffit.pipeline.verifying import verify
 from mffit.pipeline.watching import watch
 from mffit.prediction import predict
 
@@ -27,7 +26,6 @@ __all__ = [
     "project_of",
     "show",
     "spin",
-    "verify",
     "watch",
     "write_tydex",
 ]

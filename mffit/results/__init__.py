@@ -1,6 +1,5 @@
 """The results of the workflows, and their JSON."""
 
 from mffit.results.records import CORRECTION, BuildOutcome, BuildResult
-from mffit.results.verification import Verification
 
-__all__ = ["CORRECTION", "BuildOutcome", "BuildResult", "Verification"]
+__all__ = ["CORRECTION", "BuildOutcome", "BuildResult"]

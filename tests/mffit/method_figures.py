@@ -9,20 +9,77 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import math
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import mffit
 from mffit import made
-from mffit.results.values import plain
-from mffit.results.verification import NumberAgain, compared
+from mffit.results.values import Json, plain
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 PROJECTS = ("front-120-70", "flat-track", "flat-track-combined")
 """A disc with points and a recording, a flat track with points, and one with longitudinal slip."""
 STORED = Path(__file__).with_name("method_figures.json")
 REGISTER = Path(__file__).with_name("methods.csv")
+SAME_NUMBER = 1e-5
+"""Relative change below which a number comes out again: processors and libraries round the last digits differently."""
+SAME_IN_U = 1e-3
+"""Change in standard uncertainties below which a number comes out again: no stated digit of it changes."""
+MISSING = "missing"
+"""Stands for a number that the new figures lack."""
+
+
+class NumberAgain(NamedTuple):
+    """A stored number, and the same number of the new figures."""
+
+    key: str  #: dotted key
+    old: Json
+    new: Json
+    size: float  #: change over tolerance; infinite if the new number is missing or has another type
+
+
+def compared(old: Json, new: Json, key: str = "", u: float = math.nan) -> Iterator[NumberAgain]:
+    """The numbers of two JSON documents, compared; true, false and null count as numbers.
+
+    ``u`` is the uncertainty that scales the tolerance, NaN if none is stated. Texts, and keys that only the new document has, are
+    not compared.
+    """
+    if isinstance(old, str):
+        return
+    if isinstance(old, dict):
+        others = new if isinstance(new, dict) else {}
+        for name, value in old.items():
+            yield from compared(
+                value, others.get(name, MISSING), f"{key}.{name}".lstrip("."), stated_u(old, name)
+            )
+    elif isinstance(old, list):
+        others = new if isinstance(new, list) else []
+        yield NumberAgain(
+            f"{key}, length", len(old), len(others), 0.0 if len(old) == len(others) else math.inf
+        )
+        for k, (value, other) in enumerate(zip(old, others, strict=False)):
+            yield from compared(value, other, f"{key}[{k}]")
+    else:
+        yield NumberAgain(key, old, new, change(old, new, u))
+
+
+def stated_u(table: dict[str, Json], name: str) -> float:
+    """Standard uncertainty of a number, from another key of the same table; NaN without one."""
+    keys = (f"u_{name}", *(("stderr", "u") if name == "value" else ()))
+    return next((abs(u) for key in keys if isinstance(u := table.get(key), float)), math.nan)
+
+
+def change(old: Json, new: Json, u: float) -> float:
+    """Change of a number over its tolerance; infinite if the types differ or a number is missing."""
+    if old == new and isinstance(old, bool) == isinstance(new, bool):
+        return 0.0
+    if any(isinstance(x, bool) or not isinstance(x, int | float) for x in (old, new)):
+        return math.inf
+    tolerance = SAME_NUMBER * max(abs(old), abs(new))
+    return abs(new - old) / max(tolerance, SAME_IN_U * u if u > 0.0 else 0.0)
 
 
 def figures(project: str) -> dict[str, Any]:
@@ -56,8 +113,8 @@ def register(text: str) -> list[tuple[int, str]]:
 
 
 def moved(before: dict[str, Any], now: dict[str, Any]) -> list[NumberAgain]:
-    """Figures that differ by more than rounding: see ``mffit/results/constants.py``."""
-    return [row for name in before for row in compared(name, before[name], now.get(name)) if row.size > 1.0]
+    """Figures that differ by more than rounding."""
+    return [row for row in compared(before, now) if row.size > 1.0]
 
 
 def store(found: dict[str, Any], *, raised: bool, program: Path = Path(made.__file__)) -> str:

@@ -9,19 +9,18 @@ from pathlib import Path
 
 import method_figures
 import pytest
-from method_figures import PROJECTS, REGISTER, digest, figures, register, store, stored
+from method_figures import MISSING, PROJECTS, REGISTER, compared, digest, figures, register, store, stored
 
 from mffit import made
-from mffit.results.verification import compared
 
 STORE = "store the new figures with `python tests/mffit/method_figures.py --raise`"
 
 
 @pytest.mark.parametrize("project", PROJECTS)
 def test_figures_are_those_of_the_method(project):
-    """A change below a thousandth of the standard uncertainty is rounding; see ``mffit/results/constants.py``."""
+    """A change below a thousandth of the standard uncertainty is rounding."""
     before = stored()
-    found = compared(project, before["figures"].get(project, {}), figures(project))
+    found = list(compared(before["figures"].get(project, {}), figures(project)))
     changes = [row for row in found if row.size > 1.0]
     worst = "; ".join(f"{row.key} {row.old} -> {row.new}" for row in changes[:5])
     assert not changes, (
@@ -77,3 +76,28 @@ def test_moved_figures_are_stored_under_a_new_number_only(elsewhere):
     assert stored() == {"method": number + 1, "figures": found}
     lines = register(method_figures.REGISTER.read_text())
     assert lines == [*register(files[method_figures.REGISTER]), (number + 1, digest(found))]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ({"a": 1.0}, {"a": 1.0 + 1e-9, "b": 2.0}, None),
+        ({"a": 1.0}, {"a": 1.0 + 3e-5}, "a"),
+        ({"dof": 1465.99479}, {"dof": 1465.99295}, None),
+        ({"a": 1.0, "u_a": 0.1}, {"a": 1.0 + 1e-5, "u_a": 0.1}, None),
+        ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.00001, "stderr": 0.1}}, None),
+        ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.001, "stderr": 0.1}}, "a.value"),
+        ({"a": {"value": 1.0, "stderr": None}}, {"a": {"value": 1.0, "stderr": 0.1}}, "a.stderr"),
+        ({"a": [1.0, 2.0]}, {"a": [1.0]}, "a, length"),
+        ({"a": [{"b": 2.0}]}, {"a": [{"b": 3.0}]}, "a[0].b"),
+        ({"a": 1.0}, {}, "a"),
+        ({"a": None}, {"a": 0.0}, "a"),
+        ({"a": True}, {"a": False}, "a"),
+        ({"a": "x"}, {"a": "y"}, None),
+    ],
+)  # fmt: skip
+def test_a_number_comes_out_again_if_no_stated_digit_changes(old, new, key):
+    found = list(compared(old, new))
+    assert [row.key for row in found if row.size > 1.0] == ([] if key is None else [key])
+    if key == "a" and new == {}:
+        assert found[0].new == MISSING

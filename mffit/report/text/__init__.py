@@ -9,7 +9,6 @@ from mffit.report.text.many import fleet_summary, lacking, many_line, many_summa
 from mffit.report.text.plan import plan_summary
 from mffit.report.text.prediction import prediction_summary
 from mffit.report.text.recordings import sniff_summary
-from mffit.report.text.verification import verification_summary
 from mffit.report.text.watching import campaign_lines, campaign_text
 
 __all__ = [
@@ -32,5 +31,4 @@ __all__ = [
     "prediction_summary",
     "sniff_summary",
     "spin_summary",
-    "verification_summary",
 ]

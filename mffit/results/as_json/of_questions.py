@@ -29,7 +29,6 @@ from mffit.recordings.unstated import Guess
 from mffit.results.as_json.of_build import estimates, of_rig
 from mffit.results.campaign import Arrival, WatchedCampaign
 from mffit.results.values import document, keys
-from mffit.results.verification import Verification
 
 keys(
     Diagnosis,
@@ -150,15 +149,3 @@ keys(
     trusted=lambda found: not converted.reasons(found),
     reasons=converted.reasons,
 )
-keys(
-    Verification,
-    "folder same headline numbers exact method version source libraries changes notes",
-    method=lambda found: _then_and_now(found.method),
-    version=lambda found: _then_and_now(found.version),
-    source=lambda found: _then_and_now(found.source),
-    libraries=lambda found: _then_and_now(found.libraries),
-)
-
-
-def _then_and_now(pair: tuple[object, object]) -> dict[str, object]:
-    return dict(zip(("stored", "now"), pair, strict=True))
