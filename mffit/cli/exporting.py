@@ -190,8 +190,8 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     "--for",
     "form",
     required=True,
-    type=click.Choice(["csv", "mat", "carsim"]),
-    help="Form: CSV, MATLAB, or CarSim's text tables (not tried in CarSim).",
+    type=click.Choice(["csv", "mat"]),
+    help="Form: CSV or MATLAB.",
 )
 @out_option("Folder to write to.", default="export", show_default=True)
 @turn_slip_option
@@ -219,11 +219,10 @@ def table(
     """
     from mffit.export import write_table
 
-    ending = {"csv": ".csv", "mat": ".mat", "carsim": ".par"}[form]
     with told(voice), voice.progress() as progress:
         made = write_table(
             file,
-            _folder(out, ending, named=False),
+            _folder(out, f".{form}", named=False),
             form=form,
             turn_slip=turn_slip,
             error=error / 100.0,
@@ -233,8 +232,6 @@ def table(
     voice.warn(made.warnings)
     for one in made.tables:
         voice.say(one.sentence)
-    if form == "carsim":
-        voice.say("not tried in CarSim: compare a curve of its tire tester with the file")
     _report(voice, made.written, file, turn_slip, tables=[one.keys() for one in made.tables])
 
 

@@ -29,6 +29,3 @@ TABLE_CONDITIONS = Count(
 )
 TABLE_WORST_CELLS = Count(100, "-", "Cells of a table that are tested again, because they miss most.")
 TABLE_DIGITS = Count(6, "-", "Digits of values and nodes: rounding is far below the error of interpolation.")
-TABLE_CAMBER = Real(
-    1.0, "deg", "Camber to either side whose side force is the camber stiffness of CarSim's table."
-)

@@ -1,4 +1,4 @@
-"""The forms of lookup tables: what each holds of a tyre, and how its files are written (CSV, MATLAB, the text of CarSim)."""
+"""The forms of lookup tables: what each holds of a tyre, and how its files are written (CSV, MATLAB)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ import pandas as pd
 
 import tir
 from mffit.csv_tables import csv_text
-from mffit.errors import InputError
-from mffit.export import constants
 from mffit.export.grid import Function, Grid, Ranges
 from mffit.quantities import column
 
@@ -26,13 +24,6 @@ PURE = {
     "Mz": ("Fz_N", "alpha_deg", "gamma_deg"),
 }
 """Channels and the axes of their tables in pure slip. My is left out: it depends on speed and jumps where the wheel locks."""
-SLIP_IN_CARSIM = {
-    "FX_TIRE": ("Fx", "kappa", 1.0),
-    "FY_TIRE": ("Fy", "alpha_deg", -1.0),
-    "MZ_TIRE": ("Mz", "alpha_deg", 1.0),
-}
-"""CarSim's keywords: channel, slip, and the sign that makes the force of a small positive slip positive, as it is there."""
-CAMBER_IN_CARSIM = "KGAMMA"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,20 +34,16 @@ class LookupTable:
     heading: str  #: of the values, with their unit: ``Fy_N``
     grid: Grid  #: in degrees, N, Nm
     held: Mapping[str, float]  #: the other conditions that tables can have as axes
-    asymmetry: float = 0.0  #: largest part that CarSim's form cannot hold, over the largest value
 
     @property
     def sentence(self) -> str:
         """Size and error in words."""
         axes, error = self.grid.axes, self.grid.error
-        text = (
+        return (
             f"{self.name}: {' x '.join(str(len(x)) for x in axes.values())} nodes of {', '.join(axes)}"
             f"{''.join(f'; {name} = {value:g}' for name, value in self.held.items())}; linear interpolation misses "
             f"{100.0 * error:.2f} % of the largest {self.heading} {self.grid.largest:.4g} at most "
             f"({self.grid.tested} conditions off the nodes)"
-        )
-        return text + (
-            f"; {100.0 * self.asymmetry:.2f} % are not symmetric and left out" if self.asymmetry else ""
         )
 
     def keys(self) -> dict[str, Any]:
@@ -69,7 +56,6 @@ class LookupTable:
             f"largest_{self.heading}": self.grid.largest,
             "error": self.grid.error,
             "tested": self.grid.tested,
-            "asymmetry": self.asymmetry,
         }
 
 
@@ -80,13 +66,6 @@ class Asked(NamedTuple):
     ranges: Ranges
     held: dict[str, float]
     heading: str
-    left_out: Function | None = None  #: what the form cannot hold of the force
-
-    def lost(self, grid: Grid) -> float:
-        """The largest of it at the nodes, over the largest force."""
-        if self.left_out is None:
-            return 0.0
-        return float(np.abs(self.left_out(**grid.mesh(), **grid.held)).max()) / grid.largest
 
 
 def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
@@ -99,14 +78,15 @@ def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
     return force
 
 
-def _all_slips(tyre: tir.Tyre, on: bool, inside: Ranges) -> dict[str, Asked]:
-    asked = {}
+def asked(tyre: tir.Tyre, on: bool, inside: Ranges) -> dict[str, Asked]:
+    """The tables of a tyre by name, with spin by camber ``on`` or off: every channel in pure and in combined slip."""
+    found = {}
     for end, axes in (("", PURE), ("_combined", dict.fromkeys(PURE, tuple(CONDITIONS)))):
         for channel, names in axes.items():
             held = {name: 0.0 for name in CONDITIONS if name not in names}
             ranges = {name: inside[name] for name in names}
-            asked[channel + end] = Asked(_force(tyre, channel, on), ranges, held, column(channel))
-    return asked
+            found[channel + end] = Asked(_force(tyre, channel, on), ranges, held, column(channel))
+    return found
 
 
 def _csv(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:
@@ -137,78 +117,5 @@ def _mat(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list
     return [f"{stem}.mat"]
 
 
-def _first_quadrant(tyre: tir.Tyre, on: bool, inside: Ranges) -> dict[str, Asked]:
-    """CarSim's tables begin at zero: the odd part over slip of an upright wheel, and its camber stiffness over load."""
-    if not inside["gamma_deg"][0] <= 0.0 <= inside["gamma_deg"][1]:
-        raise InputError("the tables of CarSim are for an upright wheel: include 0", key="--range gamma_deg")
-    asked = {}
-    for keyword, (channel, slip, sign) in SLIP_IN_CARSIM.items():
-        end = min(-inside[slip][0], inside[slip][1])
-        if end <= 0.0:
-            raise InputError("the tables of CarSim need both signs of slip", key=f"--range {slip}")
-        force, ranges = _force(tyre, channel, on), {"Fz_N": inside["Fz_N"], slip: (0.0, end)}
-        odd, even = _part(force, slip, sign, -1.0), _part(force, slip, sign, 1.0)
-        asked[keyword] = Asked(odd, ranges, {"gamma_deg": 0.0}, column(channel), even)
-    camber = float(constants.TABLE_CAMBER)
-    odd = _part(_force(tyre, "Fy", on), "gamma_deg", 1.0 / camber, -1.0)
-
-    def stiffness(Fz_N: Any) -> Any:
-        return odd(Fz_N=Fz_N, gamma_deg=camber)
-
-    asked[CAMBER_IN_CARSIM] = Asked(
-        stiffness, {"Fz_N": inside["Fz_N"]}, {"alpha_deg": 0.0}, "dFy_dgamma_N_per_deg"
-    )
-    return asked
-
-
-def _part(force: Function, name: str, sign: float, mirror: float) -> Function:
-    """The part of a force that is odd (``mirror`` -1) or even (1) in a condition, times the sign."""
-
-    def part(**at: Any) -> Any:
-        return 0.5 * sign * (force(**at) + mirror * force(**{**at, name: -np.asarray(at[name])}))
-
-    return part
-
-
-def _carsim(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:
-    lines = ["PARSFILE", f"! {about}"]
-    for table in tables:
-        load = table.grid.axes.get("Fz_N", np.array([table.held.get("Fz_N", 0.0)]))
-        values = table.grid.values.reshape(len(load), -1).T
-        lines.append(f"! {table.sentence}")
-        if table.name == CAMBER_IN_CARSIM:
-            lines.append(f"{table.name}_TABLE LINEAR")
-            rows = np.column_stack([load, values[0]])
-        else:
-            lines.append(f"{table.name}_CARPET 2D_FROM_ZERO")
-            slip = table.grid.axes[SLIP_IN_CARSIM[table.name][1]]
-            # The zeros at zero slip and load are implied; the last row is repeated, so that forces stay beyond it.
-            further = 2.0 * slip[-1] - slip[-2]
-            rows = np.column_stack([[0.0, *slip[1:], further], np.vstack([load, values[1:], values[-1:]])])
-            rows = rows[:, [0, *(1 + np.flatnonzero(load))]]
-        lines += [" " + ", ".join(f"{x:.10g}" for x in row) for row in rows]
-        lines.append("ENDTABLE")
-    text = "\n".join([*lines, "END", ""])
-    (folder / f"{stem}-carsim.par").write_text(text, encoding="ascii", errors="replace", newline="\r\n")
-    return [f"{stem}-carsim.par"]
-
-
-class Form(NamedTuple):
-    """A kind of file."""
-
-    asked: Callable[[tir.Tyre, bool, Ranges], dict[str, Asked]]
-    write: Callable[[Path, str, str, list[LookupTable]], list[str]]
-    signs: str  #: what the files say of axes and units
-
-
-ISO_W = "ISO-W axes, degrees, N, Nm"
-FORMS = {
-    "csv": Form(_all_slips, _csv, ISO_W),
-    "mat": Form(_all_slips, _mat, ISO_W),
-    "carsim": Form(
-        _first_quadrant,
-        _carsim,
-        "degrees, N, Nm, signs as in public examples of CarSim: positive for a small positive slip; not tried in CarSim",
-    ),
-}
-"""The kinds of files by the name of their program."""
+FORMS: Mapping[str, Callable[[Path, str, str, list[LookupTable]], list[str]]] = {"csv": _csv, "mat": _mat}
+"""Writers of the kinds of files: folder, stem, title and tables; give the names of the files."""

@@ -12,7 +12,7 @@ import tir
 from mffit.errors import InputError
 from mffit.export import constants
 from mffit.export.code import mode_suffix
-from mffit.export.forms import CONDITIONS, FORMS, LookupTable
+from mffit.export.forms import CONDITIONS, FORMS, LookupTable, asked
 from mffit.export.grid import Ranges, grid_of
 from mffit.output import output_folder
 from mffit.progress import Progress, silent
@@ -44,8 +44,7 @@ def write_table(
     ----------
     path : the property file
     out : folder to write to
-    form : ``csv`` and ``mat``: pure and combined slip, in ISO-W axes, N, Nm and degrees; ``carsim``: Fx, Fy and Mz of an
-        upright wheel in pure slip and the camber stiffness, by public examples of CarSim's files
+    form : ``csv`` or ``mat``: pure and combined slip, in ISO-W axes, N, Nm and degrees
     turn_slip : whether spin by camber acts; default: if the units digit of the file's USE_MODE is 5
     error : largest error of linear interpolation between nodes, over the largest value of the channel
     ranges : lowest and highest value of ``Fz_N``, ``alpha_deg``, ``gamma_deg``, ``kappa``, within those of the file; default:
@@ -73,17 +72,17 @@ def write_table(
     on = tyre.turn_slip if turn_slip is None else turn_slip
     inside = _ranges(tyre, path, ranges or {})
     tables, warnings = [], []
-    for name, asked in FORMS[form].asked(tyre, on, inside).items():
+    for name, wanted in asked(tyre, on, inside).items():
         progress(f"table of {name}")
-        grid = grid_of(asked.function, asked.ranges, error)
+        grid = grid_of(wanted.function, wanted.ranges, error)
         if not np.isfinite(grid.largest):
             raise InputError(
-                f"{asked.heading} is not a number everywhere in the ranges; see mffit check", file=path
+                f"{wanted.heading} is not a number everywhere in the ranges; see mffit check", file=path
             )
         if not grid.axes:
-            warnings.append(f"{name} does not depend on {', '.join(asked.ranges)}: no table")
+            warnings.append(f"{name} does not depend on {', '.join(wanted.ranges)}: no table")
             continue
-        tables.append(LookupTable(name, asked.heading, grid, asked.held | grid.held, asked.lost(grid)))
+        tables.append(LookupTable(name, wanted.heading, grid, wanted.held | grid.held))
         if grid.error > error:
             warnings.append(
                 f"{name} misses {100.0 * grid.error:.3g} % instead of {100.0 * error:g} %, as a table has at "
@@ -91,10 +90,10 @@ def write_table(
                 "or allow a larger --error"
             )
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
-    about = f"{path.name}, {words(on)}, {at}; {FORMS[form].signs}"
+    about = f"{path.name}, {words(on)}, {at}; ISO-W axes, degrees, N, Nm"
     stem = path.stem + mode_suffix(tyre, on)
     with output_folder(out, by="export", protected=[path]) as folder:
-        names = FORMS[form].write(folder, stem, about, tables)
+        names = FORMS[form](folder, stem, about, tables)
     return LookupTables([out / name for name in names], tables, warnings)
 
 
