@@ -244,15 +244,6 @@ class FitTable(Table):
     exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
 
 
-class SisterTable(Table):
-    """[sister]: the base file is that of a sister tyre, whose longitudinal force is scaled by the measured side force."""
-
-    Fx: Literal["scaled"]
-    u_friction: stated.Share = float(constants.SISTER_FRICTION_SCATTER)
-    """Of longitudinal over lateral friction."""
-    u_stiffness: stated.Share = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
-
-
 class NormalTable(Table):
     """[normal]: the file for turn slip off."""
 
@@ -333,7 +324,6 @@ class Config(Brief, Table):
     rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
-    sister: SisterTable | None = None
     coefficients: Annotated[Entries, BeforeValidator(named)] = Field(default_factory=dict)
     fit: FitTable = FitTable()
     normal: NormalTable = NormalTable()
@@ -379,6 +369,17 @@ class Config(Brief, Table):
     def line_of(self, key: str) -> int | None:
         """Line of a dotted key (``sweep.2.file`` for the third sweep), else of the table around it; None without either."""
         return line_of(key, self._lines)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_sister(cls, given: object) -> object:
+        """Earlier versions scaled the longitudinal force of the base file by the measured side force."""
+        if isinstance(given, dict) and "sister" in given:
+            raise q.wrong(
+                "is no longer known; remove it: Fx and combined slip come from the tyre whose file [tyre] base names",
+                "sister",
+            )
+        return given
 
     @model_validator(mode="before")
     @classmethod
@@ -438,16 +439,6 @@ class Config(Brief, Table):
             has_base=self.tyre.base is not None,
             direct=self.rig.on_disc and self.spin.pecp1 != "model",
         )
-        return self
-
-    @model_validator(mode="after")
-    def _sister_is_the_base(self) -> Config:
-        if self.sister is not None and self.tyre.base is None:
-            raise q.wrong(
-                "scales the longitudinal force of a sister tyre, but [tyre] names no base file; name the sister's file there, "
-                "or remove [sister]",
-                "sister.Fx",
-            )
         return self
 
     @model_validator(mode="after")

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit.borrowed.sister import Sister, sister_of
 from mffit.fit.by_hand import Hand, hand_of
 from mffit.fit.coefficients import coefficient_records
 from mffit.fit.known import Known, known_after_fit, known_before_fit
@@ -30,7 +29,6 @@ class Begun(NamedTuple):
     """All that is decided before the search."""
 
     hand: Hand
-    sister: Sister | None
     known: Known
     radii: Vertical
     turning: TurningZeros | None
@@ -49,7 +47,6 @@ def begin(config: Config, points: Points, measured: Measured, base: Tyre | None)
     """What :func:`mffit.fit.fit` begins with."""
     fleet = of_fleet(config)
     hand = hand_of(config, base)
-    sister = sister_of(config, base, points)
     known = known_before_fit(config, points, measured, base, fleet, hand)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
@@ -64,7 +61,7 @@ def begin(config: Config, points: Points, measured: Measured, base: Tyre | None)
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
-    return Begun(hand, sister, known, radii, turning, start, plan, problem)
+    return Begun(hand, known, radii, turning, start, plan, problem)
 
 
 def sketch(config: Config, points: Points, measured: Measured, base: Tyre | None) -> FitResult:

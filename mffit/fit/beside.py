@@ -1,9 +1,9 @@
-"""Coefficients determined outside the main fit: from radii, rolling resistance, relaxation or a sister tyre."""
+"""Coefficients determined outside the main fit: from radii, rolling resistance or relaxation."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class BesideNumbers:
-    """Coefficients determined separately from the main fit, from their own readings or files."""
+    """Coefficients determined separately from the main fit, from their own readings."""
 
     values: Mapping[str, float] = field(default_factory=dict)  #: (k,)
     covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
@@ -26,13 +26,3 @@ class BesideNumbers:
         """The coefficients with the standard uncertainties of ``covariance``."""
         u = np.sqrt(np.diag(self.covariance)).tolist()
         return {n: Quantity(x, s, BY_NAME[n].unit) for (n, x), s in zip(self.values.items(), u, strict=True)}
-
-    def only(self, names: Collection[str]) -> BesideNumbers:
-        """The record with the named coefficients only."""
-        rows = [i for i, name in enumerate(self.values) if name in names]
-        return replace(
-            self,
-            values={name: x for name, x in self.values.items() if name in names},
-            covariance=self.covariance[np.ix_(rows, rows)],
-            slope=self.slope[rows],
-        )

@@ -18,13 +18,11 @@ DERIVED = {
 }
 TIED = "tied to its expected value"
 HELD = "held by hand"
-BORROWED = "from sister, scaled"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that the data determine."""
 WORDS = {
     "base": "from base",
     CONVERTED: "from base, converted",
-    "sister": BORROWED,
     "fleet": "as tyres of its fleet have it",
     "default": "default, not measured",
     "estimate": "estimate, not measured",
@@ -40,11 +38,6 @@ def file_comments(
     """By use of a file, the comment of every value: origin, standard uncertainty, and meaning if it is not a coefficient."""
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
-    comments |= {
-        name: f"{WORDS[c.status]} +- {c.stderr:.2g}"
-        for name, c in coefficients.items()
-        if c.status == "sister" and c.stderr
-    }
     comments |= {
         name: f"{comments[name]}, {c.by_hand}"
         for name, c in coefficients.items()

@@ -32,13 +32,6 @@ SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
 )
 
-# A sister tyre
-SISTER_SLIP = Real(
-    0.1,
-    "-",
-    "Slip up to which the limits of Fx are checked for a drawn sister tyre: about the slip of the peak.",
-)
-
 # Radii
 USUAL_MISFIT_OF_RADIUS = Real(
     0.0003,

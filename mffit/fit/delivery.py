@@ -1,4 +1,4 @@
-"""The property files of a fit, from fitted, measured, borrowed and estimated values."""
+"""The property files of a fit, from fitted, measured and estimated values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import numpy as np
 from mffit.config import Config, Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit.beside import BesideNumbers
-from mffit.fit.borrowed.sister import Lent, Sister, lend
 from mffit.fit.coefficients import Coefficient, coefficient_records
 from mffit.fit.comments import file_comments
 from mffit.fit.fitted import Fitted
@@ -34,7 +33,6 @@ class Beside:
 
     radii: Vertical  #: from loaded radius and wheel speed
     steps: Mapping[str, Points] = field(default_factory=dict)  #: samples of steps, by stepped setting
-    sister: Sister | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +42,6 @@ class Delivered:
     known: Known  #: every value of the property file, with its origin
     coefficients: dict[str, Coefficient]
     files: Files
-    lent: Lent | None  #: coefficients from a sister tyre
     relaxation: tuple[Relaxation, ...]  #: one per direction
     posterior: Posterior  #: of all coefficients and rig errors
     zeros: Mapping[str, tuple[float, float]]  #: zeros of My, with standard errors
@@ -74,16 +71,11 @@ def deliver(
         *(direction.beside for direction in lag),
     )
     posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
-    lent = None if beside.sister is None else lend(beside.sister, known, posterior)
     found = {**rolling.found, **beside.radii.found, **lags}
-    if lent is not None:
-        known = known.having(lent.beside.values, "sister")
-        posterior = posterior.without(lent.found).with_numbers(lent.beside)
-        found |= {name: q for name, q in lent.found.items() if q.u > 0.0}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return Delivered(known, coefficients, annotated, lent, lag, posterior, rolling.zeros)
+    return Delivered(known, coefficients, annotated, lag, posterior, rolling.zeros)
 
 
 def _rolling_resistance(config: Config, known: Known, points: Points) -> Resistance:

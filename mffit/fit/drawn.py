@@ -26,7 +26,7 @@ def ensemble(found: FitResult, count: int, *, seed: int = 0) -> list[dict[str, f
     rows = [i for i, name in enumerate(posterior.names) if name in best]
     names = [posterior.names[i] for i in rows]
     mean, spread = np.array([float(best[n]) for n in names]), root(posterior.covariance[np.ix_(rows, rows)])
-    envelope = found.search.problem.envelope if found.lent is None else found.lent.sister.envelope
+    envelope = found.search.problem.envelope
     hand, out = found.search.hand, []
     for _ in range(count):
         for k in range(2 * constants.MOST_DRAWS):

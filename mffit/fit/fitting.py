@@ -68,7 +68,7 @@ def fit(
     Raises InputError if there are fewer points than coefficients, or a sweep contradicts all others beyond plausibility.
     """
     began = time.perf_counter()
-    hand, sister, known, radii, turning, start, plan, problem = begin(config, points, measured, base)
+    hand, known, radii, turning, start, plan, problem = begin(config, points, measured, base)
     found, left_by_formula, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
     full = with_errors_of(full, left_by_formula)
@@ -87,7 +87,7 @@ def fit(
 
     progress(DERIVING)
     use = plain_use(config)
-    beside = Beside(radii, steps, sister)
+    beside = Beside(radii, steps)
     made = deliver(config, known, points, base, fitted, beside)
     files = made.files
     temperature = None
@@ -151,7 +151,6 @@ def fit(
         radii=radii,
         bands=wide,
         prediction=known_forces,
-        lent=made.lent,
         relaxation=made.relaxation,
     )
 

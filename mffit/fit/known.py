@@ -31,8 +31,8 @@ DETERMINED = ("measured", "fitted", "regularised")
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Values by name, and the origin of each: measured, fitted, regularised, base, converted, default, estimate, fleet, sister,
-    range, given."""
+    """Values by name, and the origin of each: measured, fitted, regularised, base, converted, default, estimate, fleet, range,
+    given."""
 
     values: Mapping[str, Any]
     origin: Mapping[str, str]

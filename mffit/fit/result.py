@@ -10,7 +10,6 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import Bands
-from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.fitted import Fitted
@@ -61,7 +60,6 @@ class FitResult(Brief):
     temperature: AtTemperature | None = None  #: the model with temperature terms, if modelled
     confounded: tuple[Confounding, ...] = ()  #: settings that are correlated with temperature
     relaxation: tuple[Relaxation, ...] = ()  #: carcass stiffnesses from steps of sideslip and of slip
-    lent: Lent | None = None  #: coefficients from a sister tyre, for a tyre measured only sideways
     runs: BetweenRuns | None = None  #: random effects of the runs, if modelled
     choice: NuisanceChoice | None = None
     """Influences modelled in addition to coefficients and declared rig errors, with reasons."""

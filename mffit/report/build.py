@@ -92,8 +92,7 @@ BUILD: tuple[Picture[BuildView], ...] = (
         shows="Uncertainty of the curves: the fitted model on a straight path, at the smallest, the nominal and the largest load "
         "of the file. The bands contain the tyre's own curve with a probability of 95 %, if noise, errors of the rig and "
         "unconstrained coefficients are the only errors. Dotted lines are the ends of the tested range. Beyond them a band "
-        "covers what the formula allows, not what a tyre may do. The force of a sister tyre has the uncertainty of both ratios "
-        "and the scatter of the shapes among similar tyres.",
+        "covers what the formula allows, not what a tyre may do.",
         draw=bands.bands,
     ),
     Picture(

@@ -1,1 +1,1 @@
-"""Coefficients from other tyres: a base file converted to the nominal conditions, and a sister tyre."""
+"""Coefficients from other tyres: a base file converted to the nominal conditions."""

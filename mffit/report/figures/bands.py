@@ -1,4 +1,4 @@
-"""The file's curves: how certain they are, the files of both uses side by side, and the force of a sister tyre."""
+"""The file's curves: how certain they are, and the files of both uses side by side."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.constants import SLIP_BEYOND_THE_PEAK, STEPS_OF_LINE
+from mffit.constants import STEPS_OF_LINE
 from mffit.fit.written.files import Files
 from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
@@ -28,7 +28,7 @@ def tested_edges(tested: float) -> list[Guide]:
 
 
 def bands(view: BuildView) -> Sheet:
-    """The channels with 95 % bands over camber, over sideslip and over slip if it was run or lent, at three loads."""
+    """The channels with 95 % bands over camber, over sideslip and over slip if it was run, at three loads."""
     files = view.build.fit.files
     if files is None:
         return NOTHING
@@ -42,25 +42,8 @@ def bands(view: BuildView) -> Sheet:
     if "KPUMAX" in files.tested and "Fx" in view.points.measured:
         driven = [name for name in ("Fx", "Mz") if name in view.points.measured]
         rows.append([_panel(view, "kappa", name, colours) for name in driven])
-    elif view.build.fit.lent is not None:
-        rows.append(
-            [_lent(view, share * files.tested["ALPMAX"], colours) for share in constants.HELD_SHARES[:2]]
-        )
     key = {labels.LOAD.of(load): Look(colour=colour, line="-") for load, colour in colours.items()}
     return Sheet(rows=rows, height=2.1, key=key)
-
-
-def _lent(view: BuildView, alpha: float, colours: Mapping[float, str]) -> Panel:
-    """Fx of a sister tyre over longitudinal slip at a sideslip [rad]."""
-    kappa = np.linspace(-1.0, 1.0, STEPS_OF_LINE) * SLIP_BEYOND_THE_PEAK
-    return Panel(
-        title=f"{CHANNELS['Fx'].short_axis} of the sister tyre, {labels.ANGLES['alpha'].symbol} = {np.degrees(alpha):.0f}°",
-        x=labels.angle_axis("kappa"),
-        series=[
-            model_curve(view, "Fx", kappa, load, colour, alpha=alpha, kappa=kappa)
-            for load, colour in colours.items()
-        ],
-    )
 
 
 def three_loads(view: BuildView) -> dict[float, str]:
@@ -109,7 +92,7 @@ def model_curve(
     known = view.build.prediction
     if known is not None and channel in known.channels:
         half = known.band(tyre, tyre, where, (channel,))[channel]
-    else:  # lent by a sister tyre: nothing but its coefficients is known
+    else:  # not measured: nothing but its coefficients is known
         half = view.build.fit.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
     return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)

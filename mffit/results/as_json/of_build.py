@@ -10,7 +10,6 @@ from pathlib import Path
 from mffit.diagnosis.remains import BestEffect, OddSweep, Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandBesideSweeps, Bands
-from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import Verdict
@@ -71,7 +70,7 @@ def of_rig(numbers: Estimates) -> dict[str, object]:
 
 keys(
     FitResult,
-    "channels radii odd coefficients rig temperature modelled runs relaxation sister=lent confounded bands "
+    "channels radii odd coefficients rig temperature modelled runs relaxation confounded bands "
     "posterior coverage left files explanations seconds",
     radii=lambda found: found.radii.agreement(found.tyre.values),
     rig=lambda found: of_rig(found.rig if found.temperature is None else found.temperature.rig),
@@ -117,14 +116,6 @@ keys(
         }
         for run in found.runs
     ],
-    coefficients=lambda found: list(found.found),
-)
-
-
-keys(
-    Lent,
-    "file=sister.file ±friction ±stiffness u_friction_of_sisters=sister.u_friction "
-    "u_stiffness_of_sisters=sister.u_stiffness coefficients",
     coefficients=lambda found: list(found.found),
 )
 keys(

@@ -460,7 +460,7 @@ def test_known_keys_cover_every_table():
     known = known_keys(config.Config)
     assert set(known) == {
         "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "columns.*", "sweep",
-        "sweep.columns.*", "normal", "sister", "fit", "fit.exclude", "lab", "lab.instruments",
+        "sweep.columns.*", "normal", "fit", "fit.exclude", "lab", "lab.instruments",
     }  # fmt: skip
 
 
@@ -476,6 +476,13 @@ def test_a_table_named_by_a_number_is_refused_with_its_line(tmp_path):
     with pytest.raises(InputError, match="is unknown; known here are tyre, rig") as caught:
         config.load(tmp_path / "tyre.toml")
     assert (caught.value.key, caught.value.line) == ("9", 16)
+
+
+def test_the_table_of_a_sister_tyre_is_refused_with_what_replaces_it(tmp_path):
+    (tmp_path / "tyre.toml").write_text(f'{MINIMAL}\n[sister]\nFx = "scaled"\n')
+    with pytest.raises(InputError, match=r"no longer known; remove it: .*\[tyre\] base") as caught:
+        config.load(tmp_path / "tyre.toml")
+    assert (caught.value.key, caught.value.line) == ("sister", 16)
 
 
 @pytest.mark.parametrize(
