@@ -201,3 +201,30 @@ def test_a_build_keeps_the_forces_that_it_does_not_fit(tmp_path):
     result.tyre.write(tmp_path / "other.tir")
     said = wording.headline(mffit.compare(tmp_path / "one.tir", tmp_path / "other.tir"))
     assert said.startswith(f"Nominal conditions differ, one.tir {before}, other.tir {after}")
+
+
+def test_a_factor_that_vanishes_is_refused(tmp_path):
+    base = tir.read(SAMPLES / "flat-track-combined" / "true.tir").replace(PPX1=4.0, PPX2=0.0)
+    toml = project(tmp_path, base, nominal_pressure=0.75 * base["NOMPRES"] / 1e3)
+    with pytest.raises(
+        InputError, match=r"tyre\.toml:\d+: tyre\.base: .*base\.tir cannot be converted .*PPX1"
+    ):
+        mffit.build(toml)
+
+
+def test_signs_of_the_same_curve_are_those_that_the_fit_allows(tmp_path):
+    """MFeval's tyre has PKY1 > 0 with PKY4 < 0, which is the curve of the opposite signs."""
+    base = tir.read(VECTORS / "MagicFormula62.tir")
+    assert base["PKY1"] > 0.0 > base["PKY4"]
+    own = {"nominal_load": base["FNOMIN"], "nominal_pressure": base["NOMPRES"] / 1e3}
+    toml = project(
+        tmp_path, base, **own, unloaded_radius=base["UNLOADED_RADIUS"], nominal_speed=base["LONGVL"]
+    )
+    found = mffit.pipeline.inputs.read_base(mffit.config.load(toml))
+    assert (found["PKY1"], found["PKY4"]) == (-base["PKY1"], -base["PKY4"])
+    outside = [
+        row.name for row in TABLE if row.stage and not row.bounds[0] <= found[row.name] <= row.bounds[1]
+    ]
+    assert not outside
+    where = drawn_conditions(np.random.default_rng(5))
+    assert_same(np.array(found(**where, turn_slip=False)), np.array(base(**where, turn_slip=False)))
