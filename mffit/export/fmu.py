@@ -93,6 +93,7 @@ def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: b
     turned = variables.parameters(tyre, transient=transient)
     use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
+        "fmi": fmi,
         "name": name,
         "title": f"{Path(file).stem}, {words(turn_slip)}",
         "version": mffit.__version__,
@@ -107,11 +108,11 @@ def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: b
         "compiled": [f"{name}.c", f"{name}_fmi{fmi}.c"],
     }
     texts = {
-        "modelDescription.xml": _filled(f"modelDescription{fmi}.xml.j2", content),
+        "modelDescription.xml": _filled("modelDescription.xml.j2", content),
         f"sources/{name}.h": code.header,
         f"sources/{name}.c": code.source,
         f"sources/{name}_instance.h": _filled("instance.h.j2", content),
-        f"sources/{name}_fmi{fmi}.c": _filled(f"fmi{fmi}.c.j2", content),
+        f"sources/{name}_fmi{fmi}.c": _filled("interface.c.j2", content),
     }
     if fmi == 3:
         texts["sources/buildDescription.xml"] = _filled("buildDescription.xml.j2", content)
