@@ -1,4 +1,4 @@
-"""A property file as code of any language: how it is named after the file, and written."""
+"""A property file as source code: how it is named after the file, and written as C99 or MATLAB."""
 
 from __future__ import annotations
 
@@ -9,15 +9,8 @@ from typing import Any, NamedTuple
 
 import tir
 from mffit.errors import InputError
-from mffit.output import output_folder
-
-
-def written(path: Path, out: Path, texts: Mapping[str, str]) -> list[Path]:
-    """Write the code of a property file by the names of its files; returns their paths."""
-    with output_folder(out, by="export", protected=[path]) as folder:
-        for name, text in texts.items():
-            (folder / name).write_text(text, encoding="ascii", newline="\n")
-    return [out / name for name in texts]
+from mffit.output import digest, output_folder
+from tir.codegen import c99, matlab
 
 
 class CodeOfFile(NamedTuple):
@@ -27,6 +20,78 @@ class CodeOfFile(NamedTuple):
     name: str  #: of the function, or prefix of the functions
     turn_slip: bool
     code: Any
+
+
+def write_c(
+    path: str | Path,
+    out: str | Path,
+    *,
+    name: str | None = None,
+    turn_slip: bool | None = None,
+    limits: bool = False,
+    tunable: bool = False,
+    transient: bool = False,
+) -> list[Path]:
+    """Write a property file as one C99 header and one source, see :func:`tir.export_c`.
+
+    Parameters
+    ----------
+    path : the property file
+    out : folder to write to
+    name : of the files, and prefix of the functions; by default made from the name of the property file, with ``_turn_slip``
+        or ``_normal`` behind it if turn slip is not as its USE_MODE says
+    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
+    limits : as in a call of the tyre
+    tunable : also functions with the scaling factors and the temperature as arguments
+    transient : also the lag of the contact, see :func:`tir.export_c`
+
+    Returns
+    -------
+    list of Path
+        The written files.
+
+    Raises
+    ------
+    InputError
+        The name is not a name in C, a value is not finite, or the folder cannot be written to.
+    TirError
+        The file cannot be read.
+    """
+    path, switches = Path(path), {"limits": limits, "tunable": tunable, "lag": transient}
+    known = code_of(path, name, turn_slip, tir.export_c, c99.taken, **switches)
+    return _written(
+        path, Path(out), {f"{known.name}.h": known.code.header, f"{known.name}.c": known.code.source}
+    )
+
+
+def write_matlab(
+    path: str | Path,
+    out: str | Path,
+    *,
+    name: str | None = None,
+    turn_slip: bool | None = None,
+    limits: bool = False,
+) -> list[Path]:
+    """Write a property file as two MATLAB functions, see :func:`tir.export_matlab`: the tyre, and one with MFeval's columns.
+
+    They are called ``<name>.m`` and ``<name>_mfeval.m``. Arguments, result and errors are those of :func:`write_c`.
+    """
+    path = Path(path)
+
+    def export(tyre: tir.Tyre, **given: Any) -> matlab.MatlabCode:
+        return tir.export_matlab(tyre, origin=f"From {path.name}, SHA-256 {digest(path)}", **given)
+
+    known = code_of(path, name, turn_slip, export, matlab.taken, limits=limits)
+    texts = {f"{known.name}.m": known.code.function, f"{known.name}_mfeval.m": known.code.mfeval}
+    return _written(path, Path(out), texts)
+
+
+def _written(path: Path, out: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write the code of a property file by the names of its files; returns their paths."""
+    with output_folder(out, by="export", protected=[path]) as folder:
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="ascii", newline="\n")
+    return [out / name for name in texts]
 
 
 def code_of(
