@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
-from tir.document import Document, number_of, unquoted
+from tir.document import Document, number_of, read_document, unquoted
 from tir.errors import some
 from tir.parameters import BY_NAME
 from tir.targets import FITTYPS, fittyps_text
@@ -73,6 +74,11 @@ def formula_of(document: Document, fittyp: float | None = None) -> Formula:
         return _of_fittyp(fittyp, stated)
     remarks = (VERSION.search(line.text) for line in document.lines if not line.key)
     return _of_keys(stated, next((found.group(1) for found in remarks if found), ""))
+
+
+def is_old(path: str | Path) -> bool:
+    """Whether a file is of MF 5.2 or PAC2002, which can be converted."""
+    return formula_of(read_document(path)).kind == "5.2"
 
 
 def _acting(group: Collection[str], stated: Mapping[str, str]) -> set[str]:

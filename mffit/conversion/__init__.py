@@ -2,9 +2,10 @@
 
 from mffit.conversion.backwards import KINDS, to_old
 from mffit.conversion.convert import convert, write
-from mffit.conversion.old_files import is_old, read_old
+from mffit.conversion.old_files import read_old
 from mffit.conversion.old_programs import READERS, check_old
 from mffit.conversion.result import Conversion, OldConversion
+from tir.formula import is_old
 
 __all__ = [
     "KINDS",

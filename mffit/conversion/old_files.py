@@ -51,11 +51,6 @@ class OldFile:
         return Path(self.document.path)
 
 
-def is_old(path: str | Path) -> bool:
-    """Whether a file is of a formula that :func:`read_old` reads."""
-    return formula_of(read_document(path)).kind == "5.2"
-
-
 def read_old(
     path: str | Path, given: Mapping[str, float] = MappingProxyType({}), fittyp: int | None = None
 ) -> OldFile:

@@ -28,7 +28,7 @@ from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Readings
-from mffit.suspicion import Outlier, outliers
+from mffit.suspicion.outliers import Outlier, outliers
 from tir import Tyre
 from tir.mode import with_turn_slip
 from tir.parameters import BY_NAME

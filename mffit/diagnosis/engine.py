@@ -29,7 +29,7 @@ from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
-from mffit.suspicion import misread
+from mffit.suspicion.misread import misread
 from tir import Tyre
 
 

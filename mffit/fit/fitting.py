@@ -14,7 +14,7 @@ from mffit.config import Config, axis_signs
 from mffit.config.loading import as_declared
 from mffit.fit import agreement
 from mffit.fit.bands import bands
-from mffit.fit.begin import begin
+from mffit.fit.beginning import begin
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
 from mffit.fit.fitted import left_by, with_errors_around, with_errors_of
@@ -45,7 +45,8 @@ from mffit.prediction import predictor
 from mffit.progress import DERIVING, PREDICTING, Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import BESIDE
-from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit, outliers
+from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, after_the_fit
+from mffit.suspicion.outliers import outliers
 from mffit.suspicion.reversals import turning_sentences
 from tir import Tyre
 

@@ -22,10 +22,11 @@ from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
-from mffit.pipeline.judging import judged, said
+from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
-from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted, without_outliers
+from mffit.pipeline.measuring import measure, said
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
+from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
 from mffit.points.loading import Reading
 from mffit.prediction import correction, missed_at_readings, missed_sentence
 from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent

@@ -7,8 +7,6 @@ from pathlib import Path
 import tir
 from mffit import points
 from mffit.config import Config
-from mffit.conversion import convert, is_old
-from mffit.conversion.convert import MISFIT, ORIGIN
 from mffit.errors import InputError
 from mffit.fit.borrowed.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
 from mffit.fit.known import given_values
@@ -19,6 +17,7 @@ from mffit.sheets import file_of, sheet_of
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from tir import Tyre
+from tir.formula import is_old
 
 
 def read_points(config: Config, *, continuous: bool = False) -> Reading:
@@ -44,7 +43,7 @@ def read_base(config: Config) -> Tyre | None:
             file=config.path,
             key="tyre.base",
         )
-    found = convert(path).tyre if is_old(path) else tir.read(path)
+    found = _converted(path) if is_old(path) else tir.read(path)
     wanted = Nominal.of(given_values(config.tyre))
     try:
         return tyre_at_nominal(tyre_in_one_form(found), wanted)
@@ -58,6 +57,12 @@ def read_base(config: Config) -> Tyre | None:
         ) from None
 
 
+def _converted(path: Path) -> Tyre:
+    from mffit.conversion import convert  # a fit, which few projects need
+
+    return convert(path).tyre
+
+
 def base_notes(config: Config, base: Tyre | None) -> tuple[str, ...]:
     """A remark on a base file for other nominal conditions."""
     if base is None or CONDITIONS not in base.provenance:
@@ -69,6 +74,8 @@ def base_notes(config: Config, base: Tyre | None) -> tuple[str, ...]:
 
 def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:
     """Warnings about a base file that was converted from another version of the formula."""
+    from mffit.conversion.convert import MISFIT, ORIGIN
+
     if base is None or ORIGIN not in base.provenance:
         return ()
     missed = base.provenance.get(MISFIT, "its misfit is not stated")

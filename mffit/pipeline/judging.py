@@ -1,4 +1,4 @@
-"""Whether a build or a direct measurement is to be trusted: what the rules need, and their judgement."""
+"""Whether a build is to be trusted: what the rules need, and their judgement."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from mffit.diagnosis.remains import OddSweep, Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
 from mffit.fit.wording import at_limits
-from mffit.measured import Measured, radius_readings
+from mffit.measured import Measured
+from mffit.pipeline.measuring import follows_path
 from mffit.points import Points
 from mffit.rig_errors import error_of
-from mffit.suspicion import Doubt, FinishedFit, JudgedMeasurement, Outlier, Trust, judge
+from mffit.suspicion import Doubt, FinishedFit, Outlier, Trust, judge
 from tir import Tyre
 
 
@@ -51,7 +52,7 @@ def judged(
         left=fitted.left,
         broken=tuple(_refused(files)),
         nominal=measured.nominal,
-        radius_counts=not _follows_path(config),
+        radius_counts=not follows_path(config),
         sideslip_zeros=measured.sideslip_zeros,
         drift=measured.drift,
     )
@@ -68,24 +69,6 @@ def judged(
         left = replace(left, sweep=OddSweep(against[0].sweep, against[0].looks))
     plain = replace(finished, model=fitted.model)
     return replace(judge(finished), over_noise=plain.over_noise), left
-
-
-def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
-    """The judgement of direct measurements by the rules that need no fit."""
-    return judge(
-        JudgedMeasurement(
-            points=points,
-            nominal=measured.nominal,
-            radius_counts=not _follows_path(config),
-            sideslip_zeros=measured.sideslip_zeros,
-            drift=measured.drift,
-        )
-    )
-
-
-def said(trust: Trust) -> tuple[str, ...]:
-    """Reasons and doubts as warnings."""
-    return (*(f"the result is not to be trusted: {reason}" for reason in trust.reasons), *trust.doubts)
 
 
 def _cause(against: Sequence[Doubt], left: Remains) -> str:
@@ -118,8 +101,3 @@ def _refused(files: Mapping[str, Tyre]) -> Iterable[str]:
     """What ``mffit check`` would refuse in the files."""
     found = [p.sentence for tyre in files.values() for p in tir.check(tyre) if p.level == "error"]
     return dict.fromkeys(found)
-
-
-def _follows_path(config: Config) -> bool:
-    """Whether r_e was measured along the path, so that an error of the path's radius cancels."""
-    return any(radius.follows_path for radius in radius_readings(config))

@@ -1,4 +1,4 @@
-"""``mffit spin`` and ``mffit align``: measurements that need no tyre model, and what a fit says of them."""
+"""``mffit spin`` and ``mffit align``: measurements that need no tyre model."""
 
 from __future__ import annotations
 
@@ -11,25 +11,20 @@ import numpy as np
 
 import tir
 from mffit import config as configuration
-from mffit import fit as fitting
 from mffit import measured as direct
 from mffit import parts as decomposition
 from mffit import points as ingestion
 from mffit.config import Config
 from mffit.errors import InputError
-from mffit.fit import FitResult
 from mffit.made import made
-from mffit.measured import Alignment, Measured
+from mffit.measured import Alignment, Measured, radius_readings
 from mffit.output import output_folder
 from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
-from mffit.pipeline.judging import judged_measurement, said
 from mffit.points import Points
 from mffit.points.loading import Reading
-from mffit.quantities import SIDEWAYS
 from mffit.results import as_json
-from mffit.rig import Simulation
-from mffit.rig_errors import NO_FAULTS
+from mffit.suspicion import JudgedMeasurement, Trust, judge
 from tir import Tyre
 
 
@@ -52,6 +47,29 @@ def spin_of(config: Config, reading: Reading) -> Measured:
     trust = judged_measurement(config, reading.points, measured)
     warnings = (*said(trust), *reading.warnings, *measured.warnings)
     return replace(measured, warnings=warnings, reasons=trust.reasons)
+
+
+def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
+    """The judgement of direct measurements by the rules that need no fit."""
+    return judge(
+        JudgedMeasurement(
+            points=points,
+            nominal=measured.nominal,
+            radius_counts=not follows_path(config),
+            sideslip_zeros=measured.sideslip_zeros,
+            drift=measured.drift,
+        )
+    )
+
+
+def said(trust: Trust) -> tuple[str, ...]:
+    """Reasons and doubts as warnings."""
+    return (*(f"the result is not to be trusted: {reason}" for reason in trust.reasons), *trust.doubts)
+
+
+def follows_path(config: Config) -> bool:
+    """Whether r_e was measured along the path, so that an error of the path's radius cancels."""
+    return any(radius.follows_path for radius in radius_readings(config))
 
 
 def alignment_of(config: Config, points: Points) -> Alignment | None:
@@ -124,42 +142,3 @@ def _rolling(points: Points) -> np.ndarray:
 def without_play(config: Config) -> Config:
     """The configuration of the same rig without backlash."""
     return config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})
-
-
-def without_outliers(
-    config: Config, points: Points, measured: Measured, fitted: FitResult, base: Tyre | None
-) -> Measured | None:
-    """The direct method without the readings that the fit rejected; None if they make no difference."""
-    if not fitted.outliers:
-        return None
-    readings = {}
-    for channel in SIDEWAYS:
-        rejected = [outlier.row for outlier in fitted.outliers if outlier.channel == channel]
-        readings[channel] = np.where(
-            np.isin(np.arange(len(points)), rejected), np.nan, getattr(points, channel)
-        )
-    sound = points.replace(**readings).select(np.isfinite(readings["Fy"]))
-    again = measure(config, sound, base)[1]
-    return None if again == measured else again
-
-
-def finite_spin_bias(
-    config: Config, points: Points, simulation: Simulation | None, base: Tyre | None
-) -> float | None:
-    """Bias of eps_gamma of the direct method due to finite spin on a disc; None without a disc.
-
-    The method is applied to noise-free readings of a rig without errors, of a model whose eps_gamma is known.
-    """
-    if simulation is None:
-        return None
-    readings = replace(simulation, faults=NO_FAULTS, of_parts={}).readings(points)
-    found = epsilon_gamma(without_play(config), points.replace(**readings), base)
-    return None if found is None else found.value - float(simulation.values["PECP1"])
-
-
-def undistorted(config: Config, fitted: FitResult) -> Simulation | None:
-    """The fitted model with a PECP1 that the points determine, as the bias needs it; None without turn slip."""
-    if not config.rig.on_disc or fitted.epsilon_gamma_model is None:
-        return None
-    assert fitted.search is not None
-    return fitting.with_free_epsilon(fitted.search)

@@ -18,7 +18,8 @@ from mffit.errors import InputError
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
-from mffit.pipeline.measuring import finite_spin_bias, measure, undistorted
+from mffit.pipeline.measuring import measure
+from mffit.pipeline.refining import finite_spin_bias, undistorted
 from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
 from mffit.planning.prospect import Direct, DirectU

@@ -1,5 +1,10 @@
 """The results of the workflows, and their JSON."""
 
-from mffit.results.records import CORRECTION, BuildOutcome, BuildResult
+from typing import TYPE_CHECKING
 
-__all__ = ["CORRECTION", "BuildOutcome", "BuildResult"]
+from mffit.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from mffit.results.records import CORRECTION, BuildOutcome, BuildResult
+
+__getattr__ = on_demand(__name__)

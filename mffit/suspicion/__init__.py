@@ -1,22 +1,27 @@
 """Rules by which readings are suspected, and the outcome of each; ``rules`` lists them all."""
 
-from mffit.suspicion.declarations import under_axes
-from mffit.suspicion.groups import parts_of_sweeps
-from mffit.suspicion.misread import Misread, misread
-from mffit.suspicion.others import Doubt, FittedModel, JudgedSweeps, after_the_fit
-from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
-from mffit.suspicion.rule import When
-from mffit.suspicion.rules import RULES, before_the_fit
-from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import (
-    SOUND,
-    FinishedFit,
-    HeldNumber,
-    JudgedMeasurement,
-    LeftOutSweeps,
-    Trust,
-    judge,
-)
+from typing import TYPE_CHECKING
+
+from mffit.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from mffit.suspicion.declarations import under_axes
+    from mffit.suspicion.groups import parts_of_sweeps
+    from mffit.suspicion.misread import Misread
+    from mffit.suspicion.others import Doubt, FittedModel, JudgedSweeps, after_the_fit
+    from mffit.suspicion.outliers import Outlier, marks, outliers_sentence
+    from mffit.suspicion.rule import When
+    from mffit.suspicion.rules import RULES, before_the_fit
+    from mffit.suspicion.slopes import contradictions, signatures
+    from mffit.suspicion.trust import (
+        SOUND,
+        FinishedFit,
+        HeldNumber,
+        JudgedMeasurement,
+        LeftOutSweeps,
+        Trust,
+        judge,
+    )
 
 __all__ = [
     "RULES",
@@ -37,10 +42,9 @@ __all__ = [
     "contradictions",
     "judge",
     "marks",
-    "misread",
-    "outliers",
     "outliers_sentence",
     "parts_of_sweeps",
     "signatures",
     "under_axes",
 ]
+__getattr__ = on_demand(__name__)

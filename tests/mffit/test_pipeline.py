@@ -18,8 +18,8 @@ from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.pipeline.build_output import origin
 from mffit.pipeline.diagnosing import last_build
-from mffit.pipeline.measuring import undistorted
 from mffit.pipeline.provenance import fitted_to, rig_of_build
+from mffit.pipeline.refining import undistorted
 from mffit.progress import remaining
 from mffit.results import as_json
 

@@ -16,8 +16,8 @@ from mffit.diagnosis import wording
 from mffit.effects import CATALOG
 from mffit.fit.rig.rig_numbers import rig_numbers
 from mffit.pipeline.build_output import points_table
-from mffit.pipeline.measuring import finite_spin_bias
 from mffit.pipeline.provenance import rig_of_build
+from mffit.pipeline.refining import finite_spin_bias
 from mffit.quantities import SIDEWAYS
 from mffit.report.text import build_explained, spin_summary
 from mffit.rig import Simulation

@@ -17,8 +17,8 @@ from small_rigs import LOADS, SAMPLE, built, disc, truth
 import mffit
 from mffit.cli import main
 from mffit.errors import InputError
-from mffit.pipeline.measuring import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
+from mffit.pipeline.refining import finite_spin_bias
 from mffit.planning import ADDITIONS, addition_named, read_goal, wording
 from mffit.planning.prospect import Prospect
 from mffit.planning.runs import candidates

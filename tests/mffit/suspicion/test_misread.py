@@ -10,7 +10,7 @@ import pytest
 from mffit.points import Points, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Readings
-from mffit.suspicion import misread
+from mffit.suspicion.misread import misread
 from mffit.suspicion.rereadings import MISTAKES
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
