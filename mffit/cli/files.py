@@ -108,10 +108,9 @@ def convert(
 
     Fits what means something else in the other formula to the forces of the file, and states the misfit.
     """
-    from mffit import conversion
+    from mffit import as_json, conversion
     from mffit.conversion import wording
     from mffit.report import text
-    from mffit.results import as_json
 
     found: conversion.Conversion | conversion.OldConversion
     if to is not None:

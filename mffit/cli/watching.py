@@ -23,9 +23,8 @@ def watch(tyre_toml: Path, once: bool, voice: Voice) -> None:
     Sweeps that TYRE_TOML lists may be missing yet; recordings beside it that it does not list are taken in, and nothing is
     written. With --json, one line of JSON for each change. Ctrl-C ends it.
     """
-    from mffit import pipeline
+    from mffit import as_json, pipeline
     from mffit.report import text
-    from mffit.results import as_json
 
     last = None
     try:

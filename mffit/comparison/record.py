@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.fit import Posterior
 from mffit.fleet import Specimen
@@ -75,6 +76,9 @@ class Difference:
         return abs(self.change) / size if size else 0.0
 
 
+keys(Difference, "* change u_change=u in_u=z")
+
+
 def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
     """The differences, sorted: first those with known uncertainty, by their ratio to it; then the others, by relative size."""
     return tuple(sorted(rows, key=lambda row: (row.z is None, -abs(row.z or 0.0), -row.relative)))
@@ -104,6 +108,15 @@ class CurveGap:
         return float(self.second[k] - self.first[k]), float(self.x[k])
 
 
+keys(
+    CurveGap,
+    "channel over load_N rms largest=largest.0 **at",
+    at=lambda gap: (
+        {"at_kappa": gap.largest[1]} if gap.over == "kappa" else {"at_deg": math.degrees(gap.largest[1])}
+    ),
+)
+
+
 @dataclass(frozen=True, slots=True)
 class SweepGap:
     """Readings of one sweep against a file: measured minus file."""
@@ -131,3 +144,10 @@ class Comparison(Brief):
     apart: str = ""  #: words on different uses or nominal conditions of the files; empty if they agree
     points: Points | None = None  #: the data, if the second side is measured
     simulation: Simulation | None = None  #: the file on the rig, compared with these data
+
+
+keys(
+    Comparison,
+    "first second headline numbers coefficients curves sweeps notes",
+    headline="mffit.comparison.wording.headline",
+)

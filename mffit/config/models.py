@@ -472,3 +472,19 @@ def _radius_sentence(r_e: float, R0: float, measured: bool) -> str:
     if least < ratio / 2.0 < most:
         return f"{sentence}; path_radius looks like a diameter, halve it"
     return f"{sentence}; check path_radius, revolutions and the angles, which are in degrees"
+
+
+def given_values(tyre: TyreTable) -> dict[str, Any]:
+    """Values of ``[tyre]``, stated or by default, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
+    given = {
+        "FNOMIN": tyre.nominal_load,
+        "NOMPRES": tyre.nominal_pressure * 1e3,
+        "INFLPRES": tyre.nominal_pressure * 1e3,
+        "LONGVL": tyre.nominal_speed,
+        "UNLOADED_RADIUS": tyre.unloaded_radius,
+        "WIDTH": tyre.width,
+        "RIM_RADIUS": tyre.rim_radius,
+        "TYRESIDE": tyre.side.upper() if tyre.side else None,
+        "FITTYP": 62,
+    }
+    return {name: value for name, value in given.items() if value is not None}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.conversion import constants
 from mffit.conversion.grid import Reach
@@ -73,6 +74,14 @@ class OldConversion(_Converted):
         return self.source.problems
 
 
+keys(
+    OldConversion,
+    "kind trusted reasons ranges=reach fitted misfit",
+    trusted="mffit.conversion.wording.trusted",
+    reasons="mffit.conversion.wording.reasons",
+)
+
+
 @dataclass(frozen=True, slots=True, repr=False, kw_only=True)
 class Conversion(_Converted):
     """A converted file and how near it comes to the old one."""
@@ -96,3 +105,11 @@ class Conversion(_Converted):
     def problems(self) -> tuple[Problem, ...]:
         """What the old file has of note."""
         return self.old.problems
+
+
+keys(
+    Conversion,
+    "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
+    trusted="mffit.conversion.wording.trusted",
+    reasons="mffit.conversion.wording.reasons",
+)

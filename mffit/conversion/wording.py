@@ -79,6 +79,11 @@ def size(row: RegionMisfit) -> str:
     return f"{row.largest:.3g} of {row.greatest_force:.3g} {unit} ({row.share:.1%}) at {row.load:.0f} N"
 
 
+def trusted(found: Conversion | OldConversion) -> bool:
+    """Whether there is no reason against a conversion."""
+    return not reasons(found)
+
+
 def reasons(found: Conversion | OldConversion) -> list[str]:
     """Why the converted file is not to be trusted; empty if its misfit is small."""
     out = [] if isinstance(found, OldConversion) else against_sideslip(found)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -25,6 +26,9 @@ class Limit:
     def ruled_out(self) -> bool:
         """Whether the effect would have been seen at its usual size."""
         return self.share < 1.0
+
+
+keys(Limit, "id=effect.id of_usual_size=share ruled_out")
 
 
 def limits(

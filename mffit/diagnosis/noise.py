@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.linearised.chained import ChainedErrors, Memory, chains_of
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import SIDEWAYS, column
 from mffit.scatter import finite_median, rms
 
 
@@ -282,3 +283,12 @@ class Noise:
         """The noise with these shared changes (c n, k) only, and without structure."""
         given = [c for c in columns if c.size]
         return replace(self, shared=np.column_stack(given) if given else None, structure=())
+
+
+keys(
+    Noise,
+    "**typical source **stated scatter",
+    typical=lambda noise: {column(name): noise.typical(name) for name in noise.channels},
+    source="mffit.diagnosis.wording.source",
+    stated=lambda noise: {f"stated_{column(name)}": noise.typically_stated(name) for name in noise.channels},
+)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
+from mffit.as_json import estimates, keys
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
@@ -77,12 +78,24 @@ class BestEffect:
         return self.possible and self.gain > self.missed
 
 
+keys(
+    BestEffect,
+    "id=best.effect.id name=best.effect.name kind=best.effect.kind parameters share=best.share was_expected=best.known sigma "
+    "chance significant as_good tried",
+    parameters=lambda found: estimates(found.best.numbers),
+    as_good=lambda found: [other.effect.id for other in found.rivals],
+)
+
+
 @dataclass(frozen=True, slots=True)
 class OddSweep:
     """The sweep that contradicts all others most, and its likely cause."""
 
     name: str
     looks: str  #: the known mistake or single number that explains it; empty if no known cause does
+
+
+keys(OddSweep, "name looks_like=looks")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +108,16 @@ class Remains:
     held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit, or held by hand
     left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
     """By channel, prediction errors of left-out sweeps."""
+
+
+keys(
+    Remains,
+    "effect missed sweep held left_out",
+    missed=lambda found: {
+        name: {"rms": one.size, "log_evidence": one.proof, "over": one.missed_over}
+        for name, one in (found.linear.channels if found.linear else {}).items()
+    },
+)
 
 
 NOTHING_REMAINS = Remains()

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import document, estimates, keys
 from mffit.brief import Brief
 from mffit.config.laboratory import LabTable
 from mffit.diagnosis.bumps import Bump
@@ -44,6 +45,9 @@ class Apart:
     largest: Mapping[str, float]
 
 
+keys(Apart, "where rms largest")
+
+
 @dataclass(frozen=True, slots=True)
 class AcceptedEffect:
     """One accepted effect."""
@@ -69,6 +73,19 @@ class AcceptedEffect:
         """Confidence in this effect or any tied one; ``alternatives`` has confidences of other effects by id."""
         listed = self.confidence + sum(alternatives.get(other, 0.0) for other in self.tied_with)
         return max(listed, self.together)
+
+
+keys(
+    AcceptedEffect,
+    "id=effect.id name=effect.name kind=effect.kind physics=effect.physics confidence repaired parameters to_do "
+    "gap_after tied_with separate_by [T_ref_degC]",
+    parameters=lambda found: {
+        name: {"was": found.before[name], "value": value, "stderr": u}
+        for name, (value, u) in found.parameters.items()
+    },
+    to_do=lambda _: None,  # by the signs of the rig, which the diagnosis has
+    separate_by="mffit.diagnosis.wording.separate_by",
+)
 
 
 class GapStep(NamedTuple):
@@ -199,6 +216,26 @@ class Diagnosis(Brief):
     def ranked_alternatives(self) -> list[tuple[str, float]]:
         """Id and confidence of effects that were not accepted, likeliest first."""
         return sorted(self.alternatives.items(), key=lambda item: -item[1])
+
+
+keys(
+    Diagnosis,
+    "trusted reasons headline verdict gap_before gap_after gap_by_effect validation where effects alternatives limits "
+    "unexplained unexplained_where "
+    "noise_floor=noise outliers coefficients model_after model_with_terms advice apart notes lab left_out [made]",
+    verdict=lambda found: found.answer.name.lower(),
+    gap_by_effect=lambda found: [
+        {"id": step.id, "gap": document(step.gap), "held_out": document(step.held_out)}
+        for step in found.steps
+    ],
+    advice="mffit.diagnosis.wording.advice",
+    effects="mffit.diagnosis.wording.effects_with_remedies",
+    alternatives=lambda found: [
+        {"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()
+    ],
+    coefficients=lambda found: estimates(found.coefficients),
+    notes="mffit.diagnosis.wording.notes",
+)
 
 
 def corrected_points(points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> Points:

@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.points import Points
+from mffit.quantities import column
 from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS, error_of
 from mffit.scatter import rms
@@ -28,6 +30,9 @@ class Gap:
     def rms(self, channel: str) -> float:
         """Rms gap of one channel, in its unit."""
         return self.rmse[channel]
+
+
+keys(Gap, "**rmse chi2_per_dof", rmse=lambda gap: {column(name, "rmse"): x for name, x in gap.rmse.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +55,9 @@ class Validation:
         """The validation of the given model, without a repair."""
         before = self.gap_before
         return Validation(self.folds, before, before, before, within_runs=self.within_runs)
+
+
+keys(Validation, "method gap_before gap_after gap_given_file gain", method="mffit.diagnosis.wording.method")
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from mffit.as_json import Json, document
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import MemorySpan, Noise, Origin
@@ -310,6 +311,16 @@ def method(validation: Validation) -> str:
     if validation.within_runs:
         return f"{validation.folds} parts of every run left out in turn"
     return f"each of {validation.folds} sweeps left out in turn"
+
+
+def separate_by(found: AcceptedEffect) -> str:
+    """The run that would separate an accepted effect from those it is tied with."""
+    return separation(found.separation)
+
+
+def effects_with_remedies(found: Diagnosis) -> list[dict[str, Json]]:
+    """The accepted effects for JSON, each with its remedy."""
+    return [document(one) | {"to_do": remedy(one, found)} for one in found.effects]
 
 
 def remedy(found: AcceptedEffect, diagnosis: Diagnosis) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.constants import COVERAGE_FACTOR_95, STRAIGHT
 from mffit.fit import constants
 from mffit.fit.coverage import side_run
@@ -33,6 +34,9 @@ class BandBesideSweeps:
         return self.half_beside > constants.WIDER_BANDS * self.half_at
 
 
+keys(BandBesideSweeps, "sideslip_deg Fx_N=half_at halfway_Fx_N=half_beside")
+
+
 @dataclass(frozen=True, slots=True)
 class Bands:
     """Rms half width of the 95 % bands of Fy over the tested angles and loads, and what widens them."""
@@ -53,6 +57,14 @@ class Bands:
     def wider(self) -> bool:
         """Whether a coefficient that the sweeps do not show widens the bands at the other pressures."""
         return bool(self.unseen) and self.half_of_others > constants.WIDER_BANDS * self.half
+
+
+keys(
+    Bands,
+    "pressure_kPa=main Fy_N=half Fy_exact_zeros_N=half_of_exact_zeros other_pressures_kPa=others other_Fy_N unseen? share "
+    "combined",
+    other_Fy_N=lambda found: found.half_of_others if found.others else None,
+)
 
 
 def bands(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from mffit.as_json import keys
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.by_hand import Hand
 from mffit.fit.fitted import Fitted
@@ -34,6 +35,16 @@ class Coefficient:
     held: bool = False  #: held by hand at ``value``
     bounds: tuple[float, float] | None = None  #: set by hand
     prior: Prior | None = None  #: set by hand
+
+
+keys(
+    Coefficient,
+    "value stderr stage fixed at_bound interval_95=interval status origin by held bounds prior correlated_with? correlation",
+    origin=lambda row: row.origin or row.status,
+    by=lambda row: "hand" if row.by_hand else None,
+    prior=lambda row: row.prior and {"value": row.prior.expected, "u": row.prior.spread},
+    correlation=lambda row: row.correlation if row.correlated_with else None,
+)
 
 
 def coefficient_records(

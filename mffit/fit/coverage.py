@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.constants import STRAIGHT, UPRIGHT
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.fit.stages import STAGES, Stage
@@ -25,6 +26,9 @@ class StageCoverage:
     held: tuple[str, ...]
     missing: tuple[str, ...]  #: why coefficients are held, as sentences
     by_hand: tuple[str, ...] = ()  #: coefficients that the engineer holds
+
+
+keys(StageCoverage, "stage supported held missing")
 
 
 LACKING = {

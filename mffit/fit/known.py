@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.config.by_hand import KEYS_OF_TYRE
-from mffit.config.models import TyreTable
+from mffit.config.models import given_values
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
@@ -133,22 +133,6 @@ def known_after_fit(
 def _is_stated(tyre: Any, name: str) -> bool:
     """Whether ``[tyre]`` states a value, rather than its key's default."""
     return name not in KEYS_OF_TYRE or KEYS_OF_TYRE[name] in tyre.model_fields_set
-
-
-def given_values(tyre: TyreTable) -> dict[str, Any]:
-    """Values of ``[tyre]``, stated or by default, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
-    given = {
-        "FNOMIN": tyre.nominal_load,
-        "NOMPRES": tyre.nominal_pressure * 1e3,
-        "INFLPRES": tyre.nominal_pressure * 1e3,
-        "LONGVL": tyre.nominal_speed,
-        "UNLOADED_RADIUS": tyre.unloaded_radius,
-        "WIDTH": tyre.width,
-        "RIM_RADIUS": tyre.rim_radius,
-        "TYRESIDE": tyre.side.upper() if tyre.side else None,
-        "FITTYP": 62,
-    }
-    return {name: value for name, value in given.items() if value is not None}
 
 
 ESTIMATED_SHAPES = {

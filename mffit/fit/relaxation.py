@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys, with_u
 from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import StageCoverage
@@ -136,6 +137,23 @@ class Relaxation:
             held=held,
             missing=(self.missing,) if held and self.missing else (),
         )
+
+
+keys(
+    Relaxation,
+    "runs coefficients missing?",
+    runs=lambda found: [
+        {
+            "file": run.file,
+            "load_N": run.load,
+            "p_kPa": run.pressure / 1e3,
+            **with_u(f"{found.direction.sigma}_m", run.length),
+            f"{found.direction.sigma}_file_m": run.written,
+        }
+        for run in found.runs
+    ],
+    coefficients=lambda found: list(found.found),
+)
 
 
 def relaxation(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mffit.as_json import document, keys
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import Bands
@@ -24,6 +25,7 @@ from mffit.linearised import LinearisedFit
 from mffit.prediction import Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
+from mffit.rig_errors import rig_estimates
 from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 
@@ -75,3 +77,20 @@ class FitResult(Brief):
         """The misfit of each measured channel."""
         gaps = {name: found for name, found in self.channels.items() if found.n}
         return ", ".join(f"{name} rmse {x.rmse:.3g} {CHANNELS[name].unit}" for name, x in gaps.items())
+
+
+keys(
+    FitResult,
+    "channels radii odd coefficients rig temperature modelled runs relaxation confounded bands "
+    "posterior coverage left files explanations seconds",
+    radii=lambda found: found.radii.agreement(found.tyre.values),
+    rig=lambda found: rig_estimates(found.rig if found.temperature is None else found.temperature.rig),
+    modelled=lambda found: () if found.choice is None else found.choice.verdicts,
+    relaxation=lambda found: (
+        {**document(found.relaxation[0]), "slip": found.relaxation[1]} if found.relaxation else None
+    ),
+    files=lambda found: found.files or {},
+)
+
+
+keys(Posterior, "names covariance")

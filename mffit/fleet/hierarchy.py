@@ -12,10 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.fit.priors import scatter
 from mffit.fleet import constants
 from mffit.fleet.information import Information
 from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
+from mffit.rig_errors import rig_estimates
 from tir.parameters import BY_NAME
 
 
@@ -32,6 +34,9 @@ class Population:
     def assumed(self) -> bool:
         """Whether the scatter is that of tyres in general, because there are too few tyres."""
         return self.tyres < constants.FEWEST_TYRES_FOR_SCATTER
+
+
+keys(Population, "* assumed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +65,9 @@ class Hierarchy:
     rig: Mapping[str, tuple[float, float]]  #: common rig error -> (value, standard uncertainty)
     declared: Mapping[str, tuple[float, float]]  #: common rig error -> declared (value, standard uncertainty)
     population: Mapping[str, Population]  #: by coefficient that at least two tyres inform
+
+
+keys(Hierarchy, "errors population", errors=lambda rig: rig_estimates(rig.rig))
 
 
 def estimate(found: Sequence[Information]) -> Hierarchy:

@@ -8,10 +8,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.fleet.hierarchy import Hierarchy
 from mffit.fleet.specimen import Specimen
 from mffit.scatter import rms
 from tir import Quantity
+
+EPSILON = {
+    "direct": "direct method",
+    "alone": "joint estimate of its own build",
+    "together": "joint estimate of all tyres",
+}
+"""The three estimates of eps_gamma in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +39,15 @@ class Row:
         return self.specimen.epsilon_gamma
 
 
+keys(
+    Row,
+    "name=specimen.name folder=specimen.folder rig epsilon_gamma **numbers rmse=specimen.misfit strain "
+    "warnings=specimen.warnings",
+    rig=lambda row: row.rig + 1,
+    epsilon_gamma=lambda row: {key: getattr(row, key) for key in EPSILON},
+)
+
+
 @dataclass(frozen=True, slots=True)
 class FleetScatter:
     """Scatter of one number between tyres, and the typical uncertainty."""
@@ -44,6 +61,9 @@ class FleetScatter:
     def beyond(self) -> float:
         """Scatter in excess of the uncertainties."""
         return math.sqrt(max(self.sd**2 - self.u**2, 0.0))
+
+
+keys(FleetScatter, "* beyond")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,15 +88,16 @@ class Fleet:
         return scatter_of(found)
 
 
-EPSILON = {
-    "direct": "direct method",
-    "alone": "joint estimate of its own build",
-    "together": "joint estimate of all tyres",
-}
-"""The three estimates of eps_gamma in words."""
+keys(Fleet, "tyres=rows scatter rigs notes", scatter=lambda found: _scatters(found))
 
 
 def scatter_of(found: Sequence[Quantity]) -> FleetScatter:
     """Mean, scatter and typical uncertainty of at least two numbers."""
     values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
     return FleetScatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))
+
+
+def _scatters(found: Fleet) -> dict[str, object]:
+    """JSON of the scatter of every number that at least two tyres have."""
+    names = {key: f"epsilon_gamma_{key}" for key in EPSILON} | {key: key for key in found.rows[0].numbers}
+    return {name: scatter for key, name in names.items() if (scatter := found.scatter(key)) is not None}

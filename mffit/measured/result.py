@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys, with_u
 from mffit.brief import Brief
 from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM, USUAL_CORNERING_STIFFNESS
 from mffit.made import Made
@@ -62,6 +63,9 @@ class Drift(NamedTuple):
         return self.chance < FALSE_ALARM and self.scatter > constants.SLOPE_SHAPE
 
 
+keys(Drift, "scatter chance least most apart")
+
+
 class SetupResult(NamedTuple):
     """Results from the zeros of one set-up on one path at one load alone."""
 
@@ -80,6 +84,14 @@ class SetupResult(NamedTuple):
         return path_in_words(self.phi_t)
 
 
+keys(
+    SetupResult,
+    "setup=name path_centre path_radius_m ±F_phit_N ±C_phit_Nm ±epsilon_gamma ±alpha_M_deg misaligned",
+    path_centre=lambda row: "left" if row.phi_t < 0.0 else "right",
+    path_radius_m=lambda row: abs(1.0 / row.phi_t),
+)
+
+
 def path_in_words(phi_t: float) -> str:
     """Radius and side of the path with a turn slip [1/m]."""
     return f"{abs(1.0 / phi_t):.4g} m to the {'left' if phi_t < 0.0 else 'right'}"
@@ -95,6 +107,9 @@ class SetupScatter(NamedTuple):
     declared: float  #: standard deviation expected from the uncertainties in [rig] [N]
     chance: float  #: probability of such scatter if the declaration holds
     excess: float  #: standard deviation in excess of the declared one [N]
+
+
+keys(SetupScatter, "load_N setups between_N degrees_of_freedom declared_N chance excess_N")
 
 
 def is_clear(misalignment: Quantity | None) -> bool:
@@ -170,6 +185,30 @@ class LoadResult(Brief):
             "" if found is None else f", {DIRECT['epsilon_gamma'].ascii} {found.value:.3f} +- {found.u:.2g}"
         )
         return f"{CONDITIONS['Fz_N'].of(self.load)}{said}"
+
+
+KEYS = {
+    "epsilon_gamma": "epsilon_gamma",
+    "C_phit": "C_phit_Nm",
+    "C_gamma": "C_gamma_N_per_rad",
+    "C_alpha": "C_alpha_N_per_rad",
+    "C_alpha_straight": "C_alpha_straight_N_per_rad",
+    "r_e": "r_e_m",
+    "R": "R_m",
+    "F_phit": "F_phit_N",
+}
+"""By attribute of :class:`LoadResult`, the key with unit in property files and JSON."""
+
+keys(
+    LoadResult,
+    f"load_N {' '.join(f'±{key}={name}' for name, key in KEYS.items())} "
+    "epsilon_gamma_secant=epsilon_secant epsilon_gamma_secant_bias=secant_bias epsilon_gamma_slope=epsilon_slope "
+    "epsilon_gamma_moment=epsilon_moment u_epsilon_gamma_moment ±epsilon_gamma_debiased=epsilon_debiased "
+    "±alpha_M_deg ±alpha_0_deg=misalignment ±ply_steer_deg ±conicity_N F_forward_N F_backward_N",
+    u_epsilon_gamma_moment=lambda _: None,
+)
+NO_LOAD = {"load_N": None, **{key: None for name in KEYS.values() for key in with_u(name, None)}}
+"""The numbers at the nominal load if nothing was measured there."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -305,17 +344,21 @@ class Measured(Brief):
         return out
 
 
-KEYS = {
-    "epsilon_gamma": "epsilon_gamma",
-    "C_phit": "C_phit_Nm",
-    "C_gamma": "C_gamma_N_per_rad",
-    "C_alpha": "C_alpha_N_per_rad",
-    "C_alpha_straight": "C_alpha_straight_N_per_rad",
-    "r_e": "r_e_m",
-    "R": "R_m",
-    "F_phit": "F_phit_N",
-}
-"""By attribute of :class:`LoadResult`, the key with unit in property files and JSON."""
+# SI units, ISO signs, k = 1. The judgement stands at the top of ``spin.json`` and of ``result.json``.
+keys(
+    Measured,
+    "**judged **at_nominal epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
+    "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift notes "
+    "per_load [made]",
+    judged=lambda found: (
+        {}
+        if found.made is None
+        else {"trusted": found.trusted, "reasons": found.reasons, "warnings": found.warnings}
+    ),
+    at_nominal=lambda found: found.nominal or NO_LOAD,
+    coverage_factor=lambda _: 1,
+    setups=lambda found: () if found.nominal is None else found.nominal.setups,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -370,3 +413,6 @@ class Alignment(Brief):
     def _weights(self) -> np.ndarray:
         stiffness = np.array([abs(step.C_alpha) for step in self.last])
         return np.asarray(stiffness / stiffness.sum())
+
+
+keys(Alignment, "correction_deg u_correction_deg=u_deg u_axis_deg aligned steps warnings")

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtr, stdtrit
 from uncertainties import UFloat, ufloat
 
+from mffit.as_json import keys
 from mffit.config.uncertainty import shape_of
 from mffit.constants import COVERAGE_FACTOR_95
 from tir import Quantity
@@ -136,6 +137,9 @@ class Expanded(NamedTuple):
     k: float  #: coverage factor, from the t distribution
     dof: float  #: effective degrees of freedom by Welch and Satterthwaite
     probability: float  #: that the interval +-U covers the true value
+
+
+keys(Expanded, "U_epsilon_gamma=U coverage_factor=k coverage_probability=probability effective_dof=dof")
 
 
 def budget(result: UFloat) -> tuple[Contribution, ...]:

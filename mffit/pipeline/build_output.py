@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from mffit import as_json, prediction
 from mffit import config as configuration
-from mffit import prediction
-from mffit.comparison import characteristics
+from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.config.toml_file import toml_text
 from mffit.csv_tables import write_csv
 from mffit.fit import Posterior, name_at_temperature
+from mffit.fleet import information, to_json
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.provenance import TEMPERATURE
 from mffit.points import Points
 from mffit.points.stretch import StretchNote, stretch_table
 from mffit.quantities import COMPARED, column
-from mffit.results import BuildResult, as_json
+from mffit.results import BuildResult
 from mffit.suspicion import marks
 from tir import Quantity, Tyre
 
@@ -50,7 +52,7 @@ def write_build(
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", result)
-        as_json.write_information(folder / "information.json", result)
+        _write_information(folder / "information.json", result)
         write_csv(points_table(result), folder / "points.csv")
         fitted = result.files[result.fitted]
         if result.prediction is not None:
@@ -69,6 +71,14 @@ def write_build(
             from mffit import report
 
             report.write_build(result, folder)
+
+
+def _write_information(path: Path, result: BuildResult) -> None:
+    """Write ``information.json``, one line per key, because it is mainly read by programs."""
+    assert result.fit.search is not None
+    content = as_json.document(to_json(information(result.fit.search)))
+    lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items())
+    path.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
 
 
 def resolved_text(config: Config, out: Path) -> bytes:

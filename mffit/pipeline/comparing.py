@@ -9,8 +9,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 import tir
+from mffit import as_json, fleet, prediction
 from mffit import config as configuration
-from mffit import fleet, prediction
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
@@ -23,7 +23,6 @@ from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, temperature_of, use_of
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
-from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from mffit.viewer.named import tell_apart

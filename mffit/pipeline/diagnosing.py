@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from threadpoolctl import threadpool_limits
 
 import tir
+from mffit import as_json
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points, wording
@@ -28,7 +29,6 @@ from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
-from mffit.results import as_json
 from tir import Tyre
 
 WRITTEN = ("diagnosis.json", "diagnosis.html")

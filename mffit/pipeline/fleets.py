@@ -11,6 +11,7 @@ from pathlib import Path
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
+from mffit import as_json
 from mffit import fleet as combining
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
@@ -22,7 +23,6 @@ from mffit.pipeline.build_output import numbers
 from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_sharing
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
-from mffit.results import as_json
 from mffit.rig_errors import OF_RUN
 from mffit.viewer.named import tell_apart
 from tir import Quantity, Tyre

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import tir
+from mffit import as_json
 from mffit import config as configuration
 from mffit import measured as direct
 from mffit import parts as decomposition
@@ -23,7 +24,6 @@ from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.points import Points
 from mffit.points.loading import Reading
-from mffit.results import as_json
 from mffit.suspicion import JudgedMeasurement, Trust, judge
 from tir import Tyre
 

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
+from mffit import as_json, planning
 from mffit import config as configuration
-from mffit import planning
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
@@ -26,7 +26,7 @@ from mffit.planning.prospect import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import column
-from mffit.results import BuildResult, as_json
+from mffit.results import BuildResult
 
 WRITTEN = ("plan.json", "plan.html")
 SHEETS = "runs"

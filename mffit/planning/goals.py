@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from mffit.as_json import keys
 from mffit.errors import InputError, meant
 from mffit.fit.relaxation import DIRECTIONS
 from mffit.quantities import CHANNELS, DIRECT
@@ -34,6 +35,9 @@ class Goal:
             BANDS: f"95 % band of {self.name}, rms",
             FILE: "95 % band of the file over its largest forces, rms",
         }.get(self.kind, f"u({self.name})")
+
+
+keys(Goal, "kind name label unit")
 
 
 def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.config import Config
 from mffit.fit import FitResult
@@ -44,6 +45,9 @@ class PlanStep:
     after: float  #: uncertainty of the goal with the run
 
 
+keys(PlanStep, "**run u_before=before u_after=after")
+
+
 @dataclass(frozen=True, slots=True)
 class NextRun:
     """The run that lowers the uncertainty of a goal most."""
@@ -72,6 +76,15 @@ class Plan(Brief):
     def points(self) -> int:
         """Points of the whole list."""
         return sum(step.run.cost for step in self.steps)
+
+
+keys(
+    Plan,
+    "goal headline promise identified u_now=now u_then=then runs=steps alone=trials",
+    headline="mffit.planning.wording.headline",
+    promise="mffit.planning.wording.promise",
+    identified="mffit.planning.wording.identified_by_now",
+)
 
 
 def plan(

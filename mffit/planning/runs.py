@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.config import Config, SweepTable, setup_names
 from mffit.constants import CAMBER_OF_SLOPES
 from mffit.planning import constants
@@ -41,6 +42,13 @@ class PlannedRun:
         angle = f"-{self.held_deg:.0f}deg" if self.held_deg else ""
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
         return f"{self.addition.id}-{self.load:.0f}N{angle}{pressure}"
+
+
+keys(
+    PlannedRun,
+    "name kind=addition.id title reason=addition.reason points=cost",
+    title="mffit.planning.wording.title",
+)
 
 
 def candidates(config: Config, points: Points) -> tuple[PlannedRun, ...]:

@@ -78,6 +78,11 @@ def promise(plan: Plan) -> str:
     return f"The prediction is for {estimate}. All numbers{size} assume the noise of your present points."
 
 
+def identified_by_now(plan: Plan) -> list[str]:
+    """:func:`identified` of the sweeps of a plan's project."""
+    return identified(plan.identified)
+
+
 def identified(found: Identified) -> list[str]:
     """Sentences on the identifiability by the present sweeps."""
     return [

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.config.lines import line_text
 from mffit.points.faulty import Fault
 from mffit.points.stretch import Stretch
@@ -30,6 +31,9 @@ class LeftOut:
     channel: str = ""  #: "" if the whole reading is meant
     weight: float = 0.0  #: smallest weight in the fit relative to an undoubted reading
     why: str
+
+
+keys(LeftOut, "* rule? channel?")
 
 
 def together(entries: Sequence[LeftOut], most: int) -> list[LeftOut]:

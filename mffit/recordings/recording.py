@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.errors import InputError, meant
 from mffit.points.clock import spread
 from mffit.points.steady import gaps
@@ -44,6 +45,13 @@ class SniffedRecording(NamedTuple):
     remarks: tuple[str, ...]  #: on doubtful columns
     backward: bool = False  #: whether the wheel rolled backwards, by the file's name or a user's choice
     tyre: Mapping[str, StatedByFile] = MappingProxyType({})  #: keys of [tyre] that it states
+
+
+keys(
+    SniffedRecording,
+    "file=path format=kind samples rate_Hz seconds gaps units channels=guesses remarks",
+    units=lambda row: dict(zip(row.headings, row.units, strict=True)),
+)
 
 
 class ChosenFile(NamedTuple):

@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit import config as configuration
+from mffit.as_json import keys
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, is_pattern, matches
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
 from mffit.points.points import Points
-from mffit.points.stretch import MOVE
+from mffit.points.stretch import MOVE, stretch_table
 from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.recording import (
     NOTHING_CHOSEN,
@@ -64,6 +65,15 @@ class Sniffed:
     def points(self) -> Points:
         """Points under the likeliest axes."""
         return self.reading.points
+
+
+keys(
+    Sniffed,
+    "recordings axes conditions points bad_runs stretches warnings",
+    points=lambda found: len(found.points),
+    stretches=lambda found: stretch_table(found.reading.stretches).to_dict("records"),
+    warnings=lambda found: [*found.reading.notes, *found.reading.warnings],
+)
 
 
 @formats.reading_once()

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from mffit.as_json import keys
 from mffit.config.lines import ranges_text
 from mffit.errors import InputError
 from mffit.recordings import constants
@@ -54,6 +55,9 @@ class BadRun(NamedTuple):
     recording: Path
     lines: str  #: all of them, such as "6-24"
     why: str
+
+
+keys(BadRun, "file=recording lines why")
 
 
 def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:

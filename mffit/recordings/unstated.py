@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.config.models import Column
 from mffit.constants import HOTTEST_TREAD
 from mffit.points import levels
@@ -59,6 +60,9 @@ class Guess(NamedTuple):
             return Column(value=self.value)
         given = {"column": self.heading, "unit": self.unit or None, "scale": self.scale}
         return Column.model_validate({**given, "against": self.against, "over": self.over})
+
+
+keys(Guess, "* channel=channel.name")
 
 
 class FoundChannel(NamedTuple):

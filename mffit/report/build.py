@@ -13,9 +13,10 @@ from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, words
-from mffit.report.build_view import PER_LOAD, BuildView, CoefficientRow, view_of
+from mffit.report.build_view import BuildView, CoefficientRow, view_of
 from mffit.report.catalogue import Picture
 from mffit.report.figures import bands, decomposition, fit, missed, radii, residuals, slip, spin
+from mffit.report.text.direct import PER_LOAD
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS

@@ -16,8 +16,6 @@ from mffit.results import BuildResult
 from mffit.scatter import finite_median
 from tir.parameters import BY_NAME, Parameter
 
-PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
-"""Results of the direct method at every load, in the order of the tables."""
 NOT_DECIDED = ("base", "converted", "default", "given", "range")
 """Statuses of values that neither the data nor a model of them decided."""
 

@@ -7,4 +7,5 @@ from mffit.on_demand import on_demand
 if TYPE_CHECKING:
     from mffit.results.records import CORRECTION, BuildOutcome, BuildResult
 
+__all__ = ["CORRECTION", "BuildOutcome", "BuildResult"]
 __getattr__ = on_demand(__name__)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from mffit.as_json import document, keys
 from mffit.brief import Brief
 from mffit.measured import Alignment, Measured
 from mffit.planning import NextRun
@@ -20,6 +21,9 @@ class Arrival:
     points: int = 0
     why: str = ""  #: why it is refused
     sweep: str = ""  #: the [[sweep]] with which it is read, if ``tyre.toml`` has none
+
+
+keys(Arrival, "file state points why? sweep?")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -47,3 +51,12 @@ class WatchedCampaign(Brief):
         """How far the campaign is."""
         there = len(self.taken)
         return f"{there} of {there + len(self.awaited)} files, {self.points} points"
+
+
+keys(
+    WatchedCampaign,
+    "headline changed taken awaited points ±epsilon_gamma before=before.value alignment next spin=measured warnings problem?",
+    next=lambda found: (
+        found.next_run and {**document(found.next_run.step), "goal": found.next_run.goal.label}
+    ),
+)

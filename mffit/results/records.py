@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from mffit.as_json import Json, document, keys, plain
 from mffit.brief import Brief
 from mffit.config import Config
 from mffit.diagnosis.remains import NOTHING_REMAINS, Remains
@@ -17,7 +18,7 @@ from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.prediction import CorrectionTable, MissedAtReadings, Predictor
+from mffit.prediction import CorrectionTable, MissedAtReadings, Predictor, missed_sentence
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
@@ -97,6 +98,40 @@ class BuildResult(Brief):
         return self.files[self.plain]
 
 
+keys(
+    BuildResult,
+    "trusted reasons in_doubt=trust.doubts tyre=config.tyre spin=measured fit residuals remarks=trust.remarks "
+    "tir=tir_path files made lab=config.lab left_out warnings doubts=fit.doubts outliers=fit.outliers",
+    fit=lambda found: _fit(found.fit, found.trust.over_noise),
+    residuals=lambda found: _residuals(found.remains, found.missed),
+    files=lambda found: {
+        **found.files,
+        **({"correction": found.correction_name} if found.correction else {}),
+    },
+)
+
+
+def _fit(found: FitResult, over_noise: Mapping[str, float]) -> dict[str, Json]:
+    """The ``fit`` part of ``result.json``; ``over_noise`` is the ratio of misfit to stated noise, by channel."""
+    channels: dict[str, Json] = {
+        name: {**document(row), "over_noise": over_noise.get(name)} for name, row in found.channels.items()
+    }
+    return document(found) | {"channels": channels}
+
+
+def _residuals(remains: Remains, missed: Mapping[str, MissedAtReadings]) -> dict[str, Json]:
+    """The ``residuals`` part of ``result.json``.
+
+    Where model error at the readings is proven, ``rms`` is that of the written file, and ``most`` is the region of its maximum.
+    """
+    found = document(remains)
+    for name, one in missed.items():
+        of_channel = found["missed"][name]  # type: ignore[call-overload, index]
+        of_channel |= {"rms": one.size, "of_file": one.size, "most": plain(one.region)}  # type: ignore[operator]
+        of_channel["sentence"] = missed_sentence(one)
+    return found
+
+
 State = Literal["built", "unchanged", "refused", "failed"]
 
 
@@ -126,3 +161,10 @@ class BuildOutcome:
     def trusted(self) -> bool:
         """Whether the output is complete and there is no reason against the result."""
         return self.whole and not self.reasons
+
+
+keys(
+    BuildOutcome,
+    "tyre_toml=source name out state sentence? seconds epsilon_gamma rmse=misfit warnings trusted reasons in_doubt tir=file?",
+    trusted=lambda found: found.trusted if found.whole else None,
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from mffit.as_json import Estimates
 from mffit.rig_errors.catalog import BY_NAME, MEANINGS, RIG_ERRORS, UNITS, WORDS
 from mffit.rig_errors.record import RigError
 
@@ -20,6 +21,11 @@ def number_of(name: str, part: str) -> str:
 def unit_of(name: str) -> str:
     """Unit of a rig number, for the whole test or one part."""
     return UNITS[name.partition(OF_RUN)[0]]
+
+
+def rig_estimates(numbers: Estimates) -> dict[str, object]:
+    """JSON of rig numbers with their standard errors and units."""
+    return {n: {"value": value, "stderr": u, "unit": unit_of(n)} for n, (value, u) in numbers.items()}
 
 
 def meaning_of(name: str) -> str:

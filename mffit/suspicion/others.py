@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.special import chdtrc, ndtr
 
+from mffit.as_json import keys
 from mffit.constants import PREDICTION_FALSE_ALARM
 from mffit.errors import InputError
-from mffit.linearised import LinearisedFit
-from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -26,6 +25,10 @@ from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
 from mffit.suspicion.rule import Finding, Outcome, When, rule
+
+if TYPE_CHECKING:
+    from mffit.linearised import LinearisedFit
+    from mffit.linearised.mixed import LeftOutReadings
 
 
 class FittedModel(NamedTuple):
@@ -112,6 +115,9 @@ class Doubt:
         """The warning about the sweep."""
         explained = f"; it looks like {self.looks}" if self.looks else ""
         return doubtful_sweep.said({"sweep": self.sweep, "explained": explained, **self.errors[0].facts})
+
+
+keys(Doubt, "sweep file channel rms ratio share looks_like=looks?")
 
 
 def after_the_fit(campaign: JudgedSweeps) -> tuple[Doubt, ...]:

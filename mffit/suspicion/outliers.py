@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -29,6 +30,9 @@ class Outlier:
     @property
     def place(self) -> str:
         return f"{self.file}:{self.line}" if self.line else self.file
+
+
+keys(Outlier, "file line? sweep channel measured expected ratio")
 
 
 def outliers(

@@ -14,11 +14,12 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import chdtr, chdtrc, fdtrc, ndtr, ndtri
 
+from mffit.as_json import keys
 from mffit.constants import (
     CAMBER_OF_SLOPES,
     FALSE_ALARM,
@@ -26,8 +27,6 @@ from mffit.constants import (
     NAMED_IN_SENTENCE,
     ODD_SWEEP_RATIO,
 )
-from mffit.linearised import LinearisedFit
-from mffit.linearised.inputs import word_of
 from mffit.measured import Drift, LoadResult, SideslipZeros
 from mffit.measured.result import path_in_words
 from mffit.points import Points
@@ -42,6 +41,9 @@ from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, When, rule
 from mffit.suspicion.unpublished import causes
 from tir.errors import listed
+
+if TYPE_CHECKING:
+    from mffit.linearised import LinearisedFit
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,9 @@ class HeldNumber:
     physical: bool = (
         False  #: whether the limit is one of the curves, such as E <= 1, and not that of published tyres
     )
+
+
+keys(HeldNumber, "name sigma share")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -479,6 +484,8 @@ def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Evidence of a smooth miss, where the noise is stated and the miss is no more than it."""
+    from mffit.linearised.inputs import word_of
+
     for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():
         over = [word_of(one) for one in channel.proven_over] if channel.is_proven else []
         if over:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.results.values import Json
+from mffit.as_json import Json
 
 SIZES = ("u1", "i1", "u2", "i2", "i4")
 """Types of whole numbers, the smallest first."""

@@ -12,9 +12,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 import mffit
+from mffit.as_json import Json
 from mffit.errors import InputError
 from mffit.quantities import MODEL, QuantityName
-from mffit.results.values import Json
 from mffit.templates import environment
 from mffit.viewer.controls import OUTPUTS, PANELS, in_si, settings
 from mffit.viewer.named import Given, described, named

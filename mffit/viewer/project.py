@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import mffit
+from mffit.as_json import Json, document
 from mffit.fit import name_at_temperature
 from mffit.fit.agreement import with_points
 from mffit.fit.influences.modelled import without_runs
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
-from mffit.results.values import Json, document
 from mffit.rig import SIMULATED
 from mffit.templates import environment
 from mffit.viewer.page import Page, on_page

@@ -16,8 +16,8 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
+from mffit.as_json import plain
 from mffit.errors import InputError
-from mffit.results.values import plain
 from mffit.sweeps.formats import ENDINGS
 from mffit.templates import environment
 from mffit.viewer import project_html

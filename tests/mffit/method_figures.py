@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import mffit
 from mffit import made
-from mffit.results.values import Json, plain
+from mffit.as_json import Json, plain
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 PROJECTS = ("front-120-70", "flat-track", "flat-track-combined")

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from mffit.results import BuildOutcome, as_json
-from mffit.results.values import _KEYS, UNIT, keys, plain, text
+from mffit import as_json
+from mffit.as_json import _KEYS, UNIT, keys, plain, text
+from mffit.results import BuildOutcome
 from mffit.suspicion import Outlier
 from tir import Quantity
 

@@ -12,7 +12,7 @@ from small_rigs import MZ, SAMPLE, built, disc, flat, simulated, truth
 
 import mffit
 import tir
-from mffit import config
+from mffit import as_json, config
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
@@ -21,7 +21,6 @@ from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.provenance import fitted_to, rig_of_build
 from mffit.pipeline.refining import undistorted
 from mffit.progress import remaining
-from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
 MOMENT = [effect for effect in CATALOG if effect.id in ("loadcell-offset-mz", "residual-torque-camber")]

@@ -89,8 +89,8 @@ def other(value: object, factor: float) -> object:
 def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, object]:
     """What the commands say of the projects, by command and key; the sentence of a failure in its place."""
     import mffit
+    from mffit.as_json import plain
     from mffit.pipeline.planning import plan_of
-    from mffit.results.values import plain
 
     found: dict[str, object] = {}
     for project in projects:

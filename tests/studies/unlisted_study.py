@@ -31,8 +31,8 @@ from rig_error_study import NOT_DECLARED, numbers
 
 import mffit
 import tir
+from mffit import as_json
 from mffit.errors import InputError
-from mffit.results import as_json
 from tir.parameters import TABLE
 
 Edit = Callable[[dict[str, Any], np.random.Generator], None]

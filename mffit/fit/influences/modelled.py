@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.fit import agreement
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
@@ -20,7 +21,7 @@ from mffit.points import Points
 from mffit.prediction import Predictor, predictor
 from mffit.prediction.predictor import T_REF
 from mffit.rig import Simulation
-from mffit.rig_errors import OF_RUN
+from mffit.rig_errors import OF_RUN, rig_estimates
 from mffit.scatter import ALARM
 from tir.temperature import SCALED_BY
 
@@ -35,6 +36,13 @@ class BetweenRuns:
     values: Mapping[str, tuple[tuple[float, float], ...]]
     """Number -> (value, standard error) of every run [-]."""
     alone: Mapping[str, Agreement]  #: by channel, agreement of the model without the random effects
+
+
+keys(
+    BetweenRuns,
+    "names=runs scatter channels_without=alone",
+    scatter=lambda found: rig_estimates(found.scatter),
+)
 
 
 def between_runs(found: NuisanceFit, points: Points) -> BetweenRuns | None:
@@ -77,6 +85,17 @@ class AtTemperature:
     moved: Mapping[str, tuple[float, float, float]]
     """Coefficient -> (value in the plain file, value here, standard error here) if they clearly differ, largest change first."""
     prediction: Predictor = field(repr=False)  #: of forces at any conditions and tested temperatures
+
+
+keys(
+    AtTemperature,
+    "T_ref_degC T_min_degC=T_range.0 T_max_degC=T_range.1 terms channels without_terms=alone left_out_rmse coefficients moved",
+    terms=lambda found: rig_estimates(found.terms),
+    left_out_rmse=lambda found: {"temperature": found.left_out, "plain": found.left_out_plain},
+    moved=lambda found: {
+        name: {"plain": there, "value": here, "stderr": u} for name, (there, here, u) in found.moved.items()
+    },
+)
 
 
 def at_temperature(

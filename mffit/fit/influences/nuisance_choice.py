@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.config import Config
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.errors import InputError
@@ -34,6 +35,13 @@ class Verdict:
     """Errors of left-out sweeps without the influence, if computed."""
     beside: Gaps = field(default_factory=dict)
     """Errors of left-out sweeps with the influence, if computed."""
+
+
+keys(
+    Verdict,
+    "id=nuisance.id name=nuisance.name modelled reason numbers=nuisance.numbers left_out_rmse",
+    left_out_rmse=lambda row: {"with": row.beside, "without": row.without} if row.beside else None,
+)
 
 
 @dataclass(frozen=True, slots=True)

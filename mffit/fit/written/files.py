@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from mffit.as_json import document, keys
 from mffit.config import Config
 from mffit.fit import constants
 from mffit.fit.known import Known
@@ -49,6 +51,30 @@ class Files:
             for use, file in self.by_use.items()
         }
         return replace(self, by_use=by_use)
+
+
+keys(
+    Files,
+    "**by_use ranges",
+    by_use=lambda files: {use: _file(files, use) for use in files.by_use},
+    ranges=lambda files: {"tested": files.tested, "written": files.written},
+)
+
+
+def _file(files: Files, use: str) -> dict[str, object]:
+    """JSON of a written file: its misfits, and for the file without turn slip also the forces that it lacks."""
+    file, out = files.by_use[use], dict[str, object](document(files.by_use[use]))
+    if use in files.changed:
+        out["coefficients"] = {name: file.tyre[name] for name in files.changed[use]}
+    if use == "normal" and files.lacking:
+        limit = files.camber_limit
+        out |= {
+            "camber_stiffness_loss": files.stiffness_loss,
+            "weight": files.weight,
+            "camber_max_deg": None if limit is None else math.degrees(limit),
+            "turn_slip_force_lacking_N": {f"{r:g} m": force for r, force in files.lacking.items()},
+        }
+    return out
 
 
 def make_files(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.as_json import keys
 from mffit.fit.rig.zeros import BESIDE_ZERO
 from mffit.fit.written.road import Road, forces, inside, weights
 from mffit.scatter import rms
@@ -40,6 +41,13 @@ class FileFigures:
     def straight(self) -> Mapping[str, Misfit]:
         """By channel, misfit on a straight path in the file's use; for a file of both uses, with turn slip off."""
         return self.misfit["straight"]
+
+
+keys(
+    FileFigures,
+    "USE_MODE **misfit camber_stiffness_N_per_rad",
+    USE_MODE=lambda file: int(file.tyre["USE_MODE"]),
+)
 
 
 def figures(

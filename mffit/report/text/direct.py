@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
 from mffit.measured.result import FINITE_SPIN, SetupResult
 from mffit.quantities import CONDITIONS, DIRECT
-from mffit.report.build_view import PER_LOAD
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, stated, with_u
 
@@ -16,6 +15,8 @@ NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "C_alpha_s
 """Results at the load nearest to the nominal one, in this order."""
 MAIN = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha")
 """Those that a user came for."""
+PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
+"""Results of the direct method at every load, in the order of the tables."""
 EXPLAINED = {
     "C_gamma": " (slope on the path)",
     "C_alpha": " (slope on the path)",

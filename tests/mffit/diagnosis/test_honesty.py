@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit import as_json
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.notes import NotVisible, OneSweep, WithoutNoise
 from mffit.diagnosis.rest import Answer, RestKind
 from mffit.diagnosis.strangers import another_tyre
 from mffit.errors import InputError
-from mffit.results import as_json
 
 
 def test_a_right_model_has_no_gap(right_model, nothing):

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mffit import as_json
 from mffit.diagnosis import wording
 from mffit.diagnosis.answer import answered
 from mffit.diagnosis.bumps import Bump
@@ -31,7 +32,6 @@ from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
 from mffit.report import text
-from mffit.results import as_json
 from mffit.rig_errors import BY_NAME as RIG_ERRORS_BY_NAME
 from mffit.suspicion import Outlier
 from tir import Quantity

@@ -11,6 +11,7 @@ import pytest
 
 import mffit
 import tir
+from mffit import as_json
 from mffit.config.models import NormalTable
 from mffit.diagnosis.notes import ModelFittedFirst
 from mffit.fit.comments import whole_words
@@ -19,7 +20,6 @@ from mffit.fit.written.normal import derive
 from mffit.fit.written.road import forces, inside, road_grid, weights
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
-from mffit.results import as_json
 from mffit.tested import end_tested
 from tir.checking import check
 from tir.parameters import TABLE

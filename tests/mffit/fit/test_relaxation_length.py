@@ -11,6 +11,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter
 
 import tir
+from mffit import as_json
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import (
@@ -24,7 +25,6 @@ from mffit.points import Points
 from mffit.points.loading import read
 from mffit.points.points import make_points
 from mffit.points.steps import steps
-from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.sweeps import load
 from tir import Quantity

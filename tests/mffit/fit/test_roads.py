@@ -9,10 +9,10 @@ import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
-from mffit.config.models import NormalTable
+from mffit.config.models import NormalTable, given_values
 from mffit.fit import ranges
 from mffit.fit.comments import file_comments
-from mffit.fit.known import Known, given_values, known_before_fit
+from mffit.fit.known import Known, known_before_fit
 from mffit.fit.wording import file_sentences, ranges_sentence
 from mffit.fit.written.files import file_names, make_files
 from mffit.fit.written.road import Road, inside, road_grid, weights

@@ -11,12 +11,12 @@ import pytest
 from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, settings, share
 from scipy.stats import t as student
 
+from mffit import as_json
 from mffit.errors import InputError
 from mffit.measured import Contribution, measure, wording
 from mffit.measured.uncertain import expanded
 from mffit.parts import split
 from mffit.points.points import concatenate
-from mffit.results import as_json
 
 LOADS = (1000.0, 1500.0, 2000.0)
 

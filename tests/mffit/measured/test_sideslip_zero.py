@@ -10,11 +10,11 @@ from plain_tyre import Plain, settings, share
 from scipy.stats import chi2
 from uncertainties import ufloat
 
+from mffit import as_json
 from mffit.measured import measure
 from mffit.measured.axis import ZeroSplit, camber_at_true_zero
 from mffit.parts import split
 from mffit.points.points import concatenate
-from mffit.results import as_json
 
 LOADS = (1000.0, 1500.0, 2000.0)
 OFF = math.radians(0.35)

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from mffit import as_json
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
 from mffit.planning import BY_ID, Identified, Plan, PlannedRun, PlanStep, read_goal, wording
-from mffit.results import as_json
 
 IDENTIFIED = Identified(
     cover=(

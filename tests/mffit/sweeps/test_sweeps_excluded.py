@@ -7,10 +7,9 @@ import pandas as pd
 import pytest
 
 import mffit
-from mffit import config, points
+from mffit import as_json, config, points
 from mffit.errors import InputError
 from mffit.pipeline.inputs import read_points
-from mffit.results import as_json
 
 
 def excluding(project, *entries):

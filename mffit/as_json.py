@@ -1,6 +1,6 @@
-"""JSON of records.
+"""JSON of records, with the keys that users' scripts rely on.
 
-The keys of a record are its fields, unless :func:`keys` states other keys for its class: their order, attributes and units.
+The keys of a record are its fields, unless :func:`keys` states others beside its class: their order, attributes and units.
 Standard JSON has no NaN and no infinity; both become null.
 """
 
@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from datetime import date
 from enum import Enum
+from importlib import import_module
 from pathlib import Path
 from typing import TypeVar, Union
 
@@ -33,10 +34,12 @@ FROM_SI: Mapping[str, Callable[[float], float]] = {
 }
 """Conversion from SI, by the unit of the key; values in other units need none."""
 
-_KEYS: dict[type, tuple[str, Mapping[str, Callable[..., object]]]] = {}
+_KEYS: dict[type, tuple[str, Mapping[str, Callable[..., object] | str]]] = {}
+Estimates = Mapping[str, tuple[float, float]]
+"""Numbers with their standard errors, by name."""
 
 
-def keys(record: type[Record], words: str, /, **computed: Callable[[Record], object]) -> None:
+def keys(record: type[Record], words: str, /, **computed: Callable[[Record], object] | str) -> None:
     """State the JSON keys of a class of records.
 
     Parameters
@@ -46,7 +49,8 @@ def keys(record: type[Record], words: str, /, **computed: Callable[[Record], obj
         ``*`` takes all fields. ``key=path`` takes another attribute, such as ``best.effect`` or ``limits.0``. ``±key`` adds
         the standard uncertainty of a quantity. ``**key`` inserts the entries of a mapping or record. ``key?`` is null if
         the value is empty; ``[key]`` is left out if it is None.
-    computed : functions that compute the values of keys from the record
+    computed : functions that compute the values of keys from the record; where a function's module needs the record, as those
+        with sentences do, its dotted name, which is imported on first use
     """
     _KEYS[record] = (words, computed)
 
@@ -65,13 +69,21 @@ def _entries(record: object) -> Iterator[tuple[str, Json]]:
             yield from ((name, plain(getattr(record, name))) for name in _fields(record))
             continue
         name, _, path = word.strip("±*?[]").partition("=")
-        value = computed[name](record) if name in computed else _attribute(record, name, path)
+        value = _computed(computed[name], record) if name in computed else _attribute(record, name, path)
         if word.startswith("±"):
             yield from with_u(name, value).items()
         elif word.startswith("**"):
             yield from document(value).items()
         elif value is not None or not word.startswith("["):
             yield name, plain(value or None) if word.endswith("?") else plain(value)
+
+
+def _computed(function: Callable[..., object] | str, record: object) -> object:
+    if isinstance(function, str):
+        module, _, name = function.rpartition(".")
+        function = getattr(import_module(module), name)
+        assert callable(function)
+    return function(record)
 
 
 def _fields(record: object) -> list[str]:
@@ -133,6 +145,11 @@ def plain(value: object) -> Json:
         return dict(_entries(value))
     assert isinstance(value, list | tuple | np.ndarray), type(value)
     return [plain(item) for item in value]
+
+
+def estimates(numbers: Estimates) -> dict[str, object]:
+    """JSON of numbers with their standard errors."""
+    return {name: {"value": value, "stderr": u} for name, (value, u) in numbers.items()}
 
 
 def text(content: object) -> str:
