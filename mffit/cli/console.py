@@ -6,6 +6,7 @@ import functools
 import json
 import os
 import re
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
@@ -25,14 +26,13 @@ NOT_TRUSTED = 3
 @contextmanager
 def progress() -> Iterator[Progress]:
     """A spinner with the current step on a terminal; nothing elsewhere."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
+    if not sys.stderr.isatty():
         yield silent
         return
+    from rich.console import Console
+
     begun = time.monotonic()
-    with console.status("starting") as status:
+    with Console(stderr=True).status("starting") as status:
         yield lambda sentence: status.update(ShownStep(sentence, begun))  # which a terminal shows anew
 
 
@@ -58,7 +58,7 @@ class Voice:
     def give(self, content: object) -> None:
         """Print a record, or what is made of some, for programs if ``--json`` asks for it."""
         if self.json:
-            from mffit.results import as_json
+            from mffit import as_json
 
             click.echo(as_json.text(content), nl=False)
 

@@ -1,9 +1,14 @@
 """Comparison of two property files, of a file with measured points, or of two builds."""
 
-from mffit.comparison.characteristics import DECIDED_BY, characteristics
-from mffit.comparison.compare import against_points, between
-from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
-from mffit.comparison.wording import note_on_temperature
+from typing import TYPE_CHECKING
+
+from mffit.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from mffit.comparison.characteristics import DECIDED_BY
+    from mffit.comparison.compare import against_points, between
+    from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
+    from mffit.comparison.wording import note_on_temperature
 
 __all__ = [
     "DECIDED_BY",
@@ -13,6 +18,6 @@ __all__ = [
     "Difference",
     "against_points",
     "between",
-    "characteristics",
     "note_on_temperature",
 ]
+__getattr__ = on_demand(__name__)

@@ -9,7 +9,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
-from scipy import constants
+
+from tir.units import FORCE, LENGTH, PRESSURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +46,10 @@ def wrong(sentence: str, key: str = "") -> PydanticCustomError:
 
 TOO_MANY_DIGITS = "has more digits than a number can have; correct it"
 """The sentence about a whole number that no float can hold."""
-LENGTHS = {"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli}
+LENGTHS = {"inches": LENGTH["inch"], "centimetres": LENGTH["cm"], "millimetres": LENGTH["mm"]}
 PRESSURES = {
-    "psi": constants.psi / constants.kilo,
-    "bar": constants.bar / constants.kilo,
-    "pascals": constants.milli,
+    word: PRESSURE[unit] / PRESSURE["kpa"]
+    for word, unit in (("psi", "psi"), ("bar", "bar"), ("pascals", "pa"))
 }
 
 
@@ -72,7 +72,7 @@ Width = Annotated[float, _length(0.01, 1.0)]
 PathRadius = Annotated[float, _length(0.2, 100.0)]
 Length = Annotated[float, _length(1e-3, 100.0)]
 Load = Annotated[
-    float, AfterValidator(Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": constants.kilo}))
+    float, AfterValidator(Range(20.0, 2e5, "N", write="newtons", units={"kilonewtons": FORCE["kn"]}))
 ]
 Temperature = Annotated[float, AfterValidator(Range(-40.0, 200.0, "degC"))]
 Pressure = Annotated[

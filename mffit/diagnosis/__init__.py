@@ -17,9 +17,14 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 Every build uses ``remains`` on the linear model of its own fit, to test every effect together with all fitted numbers.
 """
 
-from mffit.diagnosis.engine import diagnose
-from mffit.diagnosis.result import AcceptedEffect, Diagnosis, corrected_points
-from mffit.diagnosis.validation import Gap, gap, validate
-from mffit.diagnosis.where import where
+from typing import TYPE_CHECKING
 
-__all__ = ["AcceptedEffect", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate", "where"]
+from mffit.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from mffit.diagnosis.engine import diagnose
+    from mffit.diagnosis.result import AcceptedEffect, Diagnosis, corrected_points
+    from mffit.diagnosis.validation import Gap, gap, validate
+
+__all__ = ["AcceptedEffect", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate"]
+__getattr__ = on_demand(__name__)

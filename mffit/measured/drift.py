@@ -5,12 +5,11 @@ A tyre that warms up or wears changes its stiffness from sweep to sweep, so camb
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 from scipy.special import chdtrc
 from uncertainties import UFloat
 
@@ -107,13 +106,24 @@ def _likeliest(left: np.ndarray, slopes: np.ndarray, means: int) -> _Scatter:
     strength, axes = np.linalg.eigh(slopes.T @ slopes / noise)
     strength, pull = np.maximum(strength, 0.0), axes.T @ slopes.T @ left / noise
 
-    def evidence(u: float) -> float:
-        grown = 1.0 + u**2 * strength
-        return float(0.5 * np.sum((u * pull) ** 2 / grown - np.log(grown)))
+    def evidence(u: np.ndarray) -> np.ndarray:
+        grown = 1.0 + u[:, None] ** 2 * strength
+        return np.asarray(0.5 * np.sum((u[:, None] * pull) ** 2 / grown - np.log(grown), axis=1))
 
-    scatter = float(minimize_scalar(lambda u: -evidence(u), bounds=(0.0, 1.0), method="bounded").x)
+    scatter, gain = _highest(evidence, 0.0, 1.0)
     variance = scatter**2 / (1.0 + scatter**2 * strength)
-    return _Scatter(scatter, evidence(scatter), axes @ (variance * pull), axes * np.sqrt(variance))
+    return _Scatter(scatter, gain, axes @ (variance * pull), axes * np.sqrt(variance))
+
+
+def _highest(of: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> tuple[float, float]:
+    """The place and value of the maximum of a function of one number, from ever finer grids around the best place so far."""
+    while True:
+        grid = np.linspace(low, high, 101)
+        values = of(grid)
+        best = int(np.argmax(values))
+        if high - low < 1e-6:
+            return float(grid[best]), float(values[best])
+        low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
 
 
 class _Condition(NamedTuple):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import median_filter
+import scipy  # its parts are loaded on first use
 
 from mffit.constants import FALSE_ALARM
 from mffit.points import constants
@@ -77,7 +77,7 @@ def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
     """Samples far from the median of their neighbours."""
     values = getattr(sweep, channel)
     smallest = constants.SPIKE * _usual_load(sweep) * (constants.ARM if channel == "Mz" else 1.0)
-    away = np.abs(values - median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
+    away = np.abs(values - scipy.ndimage.median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
     return np.asarray(away > np.fmax(_span_of_noise(len(sweep)) * robust(away), smallest))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy  # its parts are loaded on first use
 
 from mffit.points import constants
 from mffit.points.points import Points, of_si
@@ -25,7 +25,10 @@ def ranges_of(sweep: Sweep, faulty: np.ndarray) -> Ranges:
     if not np.any(sound):
         return {}
     lag = samples_in(sweep.time, constants.COMPARED_APART)
-    smooth = {name: uniform_filter1d(getattr(sweep, name)[sound], lag, mode="nearest") for name in STEP}
+    smooth = {
+        name: scipy.ndimage.uniform_filter1d(getattr(sweep, name)[sound], lag, mode="nearest")
+        for name in STEP
+    }
     return {name: (float(np.min(x)), float(np.max(x))) for name, x in smooth.items()}
 
 

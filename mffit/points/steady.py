@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy  # its parts are loaded on first use
 
 from mffit.constants import FALSE_ALARM
 from mffit.points import constants
@@ -187,7 +187,7 @@ def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) ->
     """
     values = getattr(settings, name)[begin:end]
     lag = samples_in(settings.time, constants.AVERAGED_TIME)
-    smooth = uniform_filter1d(values, lag, mode="nearest")
+    smooth = scipy.ndimage.uniform_filter1d(values, lag, mode="nearest")
     most = constants.SWEPT_SHARE * np.ptp(smooth)
     crossed = most * constants.AVERAGED_TIME / constants.COMPARED_APART
     usual = constants.GAP_OVER_STEP * float(np.median(np.abs(smooth[lag:] - smooth[:-lag])))
@@ -234,7 +234,9 @@ def _smoothed(settings: SteadySettings, name: str) -> tuple[np.ndarray, float]:
     values = getattr(settings, name)
     lag = samples_in(settings.time, constants.COMPARED_APART)
     clear = beyond(FALSE_ALARM / len(values))  # corrected for n comparisons
-    return uniform_filter1d(values, lag, mode="nearest"), float(clear * _noise(values) * np.sqrt(2.0 / lag))
+    return scipy.ndimage.uniform_filter1d(values, lag, mode="nearest"), float(
+        clear * _noise(values) * np.sqrt(2.0 / lag)
+    )
 
 
 def _changes(values: np.ndarray, step: float | np.ndarray, lag: int) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mffit.comparison import DECIDED_BY, characteristics
+from mffit.comparison.characteristics import DECIDED_BY, characteristics
 from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import number, stated, times

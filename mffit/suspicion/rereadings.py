@@ -9,12 +9,11 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from mffit.constants import EXPLAINED_SHARE
-from mffit.linearised.mixed import LeftOutReadings
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.quantities import column as heading
@@ -23,9 +22,12 @@ from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
 from mffit.sweeps.units import factor
 
+if TYPE_CHECKING:
+    from mffit.linearised.mixed import LeftOutReadings
+
 Signs = Mapping[str, float]
 """+1 or -1 by channel: from ISO-W to the rig's axes."""
-Errors = Mapping[str, LeftOutReadings]
+Errors: TypeAlias = "Mapping[str, LeftOutReadings]"
 """By channel, prediction errors of the measured readings."""
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.special import fdtrc
 
 from mffit.constants import FALSE_ALARM
-from mffit.linearised.inputs import LEVELS, inputs_of, swept_of
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.scatter import rms
@@ -35,6 +34,8 @@ class Reversals:
     """The turns of the moving sweeps of some points (n,), in the order of measuring."""
 
     def __init__(self, points: Points) -> None:
+        from mffit.linearised.inputs import inputs_of, swept_of  # after a fit only
+
         swept = swept_of(points, inputs_of(points))
         x = np.full(len(points), np.nan)
         for k, name in swept.items():
@@ -96,6 +97,8 @@ def _senses(points: Points, x: np.ndarray, swept: Mapping[int, str]) -> np.ndarr
     """Sign (n - 1,) of the step of the swept condition ``x`` (n,) to the next reading; 0 where another condition changes."""
     same = points.sweep[1:] == points.sweep[:-1]
     names = np.array([swept[k] for k in points.sweep.tolist()])[:-1]
+    from mffit.linearised.inputs import LEVELS
+
     for name, kind in LEVELS.items():
         apart = np.abs(np.diff(levels.in_tolerances(getattr(points, name), kind)))
         same &= (apart < 1.0) | (names == name)

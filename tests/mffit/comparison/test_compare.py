@@ -19,7 +19,8 @@ import mffit
 import tir
 from mffit import fleet
 from mffit.cli import main
-from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
+from mffit.comparison import ComparedSubject, Difference, between, wording
+from mffit.comparison.characteristics import characteristics
 from mffit.comparison.record import ranked
 from mffit.constants import TERMINAL_LINES
 from mffit.errors import InputError

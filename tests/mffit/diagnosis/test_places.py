@@ -10,7 +10,7 @@ import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config
-from mffit.diagnosis import diagnose, where
+from mffit.diagnosis import diagnose
 from mffit.diagnosis.bumps import _bells, bump_scan
 from mffit.diagnosis.inexact import declared
 from mffit.diagnosis.needs import MET, missing, possible
@@ -20,6 +20,7 @@ from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.rest import RestKind
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import refuse_strangers
+from mffit.diagnosis.where import where
 from mffit.effects import CATALOG, OF_CHANNEL
 from mffit.errors import InputError
 from mffit.fit.plan import channels_of

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.diagnosis import diagnose, gap, where
+from mffit.diagnosis import diagnose, gap
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import contest
 from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import SeparatingRun, separation
 from mffit.diagnosis.validation import validate
+from mffit.diagnosis.where import where
 from mffit.effects import CATALOG
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
