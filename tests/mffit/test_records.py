@@ -18,7 +18,7 @@ import tir
 from mffit.effects import CATALOG
 from mffit.made import METHOD, source
 from mffit.report import text
-from mffit.results.values import plain
+from mffit.as_json import plain
 
 LAB = {
     "order": "T-1234",
