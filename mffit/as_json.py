@@ -20,6 +20,7 @@ from typing import TypeVar, Union
 import numpy as np
 from pydantic import BaseModel
 
+from mffit.rounding import AtLeast
 from tir import Quantity
 
 Json = Union[None, bool, int, float, str, list["Json"], dict[str, "Json"]]  # noqa: UP007  it names itself
@@ -140,7 +141,8 @@ def plain(value: object) -> Json:
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, Quantity):
-        return {"value": plain(value.value), "u": plain(value.u)}
+        least = {"at_least": True} if isinstance(value, AtLeast) else {}
+        return {"value": plain(value.value), "u": plain(value.u), **least}
     if is_dataclass(value) or hasattr(value, "_fields"):
         return dict(_entries(value))
     assert isinstance(value, list | tuple | np.ndarray), type(value)

@@ -12,6 +12,12 @@ UNKNOWN = "–"
 PLAIN = str.maketrans({MINUS: "-", "±": "+-", "×": "x", UNKNOWN: "-"})
 
 
+class AtLeast(Quantity):
+    """A largest force or moment that was reached at the end of the tested slip, where the curve does not fall: no peak."""
+
+    __slots__ = ()
+
+
 def ascii_only(text: str) -> str:
     """The text in characters that any terminal shows and any program reads back."""
     return text.translate(PLAIN)
@@ -88,7 +94,8 @@ def stated(quantity: Quantity | None, unit: str = "", scale: float = 1.0) -> str
     """A measured quantity with its uncertainty; a dash where it was not measured."""
     if quantity is None:
         return UNKNOWN
-    return with_u(scale * quantity.value, scale * quantity.u, unit)
+    least = "at least " if isinstance(quantity, AtLeast) else ""
+    return least + with_u(scale * quantity.value, scale * quantity.u, unit)
 
 
 def as_good_as(value: float | None, u: float | None) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from tir import Tyre
+
 
 def words_on_tested(end: float, unit: str) -> str:
     """The comment on a limit of a range, up to which it was tested."""
@@ -14,3 +16,9 @@ def end_tested(comment: str) -> float | None:
     """The tested limit in SI; None if the comment has none."""
     found = re.search(r"\btested to (-?[\d.]+(?:e[+-]?\d+)?)", comment)
     return float(found[1]) if found else None
+
+
+def tested_limit(tyre: Tyre, key: str) -> float:
+    """The limit of a range in SI: the tested one if the file states it, else that of the file."""
+    found = end_tested(tyre.status.get(key, ""))
+    return float(tyre[key]) if found is None else found

@@ -5,17 +5,19 @@ from typing import TYPE_CHECKING
 from mffit.on_demand import on_demand
 
 if TYPE_CHECKING:
-    from mffit.comparison.characteristics import DECIDED_BY
+    from mffit.comparison.characteristics import DECIDED_BY, Tested
     from mffit.comparison.compare import against_points, between
     from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
     from mffit.comparison.wording import note_on_temperature
 
 __all__ = [
     "DECIDED_BY",
+    "PEAKS",
     "ComparedSubject",
     "Comparison",
     "CurveGap",
     "Difference",
+    "Tested",
     "against_points",
     "between",
     "note_on_temperature",

@@ -6,15 +6,17 @@ import math
 from collections.abc import Sequence
 from itertools import chain
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.constants import SLIP_BEYOND_THE_PEAK
+from mffit.constants import COVERAGE_FACTOR_95, SLIP_BEYOND_THE_PEAK, UPRIGHT
 from mffit.fit import Posterior
 from mffit.fit.posterior import spread_through
 from mffit.prediction import Predictor
 from mffit.quantities import CHARACTERISTICS
+from mffit.rounding import AtLeast
+from mffit.tested import tested_limit
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
@@ -22,28 +24,61 @@ from tir.outputs import outputs_of
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
 STEP = 1e-3
 """Step of central differences for slopes at zero [rad, -, 1/m]."""
+PLACES = 201
+"""Places on a curve among which the largest force is found."""
+FALL = "fall behind "
+"""Precedes the name of a largest force: by how much its curve falls from there up to the end of the tested range."""
+
+
+class Decided(NamedTuple):
+    """The readings that determine a number."""
+
+    channel: str
+    over: str  #: the varied angle or slip
+    largest: bool = False  #: the number is the largest of the curve
+
+
 DECIDED_BY = {
-    "C_alpha_N_per_rad": "Fy",
-    "mu_y": "Fy",
-    "K_xk_N": "Fx",
-    "mu_x": "Fx",
-    "C_gamma_N_per_rad": "Fy",
-    "Mz_peak_Nm": "Mz",
-    "C_Mz_alpha_Nm_per_rad": "Mz",
-    "trail_m": "Mz",
+    "C_alpha_N_per_rad": Decided("Fy", "alpha"),
+    "mu_y": Decided("Fy", "alpha", largest=True),
+    "K_xk_N": Decided("Fx", "kappa"),
+    "mu_x": Decided("Fx", "kappa", largest=True),
+    "C_gamma_N_per_rad": Decided("Fy", "gamma"),
+    "Mz_peak_Nm": Decided("Mz", "alpha", largest=True),
+    "C_Mz_alpha_Nm_per_rad": Decided("Mz", "alpha"),
+    "trail_m": Decided("Mz", "alpha"),
 }
-"""By number, the channel whose readings determine it; the numbers that engineers ask for first come first."""
+"""By number, the readings that determine it; the numbers that engineers ask for first come first."""
+PEAKS = tuple(key for key, by in DECIDED_BY.items() if by.largest)
 
 
-def slip_end(tyres: Sequence[Tyre]) -> float:
-    """End of the range of slip, common to some files, that lies farther from zero: negative if it is the braked one.
+class Tested(NamedTuple):
+    """Ends of the ranges that were tested."""
 
-    At most 0.3 to either side; the driven end if both are equally far.
-    """
-    braked = max(float(tyre["KPUMIN"]) for tyre in tyres)
-    driven = min(float(tyre["KPUMAX"]) for tyre in tyres)
-    ends = max(braked, -float(SLIP_BEYOND_THE_PEAK)), min(driven, float(SLIP_BEYOND_THE_PEAK))
-    return ends[0] if -ends[0] > ends[1] else ends[1]
+    alpha: float  #: sideslip [rad], to either side
+    gamma: float  #: camber [rad], to either side
+    kappa: float  #: longitudinal slip; negative if it is the braked end
+
+    @classmethod
+    def of(cls, tyres: Sequence[Tyre]) -> Tested:
+        """The ranges that some files have in common: tested ones as a build writes them, else those of the files.
+
+        Of longitudinal slip the end that lies farther from zero, at most 0.3 away; the driven end if both are equally far.
+        """
+        braked = max(tested_limit(tyre, "KPUMIN") for tyre in tyres)
+        driven = min(tested_limit(tyre, "KPUMAX") for tyre in tyres)
+        ends = max(braked, -float(SLIP_BEYOND_THE_PEAK)), min(driven, float(SLIP_BEYOND_THE_PEAK))
+        alpha, gamma = (min(tested_limit(tyre, key) for tyre in tyres) for key in ("ALPMAX", "CAMMAX"))
+        return cls(alpha, gamma, ends[0] if -ends[0] > ends[1] else ends[1])
+
+    def varied(self, key: str) -> bool:
+        """Whether the angle or slip that a number needs was varied by more than the scatter of a held one."""
+        return bool(abs(getattr(self, DECIDED_BY[key].over)) > UPRIGHT.rad)
+
+    def end(self, key: str) -> str:
+        """The end of the range in which a largest force is looked for, in words."""
+        slip = DECIDED_BY[key].over == "kappa"
+        return f"a slip of {self.kappa:.2g}" if slip else f"{math.degrees(self.alpha):.1f} deg"
 
 
 def characteristics(
@@ -51,55 +86,56 @@ def characteristics(
     load: float,
     *,
     turn_slip: bool,
-    pressure: float | None = None,
-    reach: float | None = None,
-    slip_reach: float | None = None,
+    tested: Tested | None = None,
     known: Posterior | None = None,
     predictor: Predictor | None = None,
 ) -> dict[str, Quantity]:
-    """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
+    """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs; at the file's pressure.
 
-    ``turn_slip``: whether the simulation computes spin; without it there is no turn-slip stiffness. The default of ``pressure``
-    is the file's, that of ``reach``, the largest sideslip of the search for peaks, its ALPMAX, that of ``slip_reach``
-    :func:`slip_end`. Without ``known``, or if a number depends on none of its coefficients, the number's uncertainty is 0.
-    The covariance of ``predictor`` is used for the numbers of its channels, see :data:`DECIDED_BY`; it includes the exchange
-    between coefficients and model error, which leaves the force unchanged.
+    ``turn_slip``: whether the simulation computes spin; without it there is no turn-slip stiffness. ``tested``, by default the
+    file's, are the ranges in which the largest forces are looked for. Such a force is a peak if the curve falls by more than its
+    uncertainty up to the end of that range; otherwise it is :class:`AtLeast` what was reached. Without ``known``, or if a number
+    depends on none of its coefficients, the number's uncertainty is 0. The covariance of ``predictor`` is used for the numbers
+    of its channels, see :data:`DECIDED_BY`; it includes the exchange between coefficients and model error, which leaves the
+    force unchanged.
     """
     every = {}
     if predictor is not None:
         every = {name: Posterior(predictor.names, one.covariance) for name, one in predictor.channels.items()}
     posteriors = [one for one in (known, *every.values()) if one is not None]
     names = [name for name in dict.fromkeys(chain(*(one.names for one in posteriors))) if name in tyre.values]
-    found, slopes = with_slopes(
-        tyre, load, names, turn_slip=turn_slip, pressure=pressure, reach=reach, slip_reach=slip_reach
-    )
+    found, slopes = with_slopes(tyre, load, names, turn_slip=turn_slip, tested=tested)
     of_name = dict(zip(names, slopes.T, strict=True))
-    numbers = {}
-    for i, (key, x) in enumerate(found.items()):
-        one, u = every.get(DECIDED_BY.get(key, ""), known), 0.0
+    u = dict.fromkeys(found, 0.0)
+    for i, key in enumerate(found):
+        by = DECIDED_BY.get(key.removeprefix(FALL))
+        one = known if by is None else every.get(by.channel, known)
         if one is not None:
             slope = [of_name[name][i] if name in of_name else 0.0 for name in one.names]
-            u = float(spread_through(np.array([slope]), one.covariance)[0])
-        numbers[key] = Quantity(x, u, CHARACTERISTICS[key].unit)
+            u[key] = float(spread_through(np.array([slope]), one.covariance)[0])
+    numbers: dict[str, Quantity] = {}
+    for key, known_as in CHARACTERISTICS.items():
+        if key not in found:
+            continue
+        fall = FALL + key
+        risen = fall in found and found[fall] <= COVERAGE_FACTOR_95 * u[fall]
+        numbers[key] = (AtLeast if risen else Quantity)(found[key], u[key], known_as.unit)
     return numbers
 
 
 def with_slopes(
-    tyre: Tyre,
-    load: float,
-    names: Sequence[str],
-    *,
-    turn_slip: bool,
-    pressure: float | None,
-    reach: float | None,
-    slip_reach: float | None,
+    tyre: Tyre, load: float, names: Sequence[str], *, turn_slip: bool, tested: Tested | None
 ) -> tuple[dict[str, float], np.ndarray]:
-    """The numbers of :func:`characteristics` (m,) without uncertainty, and their derivatives (m, k) by some coefficients."""
+    """The numbers of :func:`characteristics` (m,) without uncertainty, and their derivatives (m, k) by some coefficients.
+
+    They include, as :data:`FALL` names it, by how much the curve of each largest force falls up to the end of the slip.
+    """
+    tested = Tested.of([tyre]) if tested is None else tested
     uncertain = traced({name: float(tyre[name]) for name in names})
     values: dict[str, Any] = {**vars(tyre.p), **uncertain}
     p = SimpleNamespace(**values)
     still = {"alpha": 0.0, "gamma": 0.0, "kappa": 0.0, "phi_t": 0.0}
-    still |= {"Fz": load, "pressure": float(tyre["INFLPRES"]) if pressure is None else pressure}
+    still |= {"Fz": load, "pressure": float(tyre["INFLPRES"])}
 
     def at(over: str, x: Any) -> dict[str, Any]:
         return dict(
@@ -110,15 +146,15 @@ def with_slopes(
         below, above = at(over, -STEP), at(over, STEP)
         return {name: (above[name] - below[name]) / (2.0 * STEP) for name in OUTPUTS}
 
-    def peak(over: str, name: str, end: float) -> Any:
-        x = np.linspace(0.0, end, 101)
-        highest = x[np.argmax(np.abs(plain(at(over, x)[name])))]
-        value = at(over, float(highest))[name]
-        return value if plain(value) >= 0.0 else -value
+    def largest(by: Decided) -> tuple[Any, Any]:
+        """The largest force over the tested range, and its fall up to the end."""
+        x = np.linspace(0.0, getattr(tested, by.over), PLACES)
+        place = int(np.argmax(np.abs(plain(at(by.over, x)[by.channel]))))
+        value, end = (at(by.over, float(x[i]))[by.channel] for i in (place, -1))
+        sign = 1.0 if plain(value) >= 0.0 else -1.0
+        return sign * value, sign * (value - end)
 
     by_slip = slopes("alpha")
-    end = float(tyre["ALPMAX"]) if reach is None else reach
-    slip = slip_end([tyre]) if slip_reach is None else slip_reach
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
     found = {
         "epsilon_gamma": values["PECP1"] * (1.0 + values["PECP2"] * dfz),
@@ -126,13 +162,13 @@ def with_slopes(
         "C_gamma_N_per_rad": slopes("gamma")["Fy"],
         "C_Mz_alpha_Nm_per_rad": by_slip["Mz"],
         "K_xk_N": slopes("kappa")["Fx"],
-        "mu_x": peak("kappa", "Fx", slip) / load,
-        "mu_y": peak("alpha", "Fy", end) / load,
-        "Mz_peak_Nm": peak("alpha", "Mz", end),
         "trail_m": -by_slip["Mz"] / by_slip["Fy"] if plain(by_slip["Fy"]) else math.nan,
         "r_e_m": at("alpha", 0.0)["Re"],
     }
     if turn_slip:
         found["C_phit_Nm"] = slopes("phi_t")["Fy"]
+    for key in filter(tested.varied, PEAKS):
+        of_load = load if CHARACTERISTICS[key].unit == "-" else 1.0
+        found[key], found[FALL + key] = (x / of_load for x in largest(DECIDED_BY[key]))
     jacobian = np.array([gradient(x, list(uncertain.values())) for x in found.values()], dtype=float)
     return {key: float(plain(x)) for key, x in found.items()}, jacobian.reshape(len(found), -1)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mffit.comparison import constants, wording
-from mffit.comparison.characteristics import characteristics, slip_end, with_slopes
+from mffit.comparison.characteristics import Tested, characteristics, with_slopes
 from mffit.comparison.record import (
     ComparedSubject,
     Comparison,
@@ -27,6 +27,7 @@ from mffit.points import Points, levels, make_points
 from mffit.points.noise import over_noise
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation
+from mffit.rounding import AtLeast
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
@@ -45,10 +46,10 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     nominal = float(first.tyre["FNOMIN"])
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
+    tested, shared = Tested.of(tyres), _shared(first, second)
     reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX")}
-    reach["kappa"] = slip_end(tyres)
-    shared = _shared(first, second)
-    numbers = [row for load in loads for row in _numbers(first, second, load, reach, shared)]
+    reach["kappa"] = tested.kappa
+    numbers = [row for load in loads for row in _numbers(first, second, load, tested, shared)]
     curves = [gap for load in loads for gap in _curves(first, second, load, reach)]
     return Comparison(
         first=first.name,
@@ -57,7 +58,7 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
         coefficients=_coefficients(first, second, shared),
         curves=tuple(curves),
         sweeps=(),
-        notes=wording.notes_between(first, second, shared),
+        notes=(*wording.notes_between(first, second, shared), *wording.notes_on_peaks(numbers, tested)),
         apart=wording.apart(first, second),
     )
 
@@ -74,19 +75,15 @@ def _numbers(
     first: ComparedSubject,
     second: ComparedSubject,
     load: float,
-    reach: Mapping[str, float],
+    tested: Tested,
     shared: Shared,
 ) -> Iterator[Difference]:
-    """Differences of the numbers of both files at a load [N]; ``reach`` limits the search for peaks."""
+    """Differences of the numbers of both files at a load [N]; the largest forces are those within the slip ``tested``."""
     found, moved = [], []
     for k, side in enumerate((first, second)):
-        at: Any = {"pressure": None, "reach": reach["ALPMAX"], "slip_reach": reach["kappa"]}
+        at: Any = {"turn_slip": side.turn_slip, "tested": tested}
         predictor = None if side.foretold is None else side.foretold[0]
-        found.append(
-            characteristics(
-                side.tyre, load, turn_slip=side.turn_slip, known=side.known, predictor=predictor, **at
-            )
-        )
+        found.append(characteristics(side.tyre, load, known=side.known, predictor=predictor, **at))
         moved.append(_moved(side, load, at, [pair[k] for pair in shared.values()]))
     a, b = found
     for key in a:
@@ -104,15 +101,17 @@ def _numbers(
                 u_first=u[0] or None,
                 u_second=u[1] or None,
                 covariance=float(moved[0][key] @ moved[1][key]),
+                at_least_first=isinstance(a[key], AtLeast),
+                at_least_second=isinstance(b[key], AtLeast),
             )
 
 
 def _moved(
-    side: ComparedSubject, load: float, at: Mapping[str, float], moves: Sequence[Mapping[str, float]]
+    side: ComparedSubject, load: float, at: Mapping[str, Any], moves: Sequence[Mapping[str, float]]
 ) -> dict[str, np.ndarray]:
     """By number, its changes (e,) by given changes of the coefficients."""
     names = [name for name in dict.fromkeys(chain(*moves)) if name in side.tyre.values]
-    found, slopes = with_slopes(side.tyre, load, names, turn_slip=side.turn_slip, **at)
+    found, slopes = with_slopes(side.tyre, load, names, **at)
     sizes = [[move.get(name, 0.0) for move in moves] for name in names]
     return dict(zip(found, slopes @ np.reshape(sizes, (len(names), len(moves))), strict=True))
 

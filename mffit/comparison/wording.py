@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
+from mffit.comparison.characteristics import Tested
 from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.borrowed.at_nominal import Nominal
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from mffit.rig_errors import words_of
+from mffit.rounding import AtLeast, stated
+from tir import Quantity
 from tir.errors import counted, listed, some
 from tir.parameters import BY_NAME
 
@@ -71,6 +74,13 @@ def _beyond(rows: Iterable[Difference]) -> list[Difference]:
     return [row for row in rows if row.z is not None and abs(row.z) > COVERAGE_FACTOR_95]
 
 
+def sides(row: Difference) -> tuple[str, str]:
+    """Both values with their uncertainties."""
+    first, second = (AtLeast if least else Quantity for least in (row.at_least_first, row.at_least_second))
+    u_first, u_second = row.u_first or 0.0, row.u_second or 0.0
+    return stated(first(row.first, u_first, "")), stated(second(row.second, u_second, ""))
+
+
 def place(row: Difference) -> str:
     """Condition at which a number holds; empty for a coefficient."""
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
@@ -119,6 +129,13 @@ def notes_between(first: ComparedSubject, second: ComparedSubject, shared: Share
             "both, differences are more significant than stated."
         )
     return tuple(notes)
+
+
+def notes_on_peaks(numbers: Iterable[Difference], tested: Tested) -> Iterator[str]:
+    """A remark on the largest forces that are no peaks, if there are any."""
+    ends = {tested.end(row.key) for row in numbers if row.at_least_first or row.at_least_second}
+    if ends:
+        yield f'"At least": the curve does not fall up to the end of the slip compared, {listed(sorted(ends))}.'
 
 
 def note_on_temperature(name: str, T_ref: float) -> str:

@@ -160,4 +160,4 @@ def write_members(result: BuildResult, out: Path) -> None:
 def numbers(tyre: Tyre, *, turn_slip: bool, known: Posterior | None = None) -> dict[str, Quantity]:
     """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
     found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip, known=known)
-    return {key: found[key] for key in NUMBERS}
+    return {key: found[key] for key in NUMBERS if key in found}

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from mffit import as_json
 from mffit import fleet as combining
+from mffit.comparison import PEAKS
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
 from mffit.fit import Posterior, priors
@@ -24,6 +25,7 @@ from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
 from mffit.rig_errors import OF_RUN
+from mffit.rounding import AtLeast
 from mffit.viewer.named import tell_apart
 from tir import Quantity, Tyre
 
@@ -130,7 +132,7 @@ def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dic
     """Stiffnesses and peaks with the first-order uncertainty that the coefficients give them."""
     joint = None if known is None else Posterior(known.names, known.covariance)
     found = numbers(tyre, turn_slip=turn_slip, known=joint)
-    return {key: found[key] for key in COMPARED}
+    return {key: found[key] for key in COMPARED if key in found}
 
 
 def _epsilon(found: TyreEstimate | None) -> Quantity | None:
@@ -179,6 +181,8 @@ def fleet_table(found: Fleet) -> pd.DataFrame:
         out = {"name": row.specimen.name, "folder": str(row.specimen.folder), "rig": row.rig + 1}
         for key, q in numbers.items():
             out |= {key: None if q is None else q.value, f"u_{key}": None if q is None else q.u}
+            if key in PEAKS:
+                out[f"{key}_at_least"] = isinstance(q, AtLeast)
         out |= {f"rmse_{channel}": value for channel, value in row.specimen.misfit.items()}
         rows.append(out | {"warnings": len(row.specimen.warnings)})
     return pd.DataFrame(rows)

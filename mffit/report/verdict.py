@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mffit.comparison.characteristics import DECIDED_BY, characteristics
+from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
 from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
 from mffit.results import BuildResult
-from mffit.rounding import number, stated, times
+from mffit.rounding import AtLeast, number, stated, times
 from tir import Quantity
 
 JUDGED = {"distrusted": "NOT TO BE TRUSTED", "doubted": "in doubt", "sound": "sound"}
@@ -29,6 +29,7 @@ class Headline(NamedTuple):
     name: str
     value: str
     note: str
+    reached: str = ""  #: where a largest force that is no peak was reached
 
 
 def judged(result: BuildResult) -> str:
@@ -61,18 +62,19 @@ def headlines(result: BuildResult) -> list[Headline]:
         tyre, load, turn_slip=result.on_disc, known=result.fit.posterior, predictor=result.prediction
     )
     fitted = {name for name, a in result.fit.channels.items() if a.n}
-    found += [
-        _headline(CHARACTERISTICS[key], of_model[key], f"of the model at {number(load, 0)} N, straight path")
-        for key, name in DECIDED_BY.items()
-        if name in fitted and of_model[key].u
-    ]
+    tested, note = Tested.of([tyre]), f"of the model at {number(load, 0)} N, straight path"
+    for key in filter(tested.varied, DECIDED_BY):
+        value = of_model[key]
+        if DECIDED_BY[key].channel in fitted and value.u:
+            end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
+            found.append(_headline(CHARACTERISTICS[key], value, note, end))
     return found[:FOUR]
 
 
-def _headline(known: QuantityName, value: Quantity, note: str) -> Headline:
-    return Headline(
-        f"{known.word[0].upper()}{known.word[1:]} {known.ascii}", stated(value, known.unit_behind), note
-    )
+def _headline(known: QuantityName, value: Quantity, note: str, reached: str = "") -> Headline:
+    name = f"{known.word[0].upper()}{known.word[1:]} {known.ascii}"
+    note = "; ".join(filter(None, (reached, note)))
+    return Headline(name, stated(value, known.unit_behind), note, reached)
 
 
 def purposes(result: BuildResult) -> dict[str, str]:

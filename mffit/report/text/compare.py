@@ -43,8 +43,7 @@ def _number(row: Difference) -> tuple[str, ...]:
 def _values(row: Difference) -> tuple[str, ...]:
     apart = with_u(row.change, row.u) if row.u else number(row.change, digits=3)
     return (
-        with_u(row.first, row.u_first),
-        with_u(row.second, row.u_second),
+        *wording.sides(row),
         apart,
         number(row.z, 1) if row.z is not None else "–",
     )

@@ -27,6 +27,9 @@ from mffit.errors import InputError
 from mffit.fit import Posterior
 from mffit.fleet import Information, Specimen
 from mffit.pipeline.build_output import write_build
+from mffit.results import as_json
+from mffit.rounding import AtLeast, stated
+from mffit.tested import words_on_tested
 from tests.browser import assert_readable
 
 
@@ -68,13 +71,61 @@ def test_the_peak_of_a_file_of_braking_is_that_of_braking():
     assert values_of(tyre, 1400.0, turn_slip=False)["mu_x"] == pytest.approx(peak / 1400.0, rel=1e-3)
 
 
-def test_numbers_hold_at_the_pressure_asked_for():
+def reaching(tyre, degrees):
+    """The file of a build whose sweeps reached a sideslip."""
+    return tyre.annotate(status={"ALPMAX": f"estimate, {words_on_tested(math.radians(degrees), 'rad')}"})
+
+
+@pytest.mark.parametrize("degrees", [3.0, 6.0, 9.0, 14.0])
+def test_a_force_that_still_rises_where_the_readings_end_is_no_peak(degrees):
+    """The front tyre's side force peaks at 12.0 deg at this load, its moment at 3.7 deg."""
+    tyre = truth()
+    found = characteristics(reaching(tyre, degrees), 1400.0, turn_slip=False)
+    for key, channel, scale, at_peak in (("mu_y", "Fy", 1400.0, 12.0), ("Mz_peak_Nm", "Mz", 1.0, 3.7)):
+        slip = np.radians(np.linspace(0.0, degrees, 3001))
+        force = np.abs(getattr(tyre(1400.0, alpha=slip, turn_slip=False), channel)) / scale
+        assert found[key].value == pytest.approx(force.max(), rel=1e-3)
+        assert isinstance(found[key], AtLeast) == (degrees < at_peak), (key, degrees)
+    assert stated(found["mu_y"]).startswith("at least ") == (degrees < 12.0)
+
+
+def test_a_fall_within_its_uncertainty_shows_no_peak():
+    """At 14 deg the side force has fallen by 0.3 %: what a curvature known to 0.05 shows, and one known to 1 does not."""
+    for u, no_peak in ((0.05, False), (1.0, True)):
+        known = Posterior(("PEY1",), np.array([[u**2]]))
+        found = characteristics(reaching(truth(), 14.0), 1400.0, turn_slip=False, known=known)
+        assert isinstance(found["mu_y"], AtLeast) is no_peak
+
+
+def test_a_comparison_says_where_the_readings_of_both_end():
+    sides = [ComparedSubject(name, reaching(truth(), end), False) for name, end in (("a", 5.0), ("b", 14.0))]
+    found = between(*sides)
+    row = by_key(found)["mu_y"]
+    assert row.at_least_first
+    assert row.at_least_second
+    assert row.change == 0.0
+    assert wording.sides(row)[0] == f"at least {row.first:.4g}"
+    assert (
+        found.notes[-1] == '"At least": the curve does not fall up to the end of the slip compared, 5.0 deg.'
+    )
+    content = as_json.document(found)["numbers"]
+    assert {one["key"] for one in content if one["at_least_first"]} == {"mu_y"}
+
+
+def test_without_sideslip_there_is_no_largest_side_force():
+    found = characteristics(reaching(truth(), 0.1), 1400.0, turn_slip=False)
+    assert "mu_y" not in found
+    assert "Mz_peak_Nm" not in found
+    assert "C_alpha_N_per_rad" in found
+
+
+def test_numbers_hold_at_the_pressure_of_the_file():
     tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PPY1=0.5, PPY2=0.9)
-    nominal = values_of(tyre, 1400.0, turn_slip=False)
-    soft = values_of(tyre, 1400.0, turn_slip=False, pressure=200e3)
+    nominal, soft = (
+        values_of(tyre.replace(INFLPRES=p), 1400.0, turn_slip=False) for p in (tyre["NOMPRES"], 200e3)
+    )
     assert soft["C_alpha_N_per_rad"] == pytest.approx(float(tyre.state(1400.0, p=200e3).K_ya), rel=2e-3)
     assert abs(soft["C_alpha_N_per_rad"] / nominal["C_alpha_N_per_rad"] - 1.0) > 0.01
-    assert nominal == values_of(tyre, 1400.0, turn_slip=False, pressure=tyre["INFLPRES"])
 
 
 def test_a_number_that_depends_on_no_uncertain_coefficient_has_no_uncertainty():
@@ -128,7 +179,7 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
 )
 def test_a_note_says_what_is_known_of_the_uncertainty(second, words):
     known = ComparedSubject("a.tir", truth(), False, Posterior(("PKY1",), np.eye(1)))
-    (note,) = between(known, ComparedSubject("b.tir", truth(), False, second)).notes
+    note, *_ = between(known, ComparedSubject("b.tir", truth(), False, second)).notes
     assert words in note
 
 

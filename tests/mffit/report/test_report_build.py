@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from report_toys import made_coefficients, made_result, read_page
 
 from mffit.report import write_build
 from mffit.report.style import ramp
+from mffit.report.text import build_summary
 from mffit.report.verdict import headlines
 from mffit.rounding import ascii_only
+from mffit.tested import words_on_tested
 from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened, sheets
 
 PNG = b"\x89PNG\r\n"
@@ -132,6 +135,29 @@ def test_the_numbers_of_a_flat_track_are_those_of_the_model(tmp_path):
     assert stiffness == pytest.approx((forces[1] - forces[0]) / (2 * slip), abs=u)
     assert u == pytest.approx(abs(stiffness * 0.05 / tyre["PKY1"]), rel=0.05)
     assert float(found["Peak side force per load mu_y"].split()[0]) == pytest.approx(peak, abs=0.01)
+
+
+def test_a_number_that_was_not_reached_or_not_varied_is_not_stated_as_measured(tmp_path):
+    """Sideslip to 5 deg, where the side force still rises, and no camber."""
+    result = made_result(rig={"type": "flat-track"}, phi_t=0.0)
+    ends = {"ALPMAX": words_on_tested(np.radians(5.0), "rad"), "CAMMAX": words_on_tested(0.001, "rad")}
+    tyre = result.tyre.annotate(status=ends)
+    (use,) = result.tyres
+    result = replace(result, tyres={use: tyre})
+    found = {one.name.rpartition(" ")[2]: one for one in headlines(result)}
+    assert "C_gamma" not in found
+    load = float(tyre["FNOMIN"])
+    reached = abs(float(tyre(load, alpha=np.radians(5.0), turn_slip=False).Fy)) / load
+    word, value = found["mu_y"].value.split(" ±")[0].rsplit(" ", 1)
+    assert word == "at least"
+    assert float(value) == pytest.approx(reached, abs=0.01)
+    assert found["mu_y"].reached == "at 5.0 deg, the end of the tested range"
+    assert found["mu_y"].reached in found["mu_y"].note
+    write_build(result, tmp_path)
+    assert "at least" in read_page(tmp_path / "report.html").text
+    assert f"{ascii_only(found['mu_y'].value)} at 5.0 deg, the end of the tested range" in build_summary(
+        result
+    )
 
 
 def test_same_result_gives_the_same_bytes(result, written, tmp_path):
