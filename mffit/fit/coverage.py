@@ -34,6 +34,7 @@ keys(StageCoverage, "stage supported held missing")
 LACKING = {
     "camber": "no camber was run",
     "coupled": "no sweep combines sideslip and camber",
+    "side": "neither sideslip nor camber was run",
     "kappa": "no sweep varies longitudinal slip",
     "combined": "no sweep combines longitudinal slip and sideslip",
     "side_force": "no sweep combines longitudinal slip and side force, from sideslip or camber",
@@ -83,6 +84,7 @@ def design(points: Points, side: str) -> Design:
         "coupled": np.any(cambered & slipping),
         "speeds": levels.count(points.V, levels.SPEED),
         "sideslips": levels.count(points.alpha, levels.SIDESLIP),
+        "side": np.any(slipping | cambered),
         "kappa": np.any(driven),
         "combined": np.any(driven & slipping),
         "side_force": np.any(driven & (slipping | cambered)),

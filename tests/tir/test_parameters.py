@@ -19,6 +19,7 @@ NEEDS = (
     "camber",
     "coupled",
     "combined",
+    "side",
     "side_force",
     "both_sides",
     "curvature",

@@ -40,6 +40,22 @@ def test_a_full_programme_frees_everything_that_a_stage_names():
     assert not held(programme(*FULL))
 
 
+def test_braking_alone_shows_nothing_of_the_side():
+    """Sideslip and camber that only scatter around zero: cornering stiffness, friction and trail cannot follow from them."""
+    rng = np.random.default_rng(2)
+    kappa = np.tile(np.linspace(-0.12, 0.0, 13), 3)
+    alpha, gamma = rng.normal(0.0, 2e-4, (2, 39))
+    points = make_points(
+        alpha, gamma, np.repeat([900.0, 1400.0, 2100.0], 13), kappa=kappa, p=250e3, V=6.0, phi_t=0.0
+    )
+    points = points.replace(
+        Fx=20.0 * points.Fz * kappa, Fy=rng.normal(0.0, 5.0, 39), Mz=rng.normal(0.0, 0.3, 39)
+    )
+    found = held(points)
+    assert {row.name for row in TABLE if row.stage in ("Fy", "trail")} <= found.keys()
+    assert found.keys().isdisjoint({"PKX1", "PDX1", "PCX1", "PEX1"})
+
+
 def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stiffness():
     found = held(programme(*LOADS, *PRESSURES))
     assert set(found) == {"PPY2"}
