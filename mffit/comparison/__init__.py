@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from mffit.on_demand import on_demand
 
 if TYPE_CHECKING:
-    from mffit.comparison.characteristics import DECIDED_BY, Tested
+    from mffit.comparison.characteristics import DECIDED_BY, PEAKS, Tested
     from mffit.comparison.compare import against_points, between
     from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
     from mffit.comparison.wording import note_on_temperature
