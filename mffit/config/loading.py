@@ -124,17 +124,22 @@ def load(
     """
     if isinstance(source, Config):
         return source
-    if given := of_command_line(coefficients):
-        return _with(source, given, folder)
-    if isinstance(source, Mapping):
-        return checked(source, path=None, folder=Path(folder or "."), lines={})
-    path = Path(source)
-    content, lines = _tables(path)
-    start = Path(folder or path.parent)
-    return checked(content, path=path, folder=start, lines=lines, awaiting=awaiting)
+    path = None if isinstance(source, Mapping) else Path(source)
+    content, lines = (source, {}) if isinstance(source, Mapping) else _tables(Path(source))
+    given, own = of_command_line(coefficients), content.get("coefficients", {})
+    if given and isinstance(own, Mapping):
+        content = {**content, "coefficients": {**own, **given}}
+    start = Path(folder or (path.parent if path else "."))
+    try:
+        return checked(content, path=path, folder=start, lines=lines, awaiting=awaiting)
+    except InputError as error:
+        name = (error.key or "").removeprefix("coefficients.")
+        if name in given:  # has no line
+            raise InputError(error.sentence, key=f"--set {name}") from None
+        raise
 
 
-def _tables(path: Path) -> tuple[dict[str, object], dict[str, int]]:
+def _tables(path: Path) -> tuple[Mapping[str, object], dict[str, int]]:
     """Content of a ``tyre.toml`` and the line of every key."""
     content, lines = read_toml(path, TYRE_TOML)
     if plan := content.keys() & RIG_TOML_TABLES:
@@ -144,25 +149,6 @@ def _tables(path: Path) -> tuple[dict[str, object], dict[str, int]]:
             file=path,
         )
     return content, lines
-
-
-def _with(
-    source: str | Path | Mapping[str, object], given: Mapping[str, object], folder: str | Path | None
-) -> Config:
-    """The configuration with some entries of [coefficients] replaced; a mistake in one of these has no line."""
-    path = None if isinstance(source, Mapping) else Path(source)
-    content, lines = (dict(source), {}) if isinstance(source, Mapping) else _tables(Path(source))
-    own = content.get("coefficients", {})
-    if isinstance(own, Mapping):
-        content["coefficients"] = {**own, **given}
-    start = Path(folder or (path.parent if path else "."))
-    try:
-        return checked(content, path=path, folder=start, lines=lines)
-    except InputError as error:
-        name = (error.key or "").removeprefix("coefficients.")
-        if name in given:
-            raise InputError(error.sentence, key=f"--set {name}") from None
-        raise
 
 
 def checked(

@@ -25,7 +25,6 @@ from mffit.effects import Effect
 from mffit.made import Made
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 from mffit.scatter import rms
@@ -189,11 +188,6 @@ class Diagnosis(Brief):
         return tuple(found for found in self.effects if found.repaired)
 
     @property
-    def is_corrected(self) -> bool:
-        """Whether the model after is another than the given one."""
-        return bool(self.repaired or self.coefficients)
-
-    @property
     def suspected(self) -> tuple[AcceptedEffect, ...]:
         """The effects that are named but not repaired."""
         return tuple(found for found in self.effects if not found.repaired)
@@ -238,14 +232,13 @@ keys(
 )
 
 
-def corrected_points(points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> Points:
+def corrected_points(points: Points, state: Simulation) -> Points:
     """Points with the readings that a faultless rig at reference conditions would give at the same angle readings.
 
     The diagnosed model, the simulation after all corrections, supplies the influence of the faults. The angles are not shifted,
     because that would break the mirror symmetry of the set-points.
     """
-    channels = tuple(channels)
-    faulty, faultless = state.readings(points, channels), state.faultless.readings(points, channels)
+    faulty, faultless = state.readings(points), state.faultless.readings(points)
     return points.replace(
         **{name: points.channel(name) - (faulty[name] - faultless[name]) for name in faulty}
     )

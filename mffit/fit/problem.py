@@ -166,15 +166,13 @@ class FitProblem:
                 np.multiply(by_channel[name].T, used / u, out=slopes[:, k])
             yield rows, data.ravel(), slopes.reshape(len(names), -1).T
 
-    def rows(self, names: Sequence[str], every: int = 1) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals (c m + r,) and derivatives of every ``every``-th point, channel by channel, then of the measured radii."""
-        c, n = len(self.sigma), len(range(0, len(self.points), every))
+    def rows(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals (c n + r,) and their derivatives, channel by channel, then of the measured radii."""
+        c, n = len(self.sigma), len(self.points)
         data, slopes = np.empty((c, n)), np.empty((c, n, len(names)))
         for rows, residual, slope in self.blocks(names):
-            kept = rows % every == 0
-            to = rows[kept] // every
-            data[:, to] = residual.reshape(c, -1)[:, kept]
-            slopes[:, to] = slope.reshape(c, -1, len(names))[:, kept]
+            data[:, rows] = residual.reshape(c, -1)
+            slopes[:, rows] = slope.reshape(c, -1, len(names))
         radii, by_radii = self.radii_rows(names)
         return np.append(data, radii), np.concatenate([slopes.reshape(c * n, -1), by_radii])
 

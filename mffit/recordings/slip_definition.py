@@ -129,10 +129,10 @@ def _readings(
     if "Fx_N" not in found:
         return None
 
-    def in_si(name: str, unit: str, factor: float = 1.0) -> np.ndarray:
+    def in_si(name: str, unit: str) -> np.ndarray:
         if name not in found:
             return np.zeros(len(slip))
-        return factor * converted(found[name].values, unit_of(name), unit)
+        return converted(found[name].values, unit_of(name), unit)
 
     return Driven(
         kappa=slip,

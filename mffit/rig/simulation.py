@@ -131,19 +131,14 @@ class Simulation(Brief):
         return self.at_rows(points, names, channels)(np.arange(len(points)))
 
     def in_blocks(
-        self,
-        points: Points,
-        names: Sequence[str],
-        channels: Iterable[str] = SIDEWAYS,
-        *,
-        by_sweep: bool = False,
+        self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
     ) -> Iterator[tuple[np.ndarray, Readings, Readings]]:
         """:meth:`sensitivities` block by block: row indices (m,), readings (m,), derivatives (m, k).
 
-        With ``by_sweep`` no sweep is divided. Blocks limit the memory for derivatives.
+        Blocks limit the memory for derivatives; with lag, no sweep is divided.
         """
         at_rows = self.at_rows(points, names, channels)
-        for rows in blocks(points, by_sweep=by_sweep or self._lags(names)):
+        for rows in blocks(points, by_sweep=self._lags(names)):
             yield rows, *at_rows(rows)
 
     def at_rows(
