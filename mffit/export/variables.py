@@ -8,11 +8,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import tir
-from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
 from tir.codegen.program import INPUTS, ORDER, called
 from tir.equations.forces import Forces
-from tir.tuning import tunables
+from tir.tuning import INPUT_TEXTS, OUTPUT_TEXTS, STATES, tunables
 
 NAMES = {"Fz": "Fz_out"}
 """Outputs with another name than in C: the load is input and output."""

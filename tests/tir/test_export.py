@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import tir
-from tir.codegen.c99 import STATES
 from tir.codegen.javascript import javascript
 from tir.codegen.lag import LAG_INPUTS
 from tir.codegen.program import INPUTS, Switches
@@ -21,6 +20,7 @@ from tir.equations.forces import Forces
 from tir.evaluate import evaluate
 from tir.parameters import TABLE
 from tir.transient import Contact, step
+from tir.tuning import STATES
 
 VECTORS = Path(__file__).parent / "vectors"
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)

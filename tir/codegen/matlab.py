@@ -7,7 +7,6 @@ import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES, opening, refuse_name
 from tir.codegen.graph import CONSTANT, INPUT, level
 from tir.codegen.program import INPUTS, ORDER, Program, called, refuse_zero_divisors
 from tir.codegen.replay import allocated
@@ -15,7 +14,16 @@ from tir.codegen.source import COMMON, COMPARISONS, SourceDialect, assignments, 
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.record import TyreRecord
-from tir.tuning import exported, trace_tuned, tunables
+from tir.tuning import (
+    INPUT_TEXTS,
+    OUTPUT_TEXTS,
+    STATES,
+    exported,
+    opening,
+    refuse_name,
+    trace_tuned,
+    tunables,
+)
 
 MORE = {
     "mu_x": "longitudinal friction coefficient [-]",
