@@ -9,7 +9,7 @@ from mffit import points
 from mffit.config import Config
 from mffit.config.models import given_values
 from mffit.errors import InputError
-from mffit.fit.borrowed.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
+from mffit.fit.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
 from mffit.fit.same_curve import tyre_in_one_form
 from mffit.output import digest
 from mffit.points.loading import Reading

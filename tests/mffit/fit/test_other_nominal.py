@@ -17,7 +17,7 @@ import mffit
 import tir
 from mffit.comparison import wording
 from mffit.errors import InputError
-from mffit.fit.borrowed.at_nominal import CONDITIONS, Nominal, at_nominal, tyre_at_nominal
+from mffit.fit.at_nominal import CONDITIONS, Nominal, at_nominal, tyre_at_nominal
 from tir.equations import vertical
 from tir.mode import BLOCK
 from tir.parameters import TABLE

@@ -1,1 +1,0 @@
-"""Coefficients from other tyres: a base file converted to the nominal conditions."""
