@@ -53,7 +53,7 @@ def test_the_records_are_complete(examples):
     assert isinstance(effect, Effect)
     assert isinstance(error, RigError)
     assert set(effect.parameters) <= set(BY_NAME)
-    seen = (effect, *error.seen_as)
+    seen = (effect, error.seen_as)
     assert {word for one in seen for word in one.needs} <= set(NEEDS)
 
 

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from mffit.effects.effect import Effect, Free
 from mffit.effects.tyre import TYRE_EFFECTS
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, Appearance, RigError
 
 
+def _effects(error: RigError) -> Iterator[Effect]:
+    """The effects as which a diagnosis sees a rig error: with one number for the whole test, and with one for every run."""
+    for seen in (error.seen_as, error.seen_per_run):
+        if seen is not None:
+            yield _effect(error, seen)
+
+
 def _effect(error: RigError, seen: Appearance) -> Effect:
-    """The effect as which a diagnosis sees a rig error."""
     return Effect(
         id=seen.id,
         name=seen.name,
@@ -22,6 +30,7 @@ def _effect(error: RigError, seen: Appearance) -> Effect:
 
 
 def _free(error: RigError, seen: Appearance | None = None) -> Free:
+    per_run = seen is not None and seen is error.seen_per_run
     return Free(
         name=error.name,
         spread=error.spread if seen is None or seen.spread is None else seen.spread,
@@ -29,13 +38,13 @@ def _free(error: RigError, seen: Appearance | None = None) -> Free:
         lower=error.lower,
         upper=error.upper,
         relative=error.relative,
-        per_run=seen is not None and seen.per_run,
-        per_setup=error.of_setup and not (seen is not None and seen.per_run),
+        per_run=per_run,
+        per_setup=error.of_setup and not per_run,
     )
 
 
 CATALOG: tuple[Effect, ...] = (
     *TYRE_EFFECTS,
-    *(_effect(error, seen) for error in RIG_ERRORS for seen in error.seen_as),
+    *(effect for error in RIG_ERRORS for effect in _effects(error)),
 )
 NAMES = {effect.id: effect.name for effect in CATALOG}

@@ -45,7 +45,7 @@ def _row(error: RigError) -> str:
     if error.declared is not None:
         default = error.declared.default
         declared = f"`{error.declared.key}`" + (f" ({default:g})" if default is not None else "")
-    effects = ", ".join(f"`{seen.id}`" for seen in error.seen_as) or "–"
+    effects = ", ".join(f"`{seen.id}`" for seen in (error.seen_as, error.seen_per_run) if seen) or "–"
     limits = f"{_bound(error.lower)} to {_bound(error.upper)}"
     meaning = error.meaning.replace("|Fy|", r"\|Fy\|")
     zero = r"\*" if error.of_setup else ""

@@ -31,13 +31,11 @@ RELAXATION = RigError(
     scan=(0.05, 0.15, 0.3),
     limits=(0.0, 2.0),
     known_sign=1,
-    seen_as=(
-        Appearance(
-            id="relaxation",
-            name="relaxation length",
-            physics="Side force builds up over a rolled distance, so a moving sweep lags behind its angle.",
-            needs=("continuous",),
-        ),
+    seen_as=Appearance(
+        id="relaxation",
+        name="relaxation length",
+        physics="Side force builds up over a rolled distance, so a moving sweep lags behind its angle.",
+        needs=("continuous",),
     ),
 )
 SIDESLIP_ZERO = _of_angle(
@@ -48,25 +46,22 @@ SIDESLIP_ZERO = _of_angle(
     spread=0.2,
     limits=(-5.0, 5.0),
     of_setup=True,
-    seen_as=(
-        Appearance(
-            id="sideslip-misalignment",
-            name="sideslip axis misaligned",
-            physics="The steering axis reads zero while the wheel runs at a small sideslip angle.",
-            remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
-            "to all readings of the sideslip angle",
-            axes=("alpha",),
-        ),
-        Appearance(
-            id="run-offsets-alpha",
-            name="sideslip zero that differs from run to run",
-            physics="The steering axis is set up again before every run, each time at a slightly different angle.",
-            needs=("runs",),
-            remedy="set the steering axis up against a stop before every run; or add the values of the table to the "
-            "readings of each run",
-            per_run=True,
-            spread=0.1,
-        ),
+    seen_as=Appearance(
+        id="sideslip-misalignment",
+        name="sideslip axis misaligned",
+        physics="The steering axis reads zero while the wheel runs at a small sideslip angle.",
+        remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
+        "to all readings of the sideslip angle",
+        axes=("alpha",),
+    ),
+    seen_per_run=Appearance(
+        id="run-offsets-alpha",
+        name="sideslip zero that differs from run to run",
+        physics="The steering axis is set up again before every run, each time at a slightly different angle.",
+        needs=("runs",),
+        remedy="set the steering axis up against a stop before every run; or add the values of the table to the "
+        "readings of each run",
+        spread=0.1,
     ),
     declared=Declared(
         key="u_slip_alignment_N",
@@ -85,15 +80,13 @@ HYSTERESIS = _of_angle(
     known_sign=1,
     spread=0.1,
     limits=(-2.0, 2.0),
-    seen_as=(
-        Appearance(
-            id="hysteresis",
-            name="hysteresis of sideslip sweeps",
-            physics="The force lags behind the angle as read, by a fixed angle in either sense of the sweep.",
-            needs=("senses",),
-            remedy="free the sideslip drive; or subtract {value} deg from its readings where they rise and add it where "
-            "they fall",
-        ),
+    seen_as=Appearance(
+        id="hysteresis",
+        name="hysteresis of sideslip sweeps",
+        physics="The force lags behind the angle as read, by a fixed angle in either sense of the sweep.",
+        needs=("senses",),
+        remedy="free the sideslip drive; or subtract {value} deg from its readings where they rise and add it where "
+        "they fall",
     ),
 )
 COMPLIANCE = _of_angle(
@@ -103,15 +96,13 @@ COMPLIANCE = _of_angle(
     formula=lambda give, alpha, at: at.turned_by_moment(alpha, give * RADIANS),
     spread=0.004,
     limits=(-0.05, 0.05),
-    seen_as=(
-        Appearance(
-            id="steering-compliance",
-            name="compliance of the steering axis",
-            physics="The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
-            needs=("moment", "slip"),
-            remedy="stiffen the steering; or add {value} deg for every Nm of the reported moment to its readings",
-            axes=("alpha", "Mz"),
-        ),
+    seen_as=Appearance(
+        id="steering-compliance",
+        name="compliance of the steering axis",
+        physics="The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
+        needs=("moment", "slip"),
+        remedy="stiffen the steering; or add {value} deg for every Nm of the reported moment to its readings",
+        axes=("alpha", "Mz"),
     ),
     declared=Declared(
         key="u_steering_compliance_deg_per_Nm",
@@ -129,15 +120,13 @@ BACKLASH = _of_angle(
     spread=0.2,
     scan=(0.05, 0.15, 0.3),
     limits=(0.0, 3.0),
-    seen_as=(
-        Appearance(
-            id="backlash",
-            name="backlash of the sideslip axis",
-            physics="The moment on the wheel takes up the play of the steering, so the angle is off by half the play "
-            "against the moment.",
-            needs=("moment",),
-            remedy="take the play of {value} deg out of the steering axis, or declare it as backlash_deg under [rig]",
-        ),
+    seen_as=Appearance(
+        id="backlash",
+        name="backlash of the sideslip axis",
+        physics="The moment on the wheel takes up the play of the steering, so the angle is off by half the play "
+        "against the moment.",
+        needs=("moment",),
+        remedy="take the play of {value} deg out of the steering axis, or declare it as backlash_deg under [rig]",
     ),
     declared=Declared(
         key="u_backlash_deg",
@@ -155,16 +144,14 @@ CAMBER_SKEW = _of_angle(
     formula=lambda skew, alpha, at: alpha + skew * RADIANS * np.sin(at.gamma),
     spread=0.2,
     limits=(-5.0, 5.0),
-    seen_as=(
-        Appearance(
-            id="camber-skew",
-            name="camber axis not square to the steering axis",
-            physics="Leaning the wheel also steers it a little, as the camber axis is not square to the steering axis.",
-            needs=("camber",),
-            remedy="square the camber axis to the steering axis; or add {value} deg times the sine of the camber angle to all "
-            "readings of the sideslip angle",
-            axes=("alpha", "gamma"),
-        ),
+    seen_as=Appearance(
+        id="camber-skew",
+        name="camber axis not square to the steering axis",
+        physics="Leaning the wheel also steers it a little, as the camber axis is not square to the steering axis.",
+        needs=("camber",),
+        remedy="square the camber axis to the steering axis; or add {value} deg times the sine of the camber angle to all "
+        "readings of the sideslip angle",
+        axes=("alpha", "gamma"),
     ),
     declared=Declared(
         key="u_camber_skew_deg",

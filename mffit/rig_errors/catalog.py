@@ -35,7 +35,5 @@ CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if 
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
 MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
-WORDS = {
-    error.name: error.word or error.seen_as[0].name for error in RIG_ERRORS if error.word or error.seen_as
-}
+WORDS = {error.name: error.words for error in RIG_ERRORS if error.words}
 """By name of a rig number, its words in sentences."""

@@ -47,14 +47,12 @@ TEMPERATURE_GRIP = _of_temperature(
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_grip_per_K"],),
     spread=0.002,
-    seen_as=(
-        Appearance(
-            id="temperature-grip",
-            name="friction with tyre temperature",
-            physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
-            "stays.",
-            needs=("temperatures",),
-        ),
+    seen_as=Appearance(
+        id="temperature-grip",
+        name="friction with tyre temperature",
+        physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
+        "stays.",
+        needs=("temperatures",),
     ),
 )
 TEMPERATURE_GRIP_CURVATURE = RigError(
@@ -78,13 +76,11 @@ TEMPERATURE_STIFFNESS = _of_temperature(
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
     spread=0.002,
-    seen_as=(
-        Appearance(
-            id="temperature-stiffness",
-            name="cornering stiffness with tyre temperature",
-            physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
-            needs=("temperatures",),
-        ),
+    seen_as=Appearance(
+        id="temperature-stiffness",
+        name="cornering stiffness with tyre temperature",
+        physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
+        needs=("temperatures",),
     ),
 )
 TEMPERATURE_CAMBER = _of_temperature(
@@ -117,14 +113,12 @@ TEMPERATURE = _of_temperature(
     place=Place.ENVIRONMENT,
     acts_on=("Fy", "Mz"),
     spread=0.001,
-    seen_as=(
-        Appearance(
-            id="temperature",
-            name="tyre temperature",
-            physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
-            needs=("temperatures",),
-            together_with=("T_ref_degC",),
-        ),
+    seen_as=Appearance(
+        id="temperature",
+        name="tyre temperature",
+        physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
+        needs=("temperatures",),
+        together_with=("T_ref_degC",),
     ),
 )
 PRESSURE_ARM = RigError(
@@ -139,14 +133,12 @@ PRESSURE_ARM = RigError(
     spread=5e-4,
     limits=(-0.01, 0.01),
     counts_from="p_ref_kPa",
-    seen_as=(
-        Appearance(
-            id="overturning-pressure",
-            name="overturning moment of the side force over pressure",
-            physics="A harder tyre moves less sideways under a side force, so that the load stays nearer to the middle of the "
-            "wheel; MF 6.2 has a term of pressure for camber only (PPMX1).",
-            needs=("pressures", "overturning"),
-        ),
+    seen_as=Appearance(
+        id="overturning-pressure",
+        name="overturning moment of the side force over pressure",
+        physics="A harder tyre moves less sideways under a side force, so that the load stays nearer to the middle of the "
+        "wheel; MF 6.2 has a term of pressure for camber only (PPMX1).",
+        needs=("pressures", "overturning"),
     ),
 )
 RUN_GRIP = _of_run(
@@ -170,13 +162,11 @@ SWEEP_HEATING = RigError(
     formula=lambda change, value, at: value * (1.0 + change * at.along_sweep),
     spread=0.02,
     limits=(-0.5, 0.5),
-    seen_as=(
-        Appearance(
-            id="sweep-heating",
-            name="heating within a sweep",
-            physics="The tread warms during every sweep and cools between sweeps: its friction changes along the sweep.",
-            needs=("slip",),
-        ),
+    seen_as=Appearance(
+        id="sweep-heating",
+        name="heating within a sweep",
+        physics="The tread warms during every sweep and cools between sweeps: its friction changes along the sweep.",
+        needs=("slip",),
     ),
 )
 REFERENCE_TEMPERATURE = RigError(
@@ -209,13 +199,11 @@ SPEED = _of_forces(
     formula=lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
     spread=0.005,
     limits=(-0.2, 0.2),
-    seen_as=(
-        Appearance(
-            id="speed",
-            name="speed",
-            physics="Friction and carcass depend on speed: forces scale with it.",
-            needs=("speeds",),
-        ),
+    seen_as=Appearance(
+        id="speed",
+        name="speed",
+        physics="Friction and carcass depend on speed: forces scale with it.",
+        needs=("speeds",),
     ),
 )
 DRIFT = _of_forces(
@@ -226,13 +214,11 @@ DRIFT = _of_forces(
     formula=lambda k, force, at: force * (1.0 + k * at.time),
     spread=1e-6,
     limits=(-1e-3, 1e-3),
-    seen_as=(
-        Appearance(
-            id="drift",
-            name="drift over the test",
-            physics="Wear and ageing change the forces with time.",
-            needs=("times",),
-        ),
+    seen_as=Appearance(
+        id="drift",
+        name="drift over the test",
+        physics="Wear and ageing change the forces with time.",
+        needs=("times",),
     ),
 )
 WEAR = _of_forces(
@@ -243,13 +229,11 @@ WEAR = _of_forces(
     formula=lambda wear, force, at: force * (1.0 + wear * at.distance_km),
     spread=3e-4,
     limits=(-0.1, 0.1),
-    seen_as=(
-        Appearance(
-            id="wear",
-            name="wear over the distance rolled",
-            physics="The tread wears with every kilometre, which changes the forces.",
-            needs=("distances",),
-        ),
+    seen_as=Appearance(
+        id="wear",
+        name="wear over the distance rolled",
+        physics="The tread wears with every kilometre, which changes the forces.",
+        needs=("distances",),
     ),
 )
 WARM_UP = _of_forces(
@@ -260,13 +244,11 @@ WARM_UP = _of_forces(
     formula=lambda share, force, at: force * (1.0 - share * np.exp(-at.distance_km)),
     spread=0.03,
     limits=(-0.5, 0.5),
-    seen_as=(
-        Appearance(
-            id="warm-up",
-            name="warm-up at the start",
-            physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",
-            needs=("times",),
-        ),
+    seen_as=Appearance(
+        id="warm-up",
+        name="warm-up at the start",
+        physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",
+        needs=("times",),
     ),
 )
 

@@ -26,7 +26,7 @@ def _crosstalk(force: str, moment: str, *, spread: float, appearance: Appearance
         reads=(force,),
         spread=spread,
         limits=(-0.1, 0.1),
-        seen_as=(appearance,),
+        seen_as=appearance,
         declared=Declared(
             key=f"u_{force}_into_{moment}_m",
             unit="m",
@@ -41,13 +41,11 @@ GAIN = calibration(
     "gain",
     FORCE,
     slopes=lambda at: Slopes(1.0, 1.0, 1.0),
-    seen_as=(
-        Appearance(
-            id="loadcell-gain",
-            name="calibration of Fy",
-            physics="The side-force channel reads a few per cent too much or too little.",
-            remedy="calibrate the side-force channel; or divide its readings by {value}",
-        ),
+    seen_as=Appearance(
+        id="loadcell-gain",
+        name="calibration of Fy",
+        physics="The side-force channel reads a few per cent too much or too little.",
+        remedy="calibrate the side-force channel; or divide its readings by {value}",
     ),
 )
 NONLINEARITY = _of_reading(
@@ -59,14 +57,12 @@ NONLINEARITY = _of_reading(
     formula=lambda growth, Fy, at: Fy * (1.0 + 1e-3 * growth * abs(Fy)),
     spread=0.01,
     limits=(-0.2, 0.2),
-    seen_as=(
-        Appearance(
-            id="loadcell-nonlinearity",
-            name="nonlinearity of the Fy load cell",
-            physics="The side-force channel reads large forces a little larger, or smaller, than in proportion.",
-            needs=("slip",),
-            remedy="calibrate the side-force channel at large forces: its readings grow by {value} per kN too much",
-        ),
+    seen_as=Appearance(
+        id="loadcell-nonlinearity",
+        name="nonlinearity of the Fy load cell",
+        physics="The side-force channel reads large forces a little larger, or smaller, than in proportion.",
+        needs=("slip",),
+        remedy="calibrate the side-force channel at large forces: its readings grow by {value} per kN too much",
     ),
 )
 CROSSTALK = _of_reading(
@@ -78,15 +74,13 @@ CROSSTALK = _of_reading(
     formula=lambda share, Fy, at: Fy + share * at.Fz,
     spread=0.01,
     limits=(-0.3, 0.3),
-    seen_as=(
-        Appearance(
-            id="crosstalk-fz-fy",
-            name="crosstalk of Fz into Fy",
-            physics="Part of the vertical load appears in the side-force channel.",
-            needs=("loads",),
-            remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
-            axes=("Fy",),
-        ),
+    seen_as=Appearance(
+        id="crosstalk-fz-fy",
+        name="crosstalk of Fz into Fy",
+        physics="Part of the vertical load appears in the side-force channel.",
+        needs=("loads",),
+        remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
+        axes=("Fy",),
     ),
 )
 CROSSTALK_CAMBER = _of_reading(
@@ -98,17 +92,15 @@ CROSSTALK_CAMBER = _of_reading(
     formula=lambda share, Fy, at: Fy + share * np.sin(at.gamma) * at.Fz,
     spread=0.01,
     limits=(-0.3, 0.3),
-    seen_as=(
-        Appearance(
-            id="crosstalk-camber",
-            name="crosstalk of Fz into Fy that grows with camber",
-            physics="The load cell leans with the wheel, and its axes lean by more or less than the camber that is read, or its "
-            "channels along and across the wheel are not calibrated alike.",
-            needs=("camber",),
-            remedy="turn the axes of the load cell into those of the wheel; or subtract {value} of the load times the sine of "
-            "the camber angle from the side force",
-            axes=("Fy", "gamma"),
-        ),
+    seen_as=Appearance(
+        id="crosstalk-camber",
+        name="crosstalk of Fz into Fy that grows with camber",
+        physics="The load cell leans with the wheel, and its axes lean by more or less than the camber that is read, or its "
+        "channels along and across the wheel are not calibrated alike.",
+        needs=("camber",),
+        remedy="turn the axes of the load cell into those of the wheel; or subtract {value} of the load times the sine of "
+        "the camber angle from the side force",
+        axes=("Fy", "gamma"),
     ),
     declared=Declared(
         key="u_crosstalk_camber",
@@ -126,16 +118,14 @@ DIRECTION_ZERO = _of_reading(
     formula=lambda zero, Fy, at: Fy + zero * at.points.direction,
     spread=5.0,
     limits=(-1e3, 1e3),
-    seen_as=(
-        Appearance(
-            id="loadcell-offset-direction",
-            name="load-cell zero of Fy that differs by direction",
-            physics="Friction or heat of a bearing between wheel and load cell turns with the direction of rolling.",
-            needs=("directions",),
-            remedy="zero the side-force channel in both directions of rolling; or subtract {value} N from forward readings and "
-            "add it to backward ones",
-            axes=("Fy",),
-        ),
+    seen_as=Appearance(
+        id="loadcell-offset-direction",
+        name="load-cell zero of Fy that differs by direction",
+        physics="Friction or heat of a bearing between wheel and load cell turns with the direction of rolling.",
+        needs=("directions",),
+        remedy="zero the side-force channel in both directions of rolling; or subtract {value} N from forward readings and "
+        "add it to backward ones",
+        axes=("Fy",),
     ),
 )
 FORCE_ZERO = _zero_of(
@@ -145,24 +135,21 @@ FORCE_ZERO = _zero_of(
     acts_on=("Fy",),
     spread=10.0,
     limits=(-1e3, 1e3),
-    seen_as=(
-        Appearance(
-            id="loadcell-offset-fy",
-            name="load-cell zero of Fy",
-            physics="The side-force load cell was zeroed while the tyre was still deformed.",
-            remedy="zero the side-force channel with the tyre off the ground; or subtract {value} N from its readings",
-            axes=("Fy",),
-        ),
-        Appearance(
-            id="run-offsets-fy",
-            name="load-cell zero of Fy that differs from run to run",
-            physics="The side-force load cell is zeroed before every run, each time a little differently.",
-            needs=("runs",),
-            remedy="zero the side-force channel in the same state before every run; or subtract the value of the table from "
-            "each run",
-            per_run=True,
-            spread=5.0,
-        ),
+    seen_as=Appearance(
+        id="loadcell-offset-fy",
+        name="load-cell zero of Fy",
+        physics="The side-force load cell was zeroed while the tyre was still deformed.",
+        remedy="zero the side-force channel with the tyre off the ground; or subtract {value} N from its readings",
+        axes=("Fy",),
+    ),
+    seen_per_run=Appearance(
+        id="run-offsets-fy",
+        name="load-cell zero of Fy that differs from run to run",
+        physics="The side-force load cell is zeroed before every run, each time a little differently.",
+        needs=("runs",),
+        remedy="zero the side-force channel in the same state before every run; or subtract the value of the table from "
+        "each run",
+        spread=5.0,
     ),
     declared=Declared(
         key="u_loadcell_offset_N",
@@ -179,25 +166,22 @@ MOMENT_ZERO = _zero_of(
     acts_on=("Mz",),
     spread=1.0,
     limits=(-1e2, 1e2),
-    seen_as=(
-        Appearance(
-            id="loadcell-offset-mz",
-            name="load-cell zero of Mz",
-            physics="The moment load cell was zeroed while the tyre was still twisted.",
-            needs=("moment",),
-            remedy="zero the moment channel with the tyre off the ground; or subtract {value} Nm from its readings",
-            axes=("Mz",),
-        ),
-        Appearance(
-            id="run-offsets-mz",
-            name="load-cell zero of Mz that differs from run to run",
-            physics="The moment load cell is zeroed before every run, each time a little differently.",
-            needs=("runs", "moment"),
-            remedy="zero the moment channel in the same state before every run; or subtract the value of the table from "
-            "each run",
-            per_run=True,
-            spread=0.5,
-        ),
+    seen_as=Appearance(
+        id="loadcell-offset-mz",
+        name="load-cell zero of Mz",
+        physics="The moment load cell was zeroed while the tyre was still twisted.",
+        needs=("moment",),
+        remedy="zero the moment channel with the tyre off the ground; or subtract {value} Nm from its readings",
+        axes=("Mz",),
+    ),
+    seen_per_run=Appearance(
+        id="run-offsets-mz",
+        name="load-cell zero of Mz that differs from run to run",
+        physics="The moment load cell is zeroed before every run, each time a little differently.",
+        needs=("runs", "moment"),
+        remedy="zero the moment channel in the same state before every run; or subtract the value of the table from "
+        "each run",
+        spread=0.5,
     ),
 )
 LONGITUDINAL_ZERO = _zero_of(
@@ -207,15 +191,13 @@ LONGITUDINAL_ZERO = _zero_of(
     acts_on=("Fx",),
     spread=20.0,
     limits=(-1e3, 1e3),
-    seen_as=(
-        Appearance(
-            id="loadcell-offset-fx",
-            name="load-cell zero of Fx",
-            physics="The longitudinal load cell was zeroed while a force acted on it.",
-            needs=("drive",),
-            remedy="zero the longitudinal channel with the tyre off the ground; or subtract {value} N from its readings",
-            axes=("Fx",),
-        ),
+    seen_as=Appearance(
+        id="loadcell-offset-fx",
+        name="load-cell zero of Fx",
+        physics="The longitudinal load cell was zeroed while a force acted on it.",
+        needs=("drive",),
+        remedy="zero the longitudinal channel with the tyre off the ground; or subtract {value} N from its readings",
+        axes=("Fx",),
     ),
     declared=Declared(
         key="u_Fx_offset_N", unit="N", default=constants.LONGITUDINAL_ZERO, source="zero of Fx"
@@ -228,17 +210,15 @@ OVERTURNING_ZERO = _zero_of(
     acts_on=("Mx",),
     spread=30.0,
     limits=(-500.0, 500.0),
-    seen_as=(
-        Appearance(
-            id="loadcell-offset-mx",
-            name="load-cell zero of Mx",
-            physics="The reading of the overturning moment has a constant offset: its load cell has a wrong zero, or the wheel "
-            "is not centred in the rig.",
-            needs=("overturning",),
-            remedy="zero the channel of the overturning moment with the tyre off the ground; or subtract {value} Nm from its "
-            "readings",
-            axes=("Mx",),
-        ),
+    seen_as=Appearance(
+        id="loadcell-offset-mx",
+        name="load-cell zero of Mx",
+        physics="The reading of the overturning moment has a constant offset: its load cell has a wrong zero, or the wheel "
+        "is not centred in the rig.",
+        needs=("overturning",),
+        remedy="zero the channel of the overturning moment with the tyre off the ground; or subtract {value} Nm from its "
+        "readings",
+        axes=("Mx",),
     ),
     declared=Declared(
         key="u_Mx_offset_Nm", unit="Nm", default=constants.OVERTURNING_ZERO, source="zero of Mx"
@@ -258,14 +238,12 @@ LONGITUDINAL_GAIN = calibration(
     "Fx",
     "gain_Fx",
     "reported Fx = gain_Fx Fx + Fx0",
-    seen_as=(
-        Appearance(
-            id="loadcell-gain-fx",
-            name="calibration of Fx",
-            physics="The longitudinal channel reads a few per cent too much or too little.",
-            needs=("drive",),
-            remedy="calibrate the longitudinal channel; or divide its readings by {value}",
-        ),
+    seen_as=Appearance(
+        id="loadcell-gain-fx",
+        name="calibration of Fx",
+        physics="The longitudinal channel reads a few per cent too much or too little.",
+        needs=("drive",),
+        remedy="calibrate the longitudinal channel; or divide its readings by {value}",
     ),
 )
 MOMENT_GAINS = tuple(
@@ -280,17 +258,15 @@ LONGITUDINAL_DRAG = _of_reading(
     formula=lambda drag, Fx, at: Fx - drag * at.points.direction,
     spread=15.0,
     limits=(-500.0, 500.0),
-    seen_as=(
-        Appearance(
-            id="longitudinal-drag",
-            name="drag of brake and bearings",
-            physics="A dragging brake, bearings or seals between wheel and load cell add a force against the rolling, which "
-            "turns with the direction.",
-            needs=("drive",),
-            remedy="free the brake and warm up the bearings, or measure Fx between them and the wheel; or add {value} N to the "
-            "readings of forward runs",
-            axes=("Fx",),
-        ),
+    seen_as=Appearance(
+        id="longitudinal-drag",
+        name="drag of brake and bearings",
+        physics="A dragging brake, bearings or seals between wheel and load cell add a force against the rolling, which "
+        "turns with the direction.",
+        needs=("drive",),
+        remedy="free the brake and warm up the bearings, or measure Fx between them and the wheel; or add {value} N to the "
+        "readings of forward runs",
+        axes=("Fx",),
     ),
 )
 FX_INTO_MZ = _crosstalk(

@@ -86,7 +86,7 @@ class Declared:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Appearance:
-    """An effect by which a diagnosis detects an error: with one number for the whole test, or one per run."""
+    """An effect by which a diagnosis detects an error."""
 
     id: str  #: id of the effect
     name: str
@@ -94,7 +94,6 @@ class Appearance:
     needs: tuple[str, ...] = ()  #: conditions that the data must vary; keys of effects.needs
     remedy: str = ""  #: at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
     axes: tuple[str, ...] = ()  #: channels whose signs in the rig's axes apply to the number
-    per_run: bool = False
     spread: float | None = None  #: usual size if it differs from the record's
     together_with: tuple[str, ...] = ()  #: further numbers that are freed with it
 
@@ -122,11 +121,17 @@ class RigError:
     counts_from: str = ""  #: name of the reference condition at which the error has no effect
     known_sign: int = 0  #: sign of the number in all published tyres and rigs, +1 or -1; 0: either
     of_setup: bool = False  #: whether it differs from set-up to set-up, as a zero does
-    seen_as: tuple[Appearance, ...] = ()
-    word: str = ""  #: words for the number in sentences; default: the name of the first appearance
+    seen_as: Appearance | None = None  #: with one number for the whole test
+    seen_per_run: Appearance | None = None  #: with one number for every run
+    word: str = ""  #: words for the number in sentences, if not the name of the effect
     shown_in: tuple[str, float] | None = None
     """Unit for display, and the factor to it; default: its own unit."""
     declared: Declared | None = None
+
+    @property
+    def words(self) -> str:
+        """Words for the number in sentences; empty without any."""
+        return self.word or (self.seen_as.name if self.seen_as else "")
 
     @property
     def is_gain(self) -> bool:
@@ -167,7 +172,7 @@ def calibration(
     u: float = constants.FORCE_GAIN,
     place: Place = Place.FORCE,
     slopes: Callable[[AtLoad], Slopes] = lambda at: Slopes(),
-    seen_as: tuple[Appearance, ...] = (),
+    seen_as: Appearance | None = None,
 ) -> RigError:
     """The record of a channel's calibration factor, with standard uncertainty ``u`` unless ``[rig]`` states another."""
     return RigError(
