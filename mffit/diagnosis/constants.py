@@ -205,7 +205,7 @@ KNOWN_BESIDE_UNKNOWN = Real(
     0.5,
     "-",
     "Prior odds that a named effect acts as well where misfit proves a cause that the library lacks.",
-    "names_study.py outside --seed 100 and mixed --seed 500: about a third of such names are right, docs/evidence-diagnosis.md",
+    "diagnosis_study.py --outside --seed 100 and --mixed --seed 500: a third of them right, docs/evidence-diagnosis.md",
 )
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 UNCHANGED_SHARE_OF_U = Real(

@@ -31,7 +31,7 @@ SPIN_BIAS_OF_MODEL = Real(
     0.3,
     "-",
     "Relative standard uncertainty of the bias of finite spin that a fitted model predicts.",
-    "tests/studies/rig_error_study.py --build",
+    "tests/studies/rigs_study.py --build",
 )
 SLOPE_SHAPE = Real(
     0.007,

@@ -1,32 +1,30 @@
-"""How a build treats broken data: `python tests/studies/broken_study.py --help`; prints the table of docs/broken-data.md.
+"""How a build treats broken data: `python tests/studies/broken_study.py 130`; prints the table of docs/broken-data.md.
 
-The campaigns of the samples on drawn rigs, each with one mistake in a random file. "named": the build refuses a file with the
-mistake by name. "doubted": it warns about that sweep, or lists the reading as an outlier. The other draws are sound; their
-false alarms are counted.
+The campaigns of the samples on drawn rigs, each with one mistake in a random file, mistakes and samples in turn. "named": the
+build refuses a file with the mistake by name. "doubted": it warns about that sweep, or lists the reading as an outlier.
+``--sound`` rigs of each sample have no mistake; their false alarms are counted.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 import tempfile
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import harness
 import numpy as np
 import pandas as pd
 import tomli_w
 
-import mffit
 from mffit import virtual_rig
-from mffit.errors import InputError
 
-SAMPLES = Path(__file__).parents[2] / "samples"
 NAMES = ("flat-track", "front-120-70", "rear-190-55")
+SOUND = "no mistake"
+FIRST_SOUND = 10_000
 
 
 @dataclass
@@ -37,9 +35,11 @@ class Campaign:
     config: dict[str, Any]
     tables: dict[str, pd.DataFrame]
 
-    def varied(self, column: str) -> list[str]:
-        """Files that sweep an angle."""
-        return [name for name, table in self.tables.items() if table[column].nunique() > 5]
+    def drawn(self, rng: np.random.Generator, *swept: str) -> str:
+        """One of the files, or of those that sweep one of some angles; "" if there is none."""
+        names = [n for column in swept for n, table in self.tables.items() if table[column].nunique() > 5]
+        names = names if swept else list(self.tables)
+        return str(rng.choice(names)) if names else ""
 
     def write(self) -> Path:
         for name, table in self.tables.items():
@@ -53,18 +53,31 @@ Spoil = Callable[[Campaign, np.random.Generator], list[str]]
 """Puts a mistake into a campaign; returns the files with the mistake, none if the campaign has no suitable file."""
 
 
-def scaled(column: str, factor: float, swept: str = "") -> Spoil:
-    """A mistake that multiplies a column of one file."""
+def in_one(change: Callable[[pd.DataFrame, np.random.Generator], None], *swept: str) -> Spoil:
+    """A mistake in one file."""
 
     def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-        names = campaign.varied(swept) if swept else list(campaign.tables)
-        if not names:
-            return []
-        name = str(rng.choice(names))
-        campaign.tables[name][column] *= factor
-        return [name]
+        name = campaign.drawn(rng, *swept)
+        if name:
+            change(campaign.tables[name], rng)
+        return [name] if name else []
 
     return spoil
+
+
+def scaled(column: str, factor: float, *swept: str) -> Spoil:
+    """A mistake that multiplies a column of one file."""
+    return in_one(lambda table, rng: table.__setitem__(column, table[column] * factor), *swept)
+
+
+def off(column: str, amount: float) -> Spoil:
+    """A mistake that adds an offset to a column of one file."""
+    return in_one(lambda table, rng: table.__setitem__(column, table[column] + amount))
+
+
+def reading(column: str, value: float) -> Spoil:
+    """A mistake that replaces one reading."""
+    return in_one(lambda table, rng: table.loc.__setitem__((rng.integers(len(table)), column), value))
 
 
 def everywhere(column: str, factor: float) -> Spoil:
@@ -78,35 +91,9 @@ def everywhere(column: str, factor: float) -> Spoil:
     return spoil
 
 
-def reading(column: str, value: float) -> Spoil:
-    """A mistake that replaces one reading."""
-
-    def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-        name = str(rng.choice(list(campaign.tables)))
-        table = campaign.tables[name]
-        table.loc[rng.integers(len(table)), column] = value
-        return [name]
-
-    return spoil
-
-
-def off(column: str, amount: float) -> Spoil:
-    """A mistake that adds an offset to a column of one file."""
-
-    def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-        name = str(rng.choice(list(campaign.tables)))
-        campaign.tables[name][column] += amount
-        return [name]
-
-    return spoil
-
-
-def swapped(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-    """Headings of sideslip and camber exchanged in one file."""
-    name = str(rng.choice([*campaign.varied("alpha_deg"), *campaign.varied("gamma_deg")]))
-    names = {"alpha_deg": "gamma_deg", "gamma_deg": "alpha_deg"}
-    campaign.tables[name] = campaign.tables[name].rename(columns=names)
-    return [name]
+def swapped(table: pd.DataFrame, rng: np.random.Generator) -> None:
+    """Headings of sideslip and camber exchanged."""
+    table.rename(columns={"alpha_deg": "gamma_deg", "gamma_deg": "alpha_deg"}, inplace=True)
 
 
 def undeclared(campaign: Campaign, rng: np.random.Generator) -> list[str]:
@@ -123,17 +110,12 @@ def twice(campaign: Campaign, rng: np.random.Generator) -> list[str]:
     return ["copy.csv", entry["file"]]
 
 
-def sound(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-    """No mistake."""
-    return []
-
-
 MISTAKES: dict[str, Spoil] = {
     "sign of sideslip reversed in one file": scaled("alpha_deg", -1.0, "alpha_deg"),
     "sign of camber reversed in one file": scaled("gamma_deg", -1.0, "gamma_deg"),
     "sign of side force reversed in one file": scaled("Fy_N", -1.0),
     "sign of moment reversed in one file": scaled("Mz_Nm", -1.0),
-    "headings of sideslip and camber exchanged": swapped,
+    "headings of sideslip and camber exchanged": in_one(swapped, "alpha_deg", "gamma_deg"),
     "backward runs not declared": undeclared,
     "load in kgf in one file": scaled("Fz_N", 1.0 / 9.80665),
     "side force in kN in every file": everywhere("Fy_N", 1e-3),
@@ -153,71 +135,77 @@ MISTAKES: dict[str, Spoil] = {
     "side force 150 N off in one file": off("Fy_N", 150.0),
     "sideslip 0.7 deg off in one file": off("alpha_deg", 0.7),
 }
+CASES = [(mistake, sample) for mistake in MISTAKES for sample in NAMES]
+
+
+class Outcome(NamedTuple):
+    """What a build said of a mistake."""
+
+    mistake: str
+    sample: str
+    seed: int
+    verdict: str  #: named, doubted, another file or silent; "-" if the campaign has no suitable file
+
+    def line(self) -> str:
+        return ", ".join(map(str, self))
 
 
 def drawn(sample: str, seed: int, folder: Path) -> Campaign:
     """A sample's campaign on a drawn rig; recorded sweeps as finished points."""
-    content = tomllib.loads((SAMPLES / sample / "rig.toml").read_text(encoding="utf-8"))
+    content = tomllib.loads((harness.SAMPLES / sample / "rig.toml").read_text(encoding="utf-8"))
     content["faults"] = {"draw": True}
     for entry in content["sweep"]:
         entry.pop("recording", None)
-    plan = virtual_rig.load_plan(content, folder=SAMPLES / sample)
+    plan = virtual_rig.load_plan(content, folder=harness.SAMPLES / sample)
     virtual_rig.simulate(plan, folder, seed=seed)
     config = tomllib.loads((folder / "tyre.toml").read_text(encoding="utf-8"))
-    return Campaign(
-        folder, config, {entry["file"]: pd.read_csv(folder / entry["file"]) for entry in config["sweep"]}
-    )
+    files = [entry["file"] for entry in config["sweep"]]
+    return Campaign(folder, config, {file: pd.read_csv(folder / file) for file in files})
 
 
-def outcome(sample: str, spoil: Spoil, seed: int) -> str:
-    """The verdict of a build: named, doubted, another file or silent; "-" if the campaign has no suitable file."""
+def one(job: harness.Job) -> Outcome:
+    mistake, sample = CASES[job.seed % len(CASES)]
+    if job.seed >= FIRST_SOUND:
+        mistake, sample = SOUND, NAMES[(job.seed - FIRST_SOUND) % len(NAMES)]
+    seed = job.seed if mistake != SOUND else FIRST_SOUND + (job.seed - FIRST_SOUND) // len(NAMES)
+    return Outcome(mistake, sample, seed, verdict(mistake, sample, seed))
+
+
+def verdict(mistake: str, sample: str, seed: int) -> str:
+    """What the build says."""
     with tempfile.TemporaryDirectory() as made:
         campaign = drawn(sample, seed, Path(made))
-        files = spoil(campaign, np.random.default_rng(seed))
-        if not files and spoil is not sound:
+        files = MISTAKES[mistake](campaign, np.random.default_rng(seed)) if mistake != SOUND else []
+        if not files and mistake != SOUND:
             return "-"
-        path = campaign.write()
-        try:
-            result = mffit.build(path)
-        except InputError as error:
-            message = str(error)
-            return "named" if any(name in message for name in files) else f"another file: {message}"
-        suspected = [doubt.file for doubt in result.fit.doubts] + [row.file for row in result.fit.outliers]
-        if any(name in files for name in suspected):
-            return "doubted"
-        return "another file: " + ", ".join(suspected) if suspected else "silent"
+        result = harness.built(campaign.write())
+    if isinstance(result, str):
+        return "named" if any(name in result for name in files) else f"another file: {result}"
+    suspected = [doubt.file for doubt in result.fit.doubts] + [row.file for row in result.fit.outliers]
+    if any(name in files for name in suspected):
+        return "doubted"
+    return "another file: " + ", ".join(suspected) if suspected else "silent"
 
 
-def draws(count: int) -> Iterator[tuple[str, str, int]]:
-    """Mistake, sample and seed of every draw."""
-    cases = [(mistake, sample) for mistake in MISTAKES for sample in NAMES]
-    for k in range(count):
-        yield *cases[k % len(cases)], k
+def page(_: Any, found: Mapping[str, list[Outcome]]) -> Iterator[str]:
+    outcomes = [outcome for rows in found.values() for outcome in rows]
+
+    def cell(mistake: str, sample: str) -> str:
+        of = [o.verdict.split(":")[0] for o in outcomes if (o.mistake, o.sample) == (mistake, sample)]
+        return ", ".join("-" if word == "-" else f"{n} {word}" for word, n in Counter(of).items())
+
+    rows = [(mistake, *(cell(mistake, sample) for sample in NAMES)) for mistake in MISTAKES]
+    yield from harness.table(("mistake", *NAMES), rows)
+    clean = [o for o in outcomes if o.mistake == SOUND]
+    alarms = [o.line() for o in clean if o.verdict != "silent"]
+    yield f"\nSound campaigns: {len(alarms)} alarms in {len(clean)} builds"
+    yield from alarms
 
 
-def main(count: int, clean: int) -> None:
-    """Print the table, and the draws whose mistake was not found."""
-    table: dict[tuple[str, str], Counter[str]] = {}
-    for mistake, sample, seed in draws(count):
-        verdict = outcome(sample, MISTAKES[mistake], seed)
-        table.setdefault((mistake, sample), Counter())[verdict.split(":")[0]] += 1
-        if verdict not in ("named", "doubted", "-"):
-            print(f"{mistake}, {sample}, seed {seed}: {verdict}", file=sys.stderr, flush=True)
-    print(f"| mistake | {' | '.join(NAMES)} |")
-    print("|---|" + "---|" * len(NAMES))
-    for mistake in MISTAKES:
-        cells = [table.get((mistake, sample), Counter()) for sample in NAMES]
-        texts = [
-            ", ".join(f"{n} {word}" if word != "-" else "-" for word, n in cell.items()) for cell in cells
-        ]
-        print(f"| {mistake} | {' | '.join(texts)} |")
-    alarms = [(s, k) for k in range(clean) for s in NAMES if outcome(s, sound, 10_000 + k) != "silent"]
-    print(f"\nSound campaigns: {len(alarms)} alarms in {clean * len(NAMES)} builds {alarms or ''}")
+def seeds(_: Any, given: Any) -> list[int]:
+    sound = range(FIRST_SOUND, FIRST_SOUND + len(NAMES) * given.sound)
+    return [*range(given.first, given.first + given.draws), *sound]
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--draws", type=int, default=200, help="campaigns with a mistake")
-    parser.add_argument("--sound", type=int, default=20, help="sound rigs of each sample")
-    options = parser.parse_args()
-    main(options.draws, options.sound)
+    harness.study(one, page, draws=200, seeds=seeds, in_turn=True, sound=20)

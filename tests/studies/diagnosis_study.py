@@ -1,150 +1,167 @@
-"""How often the diagnosis names a hidden cause: ``python tests/studies/diagnosis_study.py --help``."""
+"""How often does the diagnosis name a hidden cause? ``python tests/studies/diagnosis_study.py --seed 3``.
+
+The whole suite of blind cases, or rows of them: ``--hard`` (wrongly stated noise, inexact models, unknown effects),
+``--doubtful`` (cases that remain ambiguous, to calibrate the confidence), ``--correlated`` (errors with a memory along each
+sweep, of several lengths). Sets of ``own_rig``, each ``--repeats`` times: ``--outside`` (causes that the library lacks),
+``--library`` (single causes that it has, three to ten times their detection limit), ``--faint`` (the same at one to three times),
+``--mixed`` (one cause of either kind). ``--combined``: effects of Fx, combined slip and Mx at three sizes, on a belt;
+``--backwards`` adds a run in the other direction. ``--only`` keeps to cases whose name contains it.
+"""
 
 from __future__ import annotations
 
-import argparse
-import json
-import sys
+import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import asdict
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
-
+import harness
 import numpy as np
+import own_rig
 from blind_hard import MEMORIES, SCATTERS, correlated, doubtful, hard, smooth, triples
-from blind_scores import Plan, Verdict, judge, rates, suite
+from blind_scores import Verdict, judge, rates, suite
+from combined_cases import HIDDEN, SIZES, backwards, diagnosed
+from harness import median
+
+SUITE = "suite"
+ROWS = {
+    "doubtful": ("doubtful",),
+    "correlated": tuple(MEMORIES),
+    "hard": (*SCATTERS, "smooth", "triples"),
+    **{name: (name,) for name in ("outside", "library", "faint", "mixed", "combined")},
+}
+CONFIDENCES = ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=1, help="of the whole set")
-    parser.add_argument("--repeats", type=int, default=1, help="how many sets")
-    parser.add_argument("--only", default="", help="only cases whose name contains this")
-    parser.add_argument(
-        "--hard", action="store_true", help="wrongly stated noise, inexact models, unknown effects"
-    )
-    parser.add_argument(
-        "--doubtful",
-        action="store_true",
-        help="cases that remain ambiguous under these conditions, to calibrate the confidence",
-    )
-    parser.add_argument(
-        "--correlated", action="store_true", help="errors with a memory along each sweep, of several lengths"
-    )
-    parser.add_argument("--keep", type=Path, help="file to which every verdict is appended as a line of JSON")
-    parser.add_argument(
-        "--reliability", type=Path, nargs="+", help="print only the table of these kept verdicts"
-    )
-    options = parser.parse_args()
-    if options.reliability:
-        print_calibration(kept(options.reliability))
+Case = tuple[str, Callable[[], Verdict]]
+"""Name, and the verdict when it is asked for."""
+
+
+def cases(row: str, given: Any) -> list[Case]:
+    """The cases of a row."""
+    own = {"doubtful": doubtful, "smooth": smooth, "triples": triples}
+    if row in ("outside", "library", "faint", "mixed"):
+        return [case for k in range(given.repeats) for case in own_cases(row, given.seed + k, k)]
+    if row == "combined":
+        return combined(given)
+    if row == SUITE:
+        plans = suite(given.seed, given.repeats)
+    elif row in own:
+        plans = own[row](given.seed)
+    else:
+        plans = correlated(row, given.seed) if row in MEMORIES else hard(row, given.seed)
+    return [(plan.name, partial(lambda plan: judge(plan.draw()), plan)) for plan in plans]
+
+
+def own_cases(row: str, seed: int, k: int) -> list[Case]:
+    """Sets of ``own_rig`` with every cause once."""
+    library, outside = own_rig.LIBRARY, list(own_rig.OUTSIDE)
+    single = [cause for cause, number in library.items() if not number.endswith("@")]
+    sets = {
+        "outside": [(own_rig.outside_set, cause) for cause in outside],
+        "library": [(own_rig.library_set, cause) for cause in library if cause != "camber-misalignment"],
+        "faint": [(partial(own_rig.library_set, low=1.0, high=3.0), cause) for cause in library],
+        "mixed": [
+            (partial(own_rig.mixed_set, cause), outside[(j + 3 * k) % len(outside)])
+            for j, cause in enumerate(single)
+        ],
+    }
+
+    def of(draw: Callable[..., Any], cause: str) -> Verdict:
+        return own_rig.judge(*draw(cause, seed=seed))
+
+    return [(f"{cause}-{seed}", partial(of, draw, cause)) for draw, cause in sets[row]]
+
+
+def combined(given: Any) -> list[Case]:
+    """Every effect of Fx, combined slip and Mx at three sizes, and none."""
+    added = tuple(backwards()) if given.backwards else ()
+
+    def of(name: str, effect: str, size: float, seed: int) -> Verdict:
+        began = time.process_time()
+        with tempfile.TemporaryDirectory() as scratch:
+            found = diagnosed(effect, size, seed, Path(scratch), added=added)
+        named = tuple(one.effect.id for one in found.effects)
+        ties = tuple(tuple(one.tied_with) for one in found.effects)
+        confidence = tuple(one.confidence for one in found.effects)
+        hidden, seconds = (effect,) if effect in HIDDEN else (), time.process_time() - began
+        return Verdict(name, hidden, "", named, ties, found.unexplained, False, np.nan, seconds, confidence)
+
+    return [
+        (name := f"{effect} {word}", partial(of, name, effect, size, 1000 * given.seed + 10 * k + j))
+        for k, effect in enumerate([*HIDDEN, "none"])
+        for j, (word, size) in enumerate(SIZES.items())
+    ]
+
+
+def seeds(row: str, given: Any) -> list[int]:
+    """Places of the wanted cases of a row."""
+    wanted = [one for name, rows in ROWS.items() if getattr(given, name) for one in rows] or [SUITE]
+    return [k for k, (name, _) in enumerate(cases(row, given)) if given.only in name] if row in wanted else []
+
+
+def one(job: harness.Job) -> Verdict:
+    return cases(job.world, job.given)[job.seed][1]()
+
+
+def page(row: str, verdicts: list[Verdict]) -> Iterator[str]:
+    if row == SUITE:
+        yield from confusion(verdicts)
+        for name, (hits, of) in rates(verdicts).items():
+            yield f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}")
         return
-    if options.hard or options.doubtful or options.correlated:
-        print_hard(options)
-        return
-    verdicts: list[Verdict] = []
-    for plan in suite(options.seed, options.repeats):
-        if options.only not in plan.name:
-            continue
-        began = time.perf_counter()
-        verdict = keep(judge(plan.draw()), options.keep)
-        verdicts.append(verdict)
-        if not verdict.outright:
-            print(f"{verdict.line()}  {time.perf_counter() - began:.1f} s", flush=True)
-    print_confusion(verdicts)
-    for name, (hits, of) in rates(verdicts).items():
-        print(f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}"))
-
-
-def print_hard(options: argparse.Namespace) -> None:
-    """Print a line per condition, each with 12 single causes and 6 correct models."""
-    print(f"{'row':12s} right first/ties  extras  unexplained  named on empty  worse  shrink  seconds")
-    every: list[Verdict] = []
-    if options.doubtful:
-        every += judged("doubtful", list(doubtful(options.seed)), options)
-    for row in MEMORIES if options.correlated else ():
-        every += judged(row, list(correlated(row, options.seed)), options)
-    for row in SCATTERS if options.hard else ():
-        every += judged(row, list(hard(row, options.seed)), options)
-    if options.hard:
-        every += judged("smooth", list(smooth(options.seed)), options)
-        every += judged("triples", list(triples(options.seed)), options)
-    print_calibration(every)
-
-
-def keep(verdict: Verdict, file: Path | None) -> Verdict:
-    """The verdict, after appending it to the file if one is given."""
-    if file is not None:
-        with file.open("a", encoding="utf-8") as out:
-            out.write(json.dumps(asdict(verdict)) + "\n")
-    return verdict
-
-
-def kept(files: Iterable[Path]) -> list[Verdict]:
-    """Verdicts of earlier runs."""
-    rows = [json.loads(line) for file in files for line in file.read_text(encoding="utf-8").splitlines()]
-    return [Verdict(**{n: _tuples(value) for n, value in row.items()}) for row in rows]
-
-
-def _tuples(value: object) -> object:
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
-
-
-def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Verdict]:
-    """The verdicts of the cases of a row; prints the row."""
-    if options.only not in row:
-        return []
-    verdicts = []
-    for plan in plans:
-        verdicts.append(keep(judge(plan.draw()), options.keep))
-        if not verdicts[-1].outright:
-            print("    " + verdicts[-1].line(), flush=True)
     caused = [v for v in verdicts if v.causes]
     first = sum(v.named[:1] == v.causes[:1] for v in caused)
     if row == "triples":
         first = sum(v.named != () and v.named[0] in v.causes for v in caused)
     ties = sum(bool(v.named) and bool({v.named[0], *v.ties[0]} & set(v.causes)) for v in caused)
-    all_found = sum(all(v.found(c) for c in v.causes) for v in caused)
-    print(
-        f"{row:12s} {first}/{ties} of {len(caused)} (all {all_found})  {sum(v.extra for v in verdicts)} extra  "
-        f"{sum(v.unexplained for v in verdicts)} of {len(verdicts)} unexplained  "
-        f"{sum(bool(v.named) for v in verdicts if not v.causes)} of {len(verdicts) - len(caused)} named on empty  "
-        f"{sum(bool(v.named) and v.shrink < 0.98 for v in verdicts)} worse  "
-        f"shrink {float(np.median([v.shrink for v in caused or verdicts])):.1f}  "
-        f"{float(np.median([v.seconds for v in verdicts])):.1f} s, at most {max(v.seconds for v in verdicts):.1f}",
-        flush=True,
-    )
-    return verdicts
+    counts = {
+        "first": f"{first} of {len(caused)}",
+        "first or tied": ties,
+        "all causes": sum(all(v.found(c) for c in v.causes) for v in caused),
+        "extra": sum(v.extra for v in verdicts),
+        "unexplained": f"{sum(v.unexplained for v in verdicts)} of {len(verdicts)}",
+        "named on empty": f"{sum(bool(v.named) for v in verdicts if not v.causes)} of {len(verdicts) - len(caused)}",
+        "worse": sum(bool(v.named) and v.shrink < 0.98 for v in verdicts),
+        "shrink": f"{median([v.shrink for v in caused or verdicts]):.1f}",
+        "seconds": f"{median([v.seconds for v in verdicts]):.1f}, at most {max(v.seconds for v in verdicts):.1f}",
+    }
+    yield f"{row}: " + ", ".join(f"{word} {count}" for word, count in counts.items())
 
 
-def print_calibration(verdicts: list[Verdict]) -> None:
-    """Print how often named effects are right, by their confidence."""
-    named = [
-        (c, n in v.causes, bool({n, *t} & set(v.causes)))
-        for v in verdicts
-        for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
-    ]
-    print("confidence: named, mean confidence, right, right or tied with it")
-    for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
-        inside = [row for row in named if low <= row[0] < high]
-        mean = f"{100.0 * np.mean([c for c, _, _ in inside]):.0f} %" if inside else "-"
-        right, tied = (sum(row[k] for row in inside) for k in (1, 2))
-        print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {mean}, {right}, {tied}")
-
-
-def print_confusion(verdicts: list[Verdict]) -> None:
-    """Print the first named effect by hidden effect, for single hidden effects."""
-    print("\nhidden -> named first (number of cases)")
+def confusion(verdicts: list[Verdict]) -> Iterator[str]:
+    """The first named effect by hidden effect, for single hidden effects."""
+    yield "\nhidden -> named first (number of cases)"
     single = [v for v in verdicts if len(v.causes) == 1 and not v.structure]
     for cause in dict.fromkeys(v.causes[0] for v in single):
         named = Counter(v.named[0] if v.named else "none" for v in single if v.causes[0] == cause)
         tied = sum(any(v.ties) for v in single if v.causes[0] == cause)
         text = ", ".join(f"{name if name != cause else 'right'} {n}" for name, n in named.most_common())
-        print(f"  {cause:28s} {text}" + (f"   ({tied} tied)" if tied else ""))
+        yield f"  {cause:28s} {text}" + (f"   ({tied} tied)" if tied else "")
+
+
+def calibration(found: Mapping[str, list[Verdict]]) -> Iterator[str]:
+    """How often named effects are right, by their confidence."""
+    named = [
+        (c, n in v.causes, bool({n, *t} & set(v.causes)))
+        for verdicts in found.values()
+        for v in verdicts
+        for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
+    ]
+    rows = []
+    for low, high in CONFIDENCES:
+        inside = np.array([row for row in named if low <= row[0] < high]).reshape(-1, 3)
+        mean = f"{100.0 * np.mean(inside[:, 0]):.0f} %" if len(inside) else "-"
+        right = (int(count) for count in inside[:, 1:].sum(axis=0))
+        rows.append((f"{low:.2f} to {min(high, 1.0):.2f}", len(inside), mean, *right))
+    return harness.table(("confidence", "named", "mean confidence", "right", "right or tied with it"), rows)
 
 
 if __name__ == "__main__":
-    main()
+    harness.study(
+        one, page, worlds=(SUITE, *(row for rows in ROWS.values() for row in rows)), draws=None, seeds=seeds,
+        last=calibration, seed=1, repeats=1, only="", backwards=False, **dict.fromkeys(ROWS, False),
+    )  # fmt: skip

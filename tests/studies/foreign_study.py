@@ -9,30 +9,28 @@ Printed: builds that are trusted, eps_gamma and its uncertainty, true forces and
 
 from __future__ import annotations
 
-import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import harness
 import numpy as np
 import pandas as pd
 import tomli_w
-import worlds
-from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, scaled
+from brush import SHORT, SLIP, Brush
+from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, Draw, scaled
+from harness import shares
 
 import mffit
 import tir
-from mffit.errors import InputError
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import WORDS
 from mffit.scatter import rms
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.mffit.brush import SHORT, SLIP, Brush
-
-NOISE, SAFE, RADIUS = (6.0, 0.3), 1.959964, 1.323
+NOISE, RADIUS = (6.0, 0.3), 1.323
 RUN_OFFSET, RUN_SCALE = 4.0, 0.004
 Spoilt = Callable[[dict[str, pd.DataFrame], float], str]
 
@@ -169,103 +167,102 @@ def project(tyre, load: float, rig: dict[str, float], disc: bool, names) -> dict
     return out
 
 
-def inside(error: np.ndarray, u: np.ndarray) -> tuple[float, float, float]:
-    """Share inside 95 %, rms half width, rms error."""
-    return float(np.mean(np.abs(error) < SAFE * u)), SAFE * rms(u), rms(error)
+@dataclass
+class Foreign(Draw):
+    """A draw of a tyre that the formula does not describe."""
+
+    trusted: bool = False
+    reasons: list[str] = field(default_factory=list)
+    open: bool = False  #: sweeps are missed for an unknown reason
+    found: bool = False  #: what is wrong is named, or a number of the fit
+    predicted: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    """Share of true forces or new readings inside 95 %, rms half width and rms error."""
 
 
-def one_build(job: tuple[int, str, Any]) -> dict[str, Any]:
+def one(job: harness.Job) -> Foreign:
     """Draw, build and predict one campaign."""
-    seed, world, _ = job
-    disc, rng = "disc" in world, np.random.default_rng(7000 + seed)
-    tyre, load = drawn(world, rng)
+    disc, rng = "disc" in job.world, np.random.default_rng(7000 + job.seed)
+    tyre, load = drawn(job.world, rng)
     rig = {"F0": 10.0 * rng.normal(), "gamma_0": 0.5 * rng.normal(), "alpha_0": 0.05 * rng.normal()}
     rig |= {"R": RADIUS + 0.0018 * rng.normal(), "r_e": tyre.r_e + 0.0005 * rng.normal()}
-    fault = world.partition(", ")[2]
-    planted = PLANTED.get(fault, {})
-    rig |= planted
-    loads = (0.6, 0.8, 1.0, 1.25, 1.5) if world.startswith("term") else (0.6, 1.0, 1.5)
+    fault = job.world.partition(", ")[2]
+    rig |= PLANTED.get(fault, {})
+    loads = (0.6, 0.8, 1.0, 1.25, 1.5) if job.world.startswith("term") else (0.6, 1.0, 1.5)
     tables = {name: read(tyre, rows, rig, disc, rng) for name, rows in programme(load, disc, loads).items()}
     spoilt = SPOILT[fault](tables, load) if fault in SPOILT else ""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         for name, table in tables.items():
             table.to_csv(folder / f"{name}.csv", index=False)
-        (folder / "tyre.toml").write_text(
-            tomli_w.dumps(project(tyre, load, rig, disc, tables)), encoding="utf-8"
-        )
-        try:
-            result = mffit.build(folder / "tyre.toml", folder / "out", with_report=False)
-        except InputError as error:
-            return {"refused": str(error), "found": spoilt in str(error)}
+        content = tomli_w.dumps(project(tyre, load, rig, disc, tables))
+        (folder / "tyre.toml").write_text(content, encoding="utf-8")
+        result = harness.built(folder / "tyre.toml", out=folder / "out")
+        if isinstance(result, str):
+            return Foreign(refused=result, found=spoilt in result)
         said = [*result.trust.reasons, *(d.sentence for d in result.fit.doubts), *result.warnings]
-        out: dict[str, Any] = {"trusted": result.trusted, "reasons": list(result.trust.reasons)}
-        out["found"] = bool(spoilt) and any(spoilt in text for text in said)
-        for key in planted:
+        out = Foreign(
+            trusted=result.trusted, reasons=list(result.trust.reasons), doubted=len(result.fit.doubts)
+        )
+        out.found = bool(spoilt) and any(spoilt in text for text in said)
+        for key in PLANTED.get(fault, {}):
             value, u = result.fit.rig.get(NAMES[key], (0.0, 1.0))
-            out["found"] = any(WORDS[NAMES[key]] in text for text in said) or abs(value) > SAFE * u
-        out["blamed"] = len(result.fit.doubts)
-        out["open"] = any("misses whole sweeps" in text for text in result.trust.doubts)
+            out.found = any(WORDS[NAMES[key]] in text for text in said) or abs(value) > SAFE * u
+        out.open = any("misses whole sweeps" in text for text in result.trust.doubts)
         direct = result.measured.epsilon_gamma
         if direct is not None and isinstance(tyre, Brush):
-            out["eps"] = (direct.value - tyre.reduction) / direct.u
-        if fault:
-            return out
-        ends = (7.0, 45.0 if disc else 9.0)
-        Fz = rng.uniform(0.6 * load, 1.5 * load, 12)
-        runs = [(np.linspace(-7, 7, 15), np.full(15, x), np.full(15, F), 1.0)
-                for x, F in zip(ends[1] * rng.uniform(-1, 1, 12), Fz, strict=True)]  # fmt: skip
-        new = pd.concat([read(tyre, run, rig, disc, rng) for run in runs])
-        at = new.drop(columns=["Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm", "direction"])
-        found = mffit.predict(folder / "out", at)
-        angles = [np.radians(at[key].to_numpy()) for key in ("alpha_deg", "gamma_deg")]
-        truth = tyre.forces(*angles, at.Fz_N.to_numpy(), phi_t=-1.0 / RADIUS if disc else 0.0)
-        for name, true in zip(("Fy_N", "Mz_Nm"), truth, strict=True):
-            best, u = found[name.replace("_", "_best_")], "u_" + name.replace("_", "_{}_")
-            out[f"{name} best"] = inside(true - best, found[u.format("best")])
-            out[f"{name} file, true"] = (np.nan, np.nan, rms(true - found[name]))
-            out[f"{name} new run"] = inside(new[name].to_numpy() - best, found[u.format("run")])
-            out[f"{name} new run, file"] = inside(new[name].to_numpy() - found[name], found[f"u_{name}"])
-        if isinstance(tyre, Bent):
-            fitted = {n: r for n, r in result.fit.coefficients.items() if r.stderr and not r.at_bound}
-            z = {
-                n: (r.value - float(tyre.tyre[n])) / r.stderr
-                for n, r in fitted.items()
-                if r.status == "fitted"
-            }
-            out["coefficients"] = z
+            out.note("eps_gamma", direct.value, direct.u, tyre.reduction)
+        if not fault:
+            out.predicted = _predicted(folder / "out", tyre, load, rig, disc, rng)
+            for n, row in result.fit.coefficients.items() if isinstance(tyre, Bent) else ():
+                if row.stderr and not row.at_bound and row.status == "fitted":
+                    out.note(n, row.value, row.stderr, float(tyre.tyre[n]))
+        return out
+
+
+def _predicted(
+    build: Path, tyre: Any, load: float, rig: dict[str, float], disc: bool, rng: np.random.Generator
+):
+    """True forces and readings of a dozen new runs against the predictions."""
+    lean, Fz = 45.0 if disc else 9.0, rng.uniform(0.6 * load, 1.5 * load, 12)
+    runs = [(np.linspace(-7, 7, 15), np.full(15, x), np.full(15, F), 1.0)
+            for x, F in zip(lean * rng.uniform(-1, 1, 12), Fz, strict=True)]  # fmt: skip
+    new = pd.concat([read(tyre, run, rig, disc, rng) for run in runs])
+    at = new.drop(columns=["Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm", "direction"])
+    found, out = mffit.predict(build, at), {}
+    angles = [np.radians(at[key].to_numpy()) for key in ("alpha_deg", "gamma_deg")]
+    truth = tyre.forces(*angles, at.Fz_N.to_numpy(), phi_t=-1.0 / RADIUS if disc else 0.0)
+    for name, true in zip(("Fy_N", "Mz_Nm"), truth, strict=True):
+        file, best, u = found[name], found[name.replace("_", "_best_")], "u_" + name.replace("_", "_{}_")
+        out[f"{name} best"] = shares(true - best, found[u.format("best")])
+        out[f"{name} file, true"] = (np.nan, np.nan, rms(true - file))
+        out[f"{name} new run"] = shares(new[name].to_numpy() - best, found[u.format("run")])
+        out[f"{name} new run, file"] = shares(new[name].to_numpy() - file, found[f"u_{name}"])
     return out
 
 
-def lines(world: str, rows: list[dict[str, Any]]) -> list[str]:
-    """The page of one world."""
-    sound = [row for row in rows if "refused" not in row]
-    out = [f"\n## {world}: {len(rows)} builds, {len(rows) - len(sound)} refused"]
-    trusted, blamed, open_ = (sum(bool(row[key]) for row in sound) for key in ("trusted", "blamed", "open"))
-    out.append(
-        f"trusted {trusted}, with a doubted sweep {blamed}, with missed sweeps of unknown cause {open_}"
+def page(world: str, rows: list[Foreign]) -> Iterator[str]:
+    draws, refused = harness.sound(rows)
+    yield f"\n## {world}: {len(rows)} builds, {len(refused)} refused"
+    trusted, blamed, open_ = (
+        sum(bool(getattr(d, key)) for d in draws) for key in ("trusted", "doubted", "open")
     )
-    out += [f"* {text[:200]}" for row in sound for text in row["reasons"]][:4]
+    yield f"trusted {trusted}, with a doubted sweep {blamed}, with missed sweeps of unknown cause {open_}"
+    yield from [f"* {text[:200]}" for d in draws for text in d.reasons][:4]
     if ", " in world:
-        out.append(f"what is wrong is named, or a number of the fit, in {sum(row['found'] for row in rows)}")
-    if eps := [row["eps"] for row in sound if "eps" in row]:
-        out.append(
-            f"eps_gamma within 2 u: {np.mean(np.abs(eps) < 2.0):.0%}, rms over u {rms(np.array(eps)):.2f}"
+        yield f"what is wrong is named, or a number of the fit, in {sum(d.found for d in draws)}"
+    for key in draws[0].predicted if draws else ():
+        share, half, error = np.array([d.predicted[key] for d in draws]).T
+        ratio = rms(half) / rms(error)
+        yield (
+            f"{key}: inside {np.mean(share):.1%}, error {rms(error):.3g}, half width over error {ratio:.2f}"
+            f", over the ideal {ratio / SAFE:.2f}"
         )
-    for key in [key for key in (sound or [{}])[0] if key.startswith(("Fy_N", "Mz_Nm"))]:
-        share, half, error = np.array([row[key] for row in sound]).T
-        out.append(
-            f"{key}: inside {np.mean(share):.1%}, error {rms(error):.3g}, half width over error {rms(half) / rms(error):.2f}"
-            f", over the ideal {rms(half) / rms(error) / SAFE:.2f}"
-        )
-    pulls = [z for row in sound for z in row.get("coefficients", {}).values()]
-    if pulls:
-        z = np.abs(pulls)
-        out.append(
-            f"coefficients within 95 %: {np.mean(z < SAFE):.1%} of {len(z)}, median {np.median(z):.2f} u"
-        )
-    return out
+    pulls = np.array([z for d in draws for name, z in d.pulls.items() if name != "eps_gamma"])
+    if len(pulls):
+        share = harness.percent(np.abs(pulls) < SAFE)
+        yield f"coefficients within 95 %: {share} of {len(pulls)}, median {np.median(np.abs(pulls)):.2f} u"
+    yield from harness.coverage(draws)
 
 
 if __name__ == "__main__":
-    worlds.run(one_build, lines, worlds.asked(20, WORLDS))
+    harness.study(one, page, worlds=WORLDS, draws=20)

@@ -1,19 +1,19 @@
 """Which numbers of judgement move a figure? Each is changed by a fifth, up and down, and the figures are compared.
 
-``python tests/studies/numbers_study.py [PROJECT ...] [--rooms mffit.points ...] [--out FILE]`` builds each project
-(its tyre.toml; two samples if none is given), diagnoses its points against the base.tir in its folder, and plans further runs,
-with every number of judgement changed. ``--commands`` keeps to some of the three. Numbers are changed several at a time; a set
-that moves a figure is halved until the one that moved it is alone. Prints for every number the largest change of a figure, in
-standard errors of the figure where it has one, otherwise relative; and "says" where a sentence, a verdict or a choice changes.
-A number that moves nothing is deleted, merged, or names what it is needed for.
+``python tests/studies/numbers_study.py [--projects TYRE.toml ...] [--rooms mffit.points ...] [--out FILE]`` builds each project
+(two samples if none is given), diagnoses its points against the base.tir in its folder, and plans further runs, with every
+number of judgement changed. ``--commands`` keeps to some of the three. Numbers are changed several at a time; a set that moves a
+figure is halved until the one that moved it is alone. Prints for every number the largest change of a figure, in standard errors
+of the figure where it has one, otherwise relative; and "says" where a sentence, a verdict or a choice changes. ``--out`` goes on
+where it ended. A number that moves nothing is deleted, merged, or names what it is needed for.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,11 +21,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
-SAMPLES = [ROOT / "samples" / name / "tyre.toml" for name in ("front-120-70", "flat-track")]
+PROJECTS = [ROOT / "samples" / name / "tyre.toml" for name in ("front-120-70", "flat-track")]
 MODEL = "base.tir"
 """In the folder of a project, the tyre that a diagnosis starts from."""
 COMMANDS = ("build", "diagnose", "plan")
-FACTORS = (1.2, 1 / 1.2)
 UNCHANGED = 1e-6  # relative: what the order of sums changes
 Figures = Mapping[str, object]
 
@@ -42,19 +41,15 @@ class Number(NamedTuple):
         return f"{self.module}.{self.name}"
 
 
-def numbers(rooms: Sequence[str]) -> list[Number]:
+def numbers(rooms: Sequence[str]) -> Iterator[Number]:
     """All of them, in the order of their modules."""
-    found = []
     for path in sorted([*ROOT.glob("tir/**/constants.py"), *ROOT.glob("mffit/**/constants.py")]):
         module = ".".join(path.relative_to(ROOT).with_suffix("").parts)
-        if rooms and not any(module.startswith(room) for room in rooms):
-            continue
-        for statement in ast.parse(path.read_text(encoding="utf-8")).body:
-            if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
-                found.append(
-                    Number(module, statement.targets[0].id, statement.lineno, statement.end_lineno or 0)
-                )
-    return found
+        for line in (
+            ast.parse(path.read_text(encoding="utf-8")).body if module.startswith(tuple(rooms)) else ()
+        ):
+            if isinstance(line, ast.Assign) and isinstance(line.targets[0], ast.Name):
+                yield Number(module, line.targets[0].id, line.lineno, line.end_lineno or 0)
 
 
 def change(wanted: Sequence[Number], factor: float) -> None:
@@ -96,14 +91,14 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
     for project in projects:
         name = project.parent.name
         try:
-            if "build" in commands or "plan" in commands:
-                built = mffit.build(project, with_report=False)
-                found |= flat(plain(built), f"build {name}")
-            if "diagnose" in commands:
-                model = project.with_name(MODEL)
-                found |= flat(plain(mffit.diagnose(project, model)), f"diagnose {name}")
-            if "plan" in commands:
-                found |= flat(plain(plan_of(built)), f"plan {name}")
+            built = mffit.build(project, with_report=False) if {"build", "plan"} & {*commands} else None
+            answers = {
+                "build": lambda built=built: built,
+                "diagnose": lambda project=project: mffit.diagnose(project, project.with_name(MODEL)),
+                "plan": lambda built=built: plan_of(built),
+            }
+            for command in commands:
+                found |= flat(plain(answers[command]()), f"{command} {name}")
         except Exception as error:  # any failure is a figure that moved
             found[f"{name} fails"] = f"{type(error).__name__}: {error}"
     return {key: value for key, value in found.items() if not {"made", "seconds"} & {*key.split(".")}}
@@ -111,11 +106,10 @@ def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, obje
 
 def flat(content: object, prefix: str) -> dict[str, object]:
     """Nested dictionaries and lists as one."""
-    if isinstance(content, dict):
-        return {k: v for key, value in content.items() for k, v in flat(value, f"{prefix}.{key}").items()}
-    if isinstance(content, list):
-        return {k: v for i, value in enumerate(content) for k, v in flat(value, f"{prefix}.{i}").items()}
-    return {prefix: content}
+    if not isinstance(content, dict | list):
+        return {prefix: content}
+    inner = content.items() if isinstance(content, dict) else enumerate(content)
+    return {k: v for key, value in inner for k, v in flat(value, f"{prefix}.{key}").items()}
 
 
 class Moved(NamedTuple):
@@ -138,27 +132,22 @@ def moved(before: Figures, after: Figures) -> Moved:
     for key in before.keys() & after.keys():
         a, b = before[key], after[key]
         if isinstance(a, bool | str | None) or isinstance(b, bool | str | None):
-            if a != b and not similar(a, b):
-                says = says or key
+            says = says or (key if _worded(a) != _worded(b) else "")
         elif isinstance(a, float | int) and isinstance(b, float | int):
-            scale = unit_of(key, before) or max(abs(a), abs(b), 1e-12)
-            if abs(a - b) > UNCHANGED * max(abs(a), abs(b), 1e-9) and abs(a - b) / scale > max(
-                size, UNCHANGED
-            ):
-                size, where = abs(a - b) / scale, key
+            largest = max(abs(a), abs(b))
+            by = abs(a - b) / (unit_of(key, before) or max(largest, 1e-12))
+            if abs(a - b) > UNCHANGED * max(largest, 1e-9) and by > max(size, UNCHANGED):
+                size, where = by, key
     return Moved(size, where, says)
 
 
-def similar(a: object, b: object) -> bool:
-    """Sentences that differ in their digits only."""
-    if not (isinstance(a, str) and isinstance(b, str)):
-        return False
-    plain_a, plain_b = ("".join(c for c in text if not c.isdigit() and c not in ".-") for text in (a, b))
-    return plain_a == plain_b
+def _worded(text: object) -> object:
+    """A sentence without its digits."""
+    return re.sub(r"[\d.-]", "", text) if isinstance(text, str) else text
 
 
 def unit_of(key: str, content: Figures) -> float | None:
-    """The standard error that stands with a value."""
+    """The standard error that is stated with a value."""
     stem, _, last = key.rpartition(".")
     for name in ("stderr", f"u_{last}", f"{last}_u", "u"):
         error = content.get(f"{stem}.{name}")
@@ -169,13 +158,13 @@ def unit_of(key: str, content: Figures) -> float | None:
 
 
 def run(
-    wanted: Sequence[Number], factor: float, projects: Sequence[str], commands: Sequence[str]
-) -> dict[str, object]:
+    wanted: Sequence[Number], factor: float, projects: Sequence[Path], commands: Sequence[str]
+) -> Figures:
     """The figures with some numbers changed, in a process of its own."""
-    given = json.dumps({"numbers": wanted, "factor": factor, "projects": projects, "commands": commands})
+    asked = [wanted, factor, [str(path) for path in projects], commands]
     done = subprocess.run(
         [sys.executable, __file__, "--one"],
-        input=given, capture_output=True, text=True, check=False,
+        input=json.dumps(asked), capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
     if done.returncode:
@@ -197,23 +186,18 @@ def search(
 
 
 def main() -> None:
-    """Print what every number moves."""
-    ask = argparse.ArgumentParser()
-    ask.add_argument("projects", nargs="*", default=[str(path) for path in SAMPLES])
-    ask.add_argument("--rooms", nargs="*", default=[], help="modules whose numbers are changed")
-    ask.add_argument("--commands", nargs="*", default=COMMANDS, choices=COMMANDS)
-    ask.add_argument("--together", type=int, default=16, help="numbers changed at a time")
-    ask.add_argument("--factors", type=float, nargs="*", default=FACTORS)
-    ask.add_argument(
-        "--out", type=Path, help="file to which the lines go as they are found; goes on where it ended"
+    import harness  # not before numbers are changed: it imports the package
+
+    ask = harness.arguments(
+        __doc__,
+        projects=PROJECTS,
+        rooms=[""],
+        commands=list(COMMANDS),
+        together=16,
+        factors=[1.2, 1 / 1.2],
+        out=Path,
     )
-    ask.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     given = ask.parse_args()
-    if given.one:
-        asked = json.loads(sys.stdin.read())
-        change([Number(*one) for one in asked["numbers"]], asked["factor"])
-        print(json.dumps(figures([Path(p) for p in asked["projects"]], asked["commands"]), default=str))
-        return
     before = run([], 1.0, given.projects, given.commands)
     if "fails" in before:
         sys.exit(f"without a change: {before['fails']}")
@@ -222,12 +206,15 @@ def main() -> None:
     for factor in given.factors:
         every = [one for one in numbers(given.rooms) if f"x{factor:.3g}  {one!s} " not in known]
         for begin in range(0, len(every), given.together):
-            group = every[begin : begin + given.together]
-            for number, found in search(
-                group, lambda some, by=factor: run(some, by, given.projects, given.commands), before
-            ):
+            again = lambda some, by=factor: run(some, by, given.projects, given.commands)  # noqa: E731
+            for number, found in search(every[begin : begin + given.together], again, before):
                 print(f"x{factor:.3g}  {number!s:70s} {found}", file=write, flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:] == ["--one"]:
+        wanted, factor, projects, commands = json.load(sys.stdin)
+        change([Number(*one) for one in wanted], factor)
+        print(json.dumps(figures([Path(p) for p in projects], commands), default=str))
+    else:
+        main()

@@ -1,4 +1,4 @@
-"""Predictions of ``mffit plan`` against the outcome: ``python tests/studies/plan_study.py [DRAWS]``.
+"""Predictions of ``mffit plan`` against the outcome: ``python tests/studies/plan_study.py 20``.
 
 The errors of the rigs are drawn from their declared uncertainties. Each campaign is built, a plan is made for every goal, its
 runs are simulated on the same rig with the same tyre, and the longer campaign is built. The predicted uncertainty is compared
@@ -8,32 +8,27 @@ for one draw.
 
 from __future__ import annotations
 
-import argparse
 import copy
-import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import harness
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
+from small_rigs import SAMPLE, built, disc, truth
 
 import tir
 from mffit import virtual_rig
 from mffit.pipeline.planning import plan_of
 from mffit.planning import Goal, Plan, PlannedRun, addition_named, read_goal
 from mffit.results import BuildResult
-from tests.mffit.small_rigs import SAMPLE, built, disc, truth
+from mffit.scatter import rms
 
-FAULTS = {
-    "u_loadcell_offset_N": "F0_N",
-    "u_camber_alignment_deg": "gamma_0_deg",
-    "u_slip_alignment_N": "alpha_0_deg",
-    "u_path_radius": "path_radius_m",
-}
+FAULTS = ("F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m", "backlash_deg")
+MOST_RUNS = 2
 
 
 @dataclass(frozen=True)
@@ -43,7 +38,6 @@ class Task:
     goal: str
     pecp1: str = "debiased"
     without: tuple[str, ...] = ()
-    runs: int = 2
 
 
 ONE_SIDE = ("other-side", "other-side-camber")
@@ -68,60 +62,47 @@ class Outcome:
     error: float
 
 
-def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
+def one(job: harness.Job) -> dict[Task, Outcome]:
     """Outcomes of all tasks for one draw: simulate, build, plan, simulate the plan, build again."""
-    content = disc(faults={"draw": True})
-    true = truth()
+    content, true, seed, out = disc(faults={"draw": True}), truth(), job.seed, {}
     drawn = virtual_rig.run(virtual_rig.load_plan(content, folder=SAMPLE), true, seed=seed).truth.faults
-    content["faults"] = {name: drawn[name] for name in (*FAULTS.values(), "backlash_deg")}
+    content["faults"] = {name: drawn[name] for name in FAULTS}
     with tempfile.TemporaryDirectory() as made:
         for pecp1 in dict.fromkeys(task.pecp1 for task in TASKS):
             first = built(content | {"spin": {"pecp1": pecp1}}, Path(made) / f"first-{pecp1}", seed)
             for task in (task for task in TASKS if task.pecp1 == pecp1):
                 goal = read_goal(task.goal, on_disc=True)
-                plan = plan_of(
-                    first, goal, runs=task.runs, without=[addition_named(word) for word in task.without]
-                )
-                longer = extended(content | {"spin": {"pecp1": pecp1}}, plan)
+                without = [addition_named(word) for word in task.without]
+                plan = plan_of(first, goal, runs=MOST_RUNS, without=without)
+                longer = copy.deepcopy(content) | {"spin": {"pecp1": pecp1}}
+                longer["sweep"] += [sweep for step in plan.steps for sweep in sweeps(step.run, plan)]
                 second = built(longer, Path(made) / f"second-{TASKS.index(task)}", seed)
-                stated, error = stated_and_error(second, goal, true)
                 names = tuple(step.run.name for step in plan.steps)
-                yield task, Outcome(names, plan.now, plan.then, stated, error)
-
-
-def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
-    """The campaign with the runs of the plan."""
-    content = copy.deepcopy(content)
-    for step in plan.steps:
-        content["sweep"] += list(sweeps(step.run, plan))
-    return content
+                stated, error = stated_and_error(second, goal, true)
+                out[task] = Outcome(names, plan.now, plan.then, stated, error)
+    return out
 
 
 def sweeps(run: PlannedRun, plan: Plan) -> Iterator[dict[str, Any]]:
-    """Set-points of a run as sweeps of the virtual rig, one sweep per camber."""
+    """Set-points of a run as sweeps of the virtual rig, one per direction, pressure and camber."""
     points = run.points
-    usual = plan.config.rig.radius
-    for way in (1, -1):
-        for k, pressure in enumerate(np.unique(points.p)):
-            rows = np.flatnonzero((points.direction == way) & (points.p == pressure))
-            alpha, gamma = np.degrees(points.alpha[rows]).round(6), np.degrees(points.gamma[rows]).round(6)
-            for j, lean in enumerate(np.unique(gamma)):
-                own = rows[gamma == lean]
-                yield (
-                    {
-                        "file": f"{run.name}_{way}_{k}_{j}.csv",
-                        "load_N": float(points.Fz[own[0]]),
-                        "alpha_deg": alpha[gamma == lean].tolist(),
-                        "gamma_deg": [float(lean)],
-                        "p_kPa": 1e-3 * float(pressure),
-                        "direction": "forward" if way > 0 else "backward",
-                        "mount": "normal" if points.mount[own[0]] > 0 else "flipped",
-                        "path_centre": "left" if points.phi_t[own[0]] < 0 else "right",
-                        "path_radius": round(1.0 / abs(float(points.phi_t[own[0]])), 9) or usual,
-                    }
-                    if len(own)
-                    else {}
-                )
+    alpha, gamma = np.degrees(points.alpha).round(6), np.degrees(points.gamma).round(6)
+    for way, pressure, lean in product((1, -1), np.unique(points.p), np.unique(gamma)):
+        own = np.flatnonzero((points.direction == way) & (points.p == pressure) & (gamma == lean))
+        if not len(own):
+            continue
+        phi_t = float(points.phi_t[own[0]])
+        yield {
+            "file": f"{run.name}_{way}_{pressure:.0f}_{lean:g}.csv",
+            "load_N": float(points.Fz[own[0]]),
+            "alpha_deg": alpha[own].tolist(),
+            "gamma_deg": [float(lean)],
+            "p_kPa": 1e-3 * float(pressure),
+            "direction": "forward" if way > 0 else "backward",
+            "mount": "normal" if points.mount[own[0]] > 0 else "flipped",
+            "path_centre": "left" if phi_t < 0 else "right",
+            "path_radius": round(1.0 / abs(phi_t), 9) or plan.config.rig.radius,
+        }
 
 
 def stated_and_error(result: BuildResult, goal: Goal, true: tir.Tyre) -> tuple[float, float]:
@@ -131,46 +112,29 @@ def stated_and_error(result: BuildResult, goal: Goal, true: tir.Tyre) -> tuple[f
         debiased = result.config.spin.pecp1 == "debiased"
         found = measured.epsilon_gamma_debiased if debiased else measured.epsilon_gamma
         return found.u, found.value - true["PECP1"]
-    if goal.kind == "eps_gamma:joint":
-        return coefficients["PECP1"].stderr, result.fit.tyre["PECP1"] - true["PECP1"]
-    if goal.kind == "coefficient":
-        return coefficients[goal.name].stderr, result.fit.tyre[goal.name] - true[goal.name]
-    again = plan_of(result, goal, runs=0)
-    return again.now, float("nan")
+    if goal.kind in ("eps_gamma:joint", "coefficient"):
+        name = "PECP1" if goal.kind == "eps_gamma:joint" else goal.name
+        return coefficients[name].stderr, result.fit.tyre[name] - true[name]
+    return plan_of(result, goal, runs=0).now, float("nan")
 
 
-def rows(found: dict[Task, list[Outcome]]) -> Iterator[str]:
-    """The table."""
+def page(_: Any, draws: list[dict[Task, Outcome]]) -> Iterator[str]:
     head = ("goal", "PECP1", "without", "most frequent list", "u now", "promised")
     head += ("stated over promised: median (range)", "rms error over promised", "draws")
-    yield f"| {' | '.join(head)} |"
-    yield "|---" * len(head) + "|"
-    for task, all_of in found.items():
-        if not all_of:
-            continue
-        lists = [", ".join(o.runs) for o in all_of]
-        ratio = np.array([o.stated / o.promised for o in all_of])
-        pull = np.array([o.error / o.promised for o in all_of])
-        scatter = f"{np.sqrt(np.mean(pull**2)):.2f}" if np.all(np.isfinite(pull)) else "–"
-        yield (
-            f"| {task.goal} | {task.pecp1} | {', '.join(task.without)} | {max(set(lists), key=lists.count)} "
-            f"| {np.median([o.now for o in all_of]):.3g} | {np.median([o.promised for o in all_of]):.3g} "
-            f"| {np.median(ratio):.2f} ({ratio.min():.2f} to {ratio.max():.2f}) | {scatter} | {len(all_of)} |"
-        )
+    yield from harness.table(head, (_row(task, [draw[task] for draw in draws]) for task in TASKS))
 
 
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("draws", type=int, nargs="?", default=20)
-    ask.add_argument("--first", type=int, default=0)
-    given = ask.parse_args()
-    found: dict[Task, list[Outcome]] = {task: [] for task in TASKS}
-    for seed in range(given.first, given.first + given.draws):
-        for task, outcome in outcomes(seed):
-            found[task].append(outcome)
-            print(seed, task.goal, task.pecp1, outcome, file=sys.stderr, flush=True)
-    print("\n".join(rows(found)))
+def _row(task: Task, found: list[Outcome]) -> tuple[object, ...]:
+    lists = [", ".join(o.runs) for o in found]
+    now, promised, ratio, pull = np.array(
+        [(o.now, o.promised, o.stated / o.promised, o.error / o.promised) for o in found]
+    ).T
+    return (
+        task.goal, task.pecp1, ", ".join(task.without), max(set(lists), key=lists.count), f"{np.median(now):.3g}",
+        f"{np.median(promised):.3g}", f"{np.median(ratio):.2f} ({ratio.min():.2f} to {ratio.max():.2f})",
+        f"{rms(pull):.2f}", len(found),
+    )  # fmt: skip
 
 
 if __name__ == "__main__":
-    main()
+    harness.study(one, page, draws=20)

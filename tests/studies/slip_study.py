@@ -9,27 +9,18 @@ which on a flat track are hardly separable from ply-steer, conicity and residual
 
 from __future__ import annotations
 
-import argparse
 import math
-import pickle
-import sys
-import time
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import harness
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
 from drawn_rigs import SAMPLES, STAGED, Draw, half_of_mean, on_disk, scaled
-from recovery_study import coverage
 
-import mffit
 import tir
-from mffit.errors import InputError
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import DECLARED, ZEROS
@@ -75,32 +66,50 @@ class Vehicle:
         """A load as a share of the nominal one, rounded [N]."""
         return float(round(share * self.tyre["nominal_load"], -2))
 
+    def drawn(self, off: float, rng: np.random.Generator) -> tir.Tyre:
+        return drawn(tir.read(self.true).replace(**UNSETTLED, LONGVL=SPEED), off, rng)
 
-CAR = Vehicle(
-    SAMPLES / "flat-track-combined" / "true.tir",
-    {"size": "225/45R17", "unloaded_radius": 0.3185, "width": 0.225, "rim_radius": 0.2159,
-     "nominal_load": 4200.0, "nominal_pressure": 240.0},
-    {"Fx_N": 15.0, "Fy_N": 12.0, "Mx_Nm": 6.0, "My_Nm": 0.8, "Mz_Nm": 1.5, "RL_m": 0.0002, "omega_radps": 0.02},
-    4.0,
-)  # fmt: skip
-MOTORCYCLE = Vehicle(
-    SAMPLES / "front-120-70" / "true.tir",
-    {"size": "120/70R17", "unloaded_radius": 0.2992, "width": 0.12, "rim_radius": 0.2159,
-     "nominal_load": 1400.0, "nominal_pressure": 250.0},
-    {"Fx_N": 12.0, "Fy_N": 8.0, "Mx_Nm": 2.0, "My_Nm": 0.3, "Mz_Nm": 1.0, "RL_m": 0.0002, "omega_radps": 0.02},
-    20.0,
-)  # fmt: skip
-VEHICLES = {"car": CAR, "motorcycle": MOTORCYCLE}
+    def content(
+        self, sweeps: list[dict[str, Any]], faults: Mapping[str, float], noise: Mapping[str, float]
+    ) -> Any:
+        """The campaign as a ``rig.toml``."""
+        return {
+            "faults": {"draw": True, **faults},
+            "noise": dict(noise),
+            "conditions": {"V_mps": SPEED},
+            "tyre": {"name": "drawn", "nominal_speed": SPEED, "side": "left", **self.tyre},
+            "rig": {"type": "flat-track", "axes": "sae"},
+            "sweep": sweeps,
+        }
+
+
+VEHICLES = {
+    "car": Vehicle(
+        SAMPLES / "flat-track-combined" / "true.tir",
+        {"size": "225/45R17", "unloaded_radius": 0.3185, "width": 0.225, "rim_radius": 0.2159,
+         "nominal_load": 4200.0, "nominal_pressure": 240.0},
+        {"Fx_N": 15.0, "Fy_N": 12.0, "Mx_Nm": 6.0, "My_Nm": 0.8, "Mz_Nm": 1.5, "RL_m": 0.0002, "omega_radps": 0.02},
+        4.0,
+    ),
+    "motorcycle": Vehicle(
+        SAMPLES / "front-120-70" / "true.tir",
+        {"size": "120/70R17", "unloaded_radius": 0.2992, "width": 0.12, "rim_radius": 0.2159,
+         "nominal_load": 1400.0, "nominal_pressure": 250.0},
+        {"Fx_N": 12.0, "Fy_N": 8.0, "Mx_Nm": 2.0, "My_Nm": 0.3, "Mz_Nm": 1.0, "RL_m": 0.0002, "omega_radps": 0.02},
+        20.0,
+    ),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Kind:
     """A kind of campaign."""
 
-    vehicle: Vehicle = CAR
+    vehicle: Vehicle = VEHICLES["car"]
     base: bool = False  #: a base file up to 30 % off in every coefficient
     thin: bool = False  #: two loads, no camber
     one_sideslip: bool = False  #: combined slip at one sideslip, to one side
+    first: int = 9000  #: of the seeds
 
     @property
     def shares(self) -> tuple[float, ...]:
@@ -116,14 +125,46 @@ class Kind:
         """Those of combined slip [deg]."""
         return [4.0] if self.one_sideslip else [-6.0, -2.0, 2.0, 6.0]
 
+    @property
+    def swept(self) -> dict[str, float]:
+        """Sideslip of the sweeps over it [deg]."""
+        return {"from": -12, "to": 12, "step": 1.5}
 
+    def noise(self, rng: np.random.Generator) -> dict[str, float]:
+        """The noise of every channel."""
+        return {key: float(x * NOISE_OFF ** rng.uniform(-1.0, 1.0)) for key, x in self.vehicle.noise.items()}
+
+    def asymmetric(self, tyre: tir.Tyre, size: float, rng: np.random.Generator) -> tir.Tyre:
+        """The tyre that is run, once the base file is drawn around it."""
+        return tyre
+
+    def ranges(self, rng: np.random.Generator) -> dict[str, dict[str, np.ndarray]]:
+        """Conditions (n,) between those that were run: over sideslip, over slip, of both, and at other pressures."""
+        vehicle, n = self.vehicle, CONDITIONS
+        loads, lean = [vehicle.at(share) for share in self.shares], self.cambers
+        p = np.full(n, 1e3 * vehicle.tyre["nominal_pressure"])
+        Fz, gamma = rng.uniform(loads[0], loads[-1], n), np.radians(rng.uniform(lean[0], lean[-1], n))
+        alpha, kappa = np.radians(rng.uniform(-12.0, 12.0, n)), rng.uniform(-0.2, 0.2, n)
+        both = np.radians(rng.uniform(min(*self.sideslips, 0.0), max(self.sideslips), n))
+        none, nominal = np.zeros(n), np.full(n, vehicle.at(1.0))
+        other = p + 40e3 * rng.uniform(-1.0, 1.0, n)
+        either = rng.random(n) < 0.5
+        names = ("Fz", "alpha", "gamma", "kappa", "p")
+        rows = {
+            "sideslip": (Fz, alpha, gamma, none, p),
+            "slip": (Fz, none, gamma, kappa, p),
+            "ellipse, upright": (Fz, both, none, kappa, p),
+            "ellipse, camber": (nominal, both, np.abs(gamma), kappa, p),
+            "pressures": (nominal, np.where(either, alpha, 0.0), none, np.where(either, 0.0, kappa), other),
+        }
+        return {word: dict(zip(names, row, strict=True)) for word, row in rows.items()}
+
+
+THIN, ONE = Kind(thin=True), Kind(one_sideslip=True)
 CAMPAIGNS = {
-    "full": Kind(),
-    "full, base 30 % off": Kind(base=True),
-    "thin": Kind(thin=True),
-    "thin, base 30 % off": Kind(thin=True, base=True),
-    "one sideslip": Kind(one_sideslip=True),
-    "one sideslip, base 30 % off": Kind(one_sideslip=True, base=True),
+    f"{name}{words}": replace(kind, base=bool(words))
+    for name, kind in {"full": Kind(), "thin": THIN, "one sideslip": ONE}.items()
+    for words in ("", ", base 30 % off")
 }
 KINDS = {
     f"{word}, {name}": replace(kind, vehicle=vehicle)
@@ -131,7 +172,6 @@ KINDS = {
     for word, vehicle in VEHICLES.items()
 }
 SWEPT_SLIP = {"from": -0.2, "to": 0.2, "step": 0.02}
-SWEPT_SIDESLIP = {"from": -12, "to": 12, "step": 1.5}
 
 
 @dataclass(frozen=True)
@@ -141,7 +181,12 @@ class Gap:
     rms: float  #: [N] or [Nm]
     noise: float  #: of a point
     within: float  #: share of the conditions within twice the noise
-    banded: float  #: share of the conditions whose truth the 95 % band contains
+    half: float  #: rms half width of the 95 % band
+    banded: float  #: share of the conditions whose truth it contains
+
+    @property
+    def over(self) -> float:
+        return self.rms / self.noise
 
 
 @dataclass
@@ -162,140 +207,87 @@ def sweeps(kind: Kind) -> list[dict[str, Any]]:
     """The campaign: sideslip, drive and brake, combined slip, and free rolling over load, pressure and speed."""
     vehicle, nominal = kind.vehicle, kind.vehicle.tyre["nominal_pressure"]
     others = [nominal - 40.0, nominal + 40.0]
+    slip, sideslip = {"kappa": SWEPT_SLIP}, {"alpha_deg": kind.swept}
+    combined = {**slip, "alpha_deg": kind.sideslips}
     out: list[dict[str, Any]] = []
-    for share in kind.shares:
-        load = vehicle.at(share)
-        common = {"load_N": load, "gamma_deg": kind.cambers}
-        out.append({"file": f"sideslip_{load:.0f}N.csv", "alpha_deg": SWEPT_SIDESLIP, **common})
-        out.append({"file": f"drive_{load:.0f}N.csv", "kappa": SWEPT_SLIP, **common})
-        out.append(
-            {
-                "file": f"combined_{load:.0f}N.csv",
-                "load_N": load,
-                "kappa": SWEPT_SLIP,
-                "alpha_deg": kind.sideslips,
-            }
-        )
+
+    def run(name: str, load: Any, **angles: Any) -> None:
+        out.append({"file": f"{name}.csv", "load_N": load, **angles})
+
+    for load in map(vehicle.at, kind.shares):
+        run(f"sideslip_{load:.0f}N", load, **sideslip, gamma_deg=kind.cambers)
+        run(f"drive_{load:.0f}N", load, **slip, gamma_deg=kind.cambers)
+        run(f"combined_{load:.0f}N", load, **combined)
     load = vehicle.at(1.0)
-    out.append(
-        {"file": "sideslip_pressures.csv", "load_N": load, "alpha_deg": SWEPT_SIDESLIP, "p_kPa": others}
-    )
-    out.append({"file": "drive_pressures.csv", "load_N": load, "kappa": SWEPT_SLIP, "p_kPa": others})
+    run("sideslip_pressures", load, **sideslip, p_kPa=others)
+    run("drive_pressures", load, **slip, p_kPa=others)
     if not kind.thin:
-        leant = {"gamma_deg": vehicle.camber, "alpha_deg": kind.sideslips, "kappa": SWEPT_SLIP}
-        out.append({"file": "combined_camber.csv", "load_N": load, **leant})
-    out.append(
-        {
-            "file": "rolling.csv",
-            "load_N": [vehicle.at(s) for s in np.linspace(0.5 * kind.shares[0], kind.shares[-1], 6)],
-            "p_kPa": [others[0], nominal, others[1]],
-            "V_mps": [8, SPEED, 30],
-            "free_rolling": True,
-        }
-    )
+        run("combined_camber", load, **combined, gamma_deg=vehicle.camber)
+    loads = [vehicle.at(s) for s in np.linspace(0.5 * kind.shares[0], kind.shares[-1], 6)]
+    p = [others[0], nominal, others[1]]
+    run("rolling", loads, p_kPa=p, V_mps=[8, SPEED, 30], free_rolling=True)
     return out
 
 
-def one(seed: int, name: str, off: float, *, exact: bool = False) -> SlipDraw:
+def one(job: harness.Job) -> SlipDraw:
+    return built(job, KINDS[job.world])
+
+
+def built(job: harness.Job, kind: Kind) -> SlipDraw:
     """Draw, simulate and build one campaign."""
-    rng, kind = np.random.default_rng(9000 + seed), KINDS[name]
-    vehicle = kind.vehicle
-    true = _drawn(tir.read(vehicle.true).replace(**UNSETTLED, LONGVL=SPEED), off, rng)
-    noise = {key: float(x * NOISE_OFF ** rng.uniform(-1.0, 1.0)) for key, x in vehicle.noise.items()}
-    draw = SlipDraw(kind=name, seed=seed)
+    seed, given, rng = job.seed, job.given, np.random.default_rng(kind.first + job.seed)
+    true, noise = kind.vehicle.drawn(given.off, rng), kind.noise(rng)
     own = np.random.default_rng([9000, seed])
     undeclared = {error: float(u * own.standard_normal()) for error, u in UNDECLARED.items()}
-    content = {
-        "faults": {"draw": True, **(RIGHT if exact else undeclared)},
-        "noise": noise,
-        "conditions": {"V_mps": SPEED},
-        "tyre": {"name": "drawn", "nominal_speed": SPEED, "side": "left", **vehicle.tyre},
-        "rig": {"type": "flat-track", "axes": "sae"},
-        "sweep": sweeps(kind),
-    }
-    base = _drawn(true, 0.3, rng) if kind.base else None
+    base = drawn(true, 0.3, rng) if kind.base else None
+    true = kind.asymmetric(true, given.size, rng)
+    content = kind.vehicle.content(sweeps(kind), RIGHT if given.exact else undeclared, noise)
+    draw = SlipDraw(kind=job.world, seed=seed)
     with on_disk(true, content, seed, base=base) as (path, known):
-        try:
-            result = mffit.build(path)
-        except InputError as error:
-            draw.refused = str(error)
-            return draw
-    _compare(draw, result, true, known.to_json()["faults"], kind, noise, rng)
+        result = harness.built(path)
+    if isinstance(result, str):
+        draw.refused = f"seed {seed}, {job.world}: {result}"
+        return draw
+    sigma = {name: noise[column] for name in CHANNELS for column in noise if column.startswith(f"{name}_")}
+    _judge(draw, result, true, sigma)
+    for name, (value, u) in result.fit.rig.items():
+        draw.note(f"rig.{name}", value, u, known.to_json()["faults"][name])
+    draw.gaps = _gaps(result.fit, true, kind.ranges(rng), sigma)
+    draw.error = _radius_errors(result.fit.written, true, kind)
     return draw
 
 
-def _drawn(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
+def drawn(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
     tyre = scaled(tyre, off, rng, (*STAGED, *RADII, "QSY1"))
     return scaled(tyre, min(off, FREE_RADIUS), rng, ("Q_RE0",))
 
 
-def _compare(
-    draw: SlipDraw,
-    result: Any,
-    true: tir.Tyre,
-    faults: Mapping[str, float],
-    kind: Kind,
-    noise: Mapping[str, float],
-    rng: np.random.Generator,
-) -> None:
+def _judge(draw: SlipDraw, result: Any, true: tir.Tyre, sigma: Mapping[str, float]) -> None:
+    """Note misfits, coefficients and trust."""
     fit = result.fit
     draw.seconds, draw.doubted = fit.seconds, len(fit.doubts)
     draw.trusted, draw.reasons = result.trusted, tuple(result.trust.reasons)
     draw.at_bound = tuple(name for name, row in fit.coefficients.items() if row.at_bound)
-    sigma = {name: noise[column] for name in CHANNELS for column in noise if column.startswith(f"{name}_")}
-    for name in CHANNELS:
-        draw.misfit[name] = fit.channels[name].rmse / sigma[name]
-    draw.overall = _with_freedom(draw.misfit, fit)
+    draw.misfit = {name: fit.channels[name].rmse / sigma[name] for name in CHANNELS}
     draw.note_coefficients(fit, true, [name for name in FOUND if true[name]])  # a factor moves no zero
-    for name, (value, u) in fit.rig.items():
-        draw.note(f"rig.{name}", value, u, faults[name])
-    for word, where in _ranges(kind, rng).items():
+    points = {name: fit.channels[name].n for name in CHANNELS}
+    squares = sum(points[name] * draw.misfit[name] ** 2 for name in CHANNELS)
+    # A number that its prior decides takes no freedom from the points.
+    taken = sum(1.0 - (fit.search.stderr[n.name] / n.spread) ** 2 for n in fit.search.numbers)
+    draw.overall = math.sqrt(squares / (sum(points.values()) - taken))
+
+
+def _gaps(fit: Any, true: tir.Tyre, ranges: Mapping[str, Any], sigma: Mapping[str, float]) -> Any:
+    gaps = {}
+    for word, where in ranges.items():
         found, truth = (tyre(**where, Vx=SPEED, turn_slip=False) for tyre in (fit.written, true))
         points = make_points(**where, V=SPEED, phi_t=0.0)
         half = half_of_mean(fit, Simulation(fit.written.values, turn_slip=False), points)
         for name in CHANNELS:
             gap = np.abs(getattr(found, name) - getattr(truth, name))
             within, banded = (float(np.mean(gap < reach)) for reach in (2.0 * sigma[name], half[name]))
-            draw.gaps[word, name] = Gap(rms(gap), sigma[name], within, banded)
-    draw.error |= _radius_errors(fit.written, true, kind)
-
-
-def _with_freedom(misfit: Mapping[str, float], fit: Any) -> float:
-    """Misfit over noise whose expected value is 1: a number that its prior decides takes no freedom from the points."""
-    points = {name: fit.channels[name].n for name in CHANNELS}
-    squares = sum(points[name] * misfit[name] ** 2 for name in CHANNELS)
-    taken = sum(1.0 - (fit.search.stderr[n.name] / n.spread) ** 2 for n in fit.search.numbers)
-    return math.sqrt(squares / (sum(points.values()) - taken))
-
-
-def _ranges(kind: Kind, rng: np.random.Generator) -> dict[str, dict[str, np.ndarray]]:
-    """Conditions (n,) between those that were run: over sideslip, over slip, of both together, and at other pressures."""
-    vehicle, n = kind.vehicle, CONDITIONS
-    loads = [vehicle.at(share) for share in kind.shares]
-    p = np.full(n, 1e3 * vehicle.tyre["nominal_pressure"])
-    Fz, gamma = (
-        rng.uniform(loads[0], loads[-1], n),
-        np.radians(rng.uniform(kind.cambers[0], kind.cambers[-1], n)),
-    )
-    alpha, kappa = np.radians(rng.uniform(-12.0, 12.0, n)), rng.uniform(-0.2, 0.2, n)
-    low, high = min(*kind.sideslips, 0.0), max(kind.sideslips)
-    both = np.radians(rng.uniform(low, high, n))
-    none = np.zeros(n)
-    nominal, other = np.full(n, vehicle.at(1.0)), p + 40e3 * rng.uniform(-1.0, 1.0, n)
-    either = rng.random(n) < 0.5
-    return {
-        "sideslip": {"Fz": Fz, "alpha": alpha, "gamma": gamma, "kappa": none, "p": p},
-        "slip": {"Fz": Fz, "alpha": none, "gamma": gamma, "kappa": kappa, "p": p},
-        "ellipse, upright": {"Fz": Fz, "alpha": both, "gamma": none, "kappa": kappa, "p": p},
-        "ellipse, camber": {"Fz": nominal, "alpha": both, "gamma": np.abs(gamma), "kappa": kappa, "p": p},
-        "pressures": {
-            "Fz": nominal,
-            "alpha": np.where(either, alpha, 0.0),
-            "gamma": none,
-            "kappa": np.where(either, 0.0, kappa),
-            "p": other,
-        },
-    }
+            gaps[word, name] = Gap(rms(gap), sigma[name], within, rms(half[name]), banded)
+    return gaps
 
 
 def _radius_errors(model: tir.Tyre, true: tir.Tyre, kind: Kind) -> dict[str, float]:
@@ -305,113 +297,72 @@ def _radius_errors(model: tir.Tyre, true: tir.Tyre, kind: Kind) -> dict[str, flo
 
     def rolling(tyre: tir.Tyre) -> tuple[np.ndarray, ...]:
         Re = tyre.state(Fz, Vx=V, p=p).Re
-        return (
-            1e3 * loaded_radius(tyre.values, Fz, 0.0, 0.0, 0.0, V / Re, p),
-            1e3 * Re,
-            tyre(Fz, Vx=V, p=p).My,
-        )
+        loaded = loaded_radius(tyre.values, Fz, 0.0, 0.0, 0.0, V / Re, p)
+        return 1e3 * loaded, 1e3 * Re, tyre(Fz, Vx=V, p=p).My
 
     names = ("loaded radius [mm]", "rolling radius [mm]", "My [Nm]")
     return {name: rms(a - b) for name, a, b in zip(names, rolling(model), rolling(true), strict=True)}
 
 
-def tables(draws: Sequence[SlipDraw]) -> Iterable[str]:
-    """Lines of all tables."""
-    for d in draws:
-        if d.refused:
-            yield f"* seed {d.seed}, {d.kind}: refused: {d.refused}"
-    draws = [d for d in draws if not d.refused]
-    yield from _misfits(draws)
-    yield from _against_truth(draws)
-    yield from _summary_of_coverage(draws)
-    yield from coverage(draws)
+def page(_: Any, found: Mapping[str, list[SlipDraw]]) -> Iterator[str]:
+    draws, refused = harness.sound(d for rows in found.values() for d in rows)
+    yield f"{len(draws)} builds"
+    yield from refused
+    groups: dict[str, list[SlipDraw]] = {}
+    for draw in sorted(draws, key=lambda d: list(found).index(d.kind)):
+        groups.setdefault(draw.kind.split(", ", 1)[1], []).append(draw)
+    groups["all"] = draws
+    yield from harness.misfits(groups)
+    columns = {
+        "misfit of all, with freedom": lambda of: harness.spread(d.overall for d in of),
+        "in 0.95-1.05": lambda of: harness.percent([0.95 < d.overall < 1.05 for d in of]),
+        "trusted": lambda of: sum(d.trusted for d in of),
+        "at a bound": lambda of: sum(len(d.at_bound) for d in of),
+    }
+    for word, sort in {"fitted": "", "regularised": "(regularised)", "of the rig": "rig."}.items():
+        columns[f"{word} inside 95 %"] = lambda of, sort=sort: _inside(of, sort)
+    for name in draws[0].error:
+        columns[f"{name} rms (largest)"] = lambda of, name=name: harness.largest(d.error[name] for d in of)
+    yield from harness.by_group(
+        groups, columns, "Coefficients inside their intervals, radii and rolling moment"
+    )
+    groups |= {vehicle: [d for d in draws if d.kind.startswith(vehicle)] for vehicle in VEHICLES}
+    gaps = {
+        f"{word}: {name}": [{c: d.gaps[word, c] for c in CHANNELS} for d in of]
+        for word in dict.fromkeys(word for word, _ in draws[0].gaps)
+        for name, of in groups.items()
+    }
+    cells = {c: lambda of, c=c: _against_truth([gap[c] for gap in of]) for c in CHANNELS}
+    cells["within twice the noise"] = lambda of: (
+        f"{np.mean([g.within for gap in of for g in gap.values()]):.1%}"
+    )
+    title = "Against the noise-free truth: rms error over the noise of a point, median (largest); "
+    title += "rms error and half width of the 95 % band [N], [Nm]; conditions inside the band"
+    yield from harness.by_group(gaps, cells, title, "range: campaign")
+    yield from harness.coverage(draws)
     yield from _worst(draws)
 
 
-def _by_kind(draws: Sequence[SlipDraw]) -> dict[str, list[SlipDraw]]:
-    """Draws by kind of campaign, both vehicles together, and all."""
-    found = {name: [d for d in draws if d.kind.split(", ", 1)[1] == name] for name in CAMPAIGNS}
-    return {name: rows for name, rows in found.items() if rows} | {"all": list(draws)}
+def _inside(draws: Sequence[SlipDraw], sort: str) -> str:
+    """Share of the coefficients of a sort inside their intervals."""
+
+    def sort_of(name: str) -> str:
+        return "rig." if name.startswith("rig.") else "(regularised)" if "(" in name else ""
+
+    found = [x for d in draws for n, x in d.inside.items() if sort_of(n) == sort]
+    return f"{np.mean(found):.1%} of {len(found)}" if found else "-"
 
 
-def _misfits(draws: Sequence[SlipDraw]) -> Iterable[str]:
-    yield "\n## Misfit over noise\n"
-    yield (
-        "| campaign | builds | "
-        + " | ".join(f"{c} median (range)" for c in CHANNELS)
-        + " | all, with freedom | of these in 0.95-1.05 | fit [s] |"
+def _against_truth(gaps: Sequence[Gap]) -> str:
+    over, error, half, banded = np.array([(g.over, g.rms, g.half, g.banded) for g in gaps]).T
+    return (
+        f"{np.median(over):.2f} ({over.max():.2f}); {rms(error):.3g}, {rms(half):.3g}; {np.mean(banded):.1%}"
     )
-    yield "|---" * (5 + len(CHANNELS)) + "|"
-    for name, rows in _by_kind(draws).items():
-        x = np.array([[d.misfit[c] for c in CHANNELS] for d in rows])
-        cells = [f"{np.median(c):.2f} ({c.min():.2f}-{c.max():.2f})" for c in x.T]
-        overall = np.array([d.overall for d in rows])
-        inside = np.mean((overall > 0.95) & (overall < 1.05))
-        cells.append(f"{np.median(overall):.2f} ({overall.min():.2f}-{overall.max():.2f})")
-        seconds = np.median([d.seconds for d in rows])
-        yield f"| {name} | {len(rows)} | " + " | ".join(cells) + f" | {inside:.0%} | {seconds:.1f} |"
 
 
-def _against_truth(draws: Sequence[SlipDraw]) -> Iterable[str]:
-    yield "\n## Rms error against the noise-free truth over the noise of a point: median (largest draw)\n"
-    words = list(draws[0].gaps)
-    yield "| range | campaign | " + " | ".join(CHANNELS) + " | within twice the noise |"
-    yield "|---" * (3 + len(CHANNELS)) + "|"
-    for word in dict.fromkeys(word for word, _ in words):
-        for name, rows in _by_kind(draws).items():
-            x = np.array([[d.gaps[word, c].rms / d.gaps[word, c].noise for c in CHANNELS] for d in rows])
-            within = np.mean([d.gaps[word, c].within for d in rows for c in CHANNELS])
-            cells = [f"{np.median(c):.2f} ({c.max():.2f})" for c in x.T]
-            yield f"| {word} | {name} | " + " | ".join(cells) + f" | {within:.1%} |"
-    yield "\n## Conditions whose truth the 95 % band contains (draws with more than half of them)\n"
-    yield "| range | " + " | ".join(CHANNELS) + " |"
-    yield "|---" * (1 + len(CHANNELS)) + "|"
-    for word in dict.fromkeys(word for word, _ in words):
-        inside = np.array([[d.gaps[word, c].banded for c in CHANNELS] for d in draws])
-        cells = [f"{np.mean(c):.1%} ({np.mean(c > 0.5):.0%})" for c in inside.T]
-        yield f"| {word} | " + " | ".join(cells) + " |"
-    yield "\n## The same in N and Nm, rms of all draws\n"
-    yield "| range | vehicle | " + " | ".join(CHANNELS) + " |"
-    yield "|---" * (2 + len(CHANNELS)) + "|"
-    for word in dict.fromkeys(word for word, _ in words):
-        for vehicle in VEHICLES:
-            rows = [d for d in draws if d.kind.startswith(vehicle)]
-            if rows:
-                cells = [f"{rms(np.array([d.gaps[word, c].rms for d in rows])):.3g}" for c in CHANNELS]
-                yield f"| {word} | {vehicle} | " + " | ".join(cells) + " |"
-    yield "\n## Radii and rolling moment, rms (largest)\n"
-    names = list(draws[0].error)
-    yield "| campaign | " + " | ".join(names) + " |"
-    yield "|---" * (1 + len(names)) + "|"
-    for name, rows in _by_kind(draws).items():
-        x = np.array([[d.error[n] for n in names] for d in rows])
-        yield f"| {name} | " + " | ".join(f"{rms(c):.2g} ({c.max():.2g})" for c in x.T) + " |"
-
-
-def _summary_of_coverage(draws: Sequence[SlipDraw]) -> Iterable[str]:
-    yield "\n## Coefficients inside their 95 % intervals\n"
-    yield "| campaign | fitted | inside | regularised | inside | of the rig | inside | at a bound | trusted |"
-    yield "|---" * 9 + "|"
-    for name, rows in _by_kind(draws).items():
-        cells = []
-        for word in ("", "(regularised)", "rig."):
-            found = [x for d in rows for n, x in d.inside.items() if _sort(n) == word]
-            cells += [f"{len(found)}", f"{np.mean(found):.1%}" if found else ""]
-        bounds = sum(len(d.at_bound) for d in rows)
-        yield (
-            f"| {name} | "
-            + " | ".join(cells)
-            + f" | {bounds} | {sum(d.trusted for d in rows)} of {len(rows)} |"
-        )
-
-
-def _sort(name: str) -> str:
-    return "rig." if name.startswith("rig.") else "(regularised)" if "(" in name else ""
-
-
-def _worst(draws: Sequence[SlipDraw], most: int = 12) -> Iterable[str]:
+def _worst(draws: Sequence[SlipDraw], most: int = 12) -> Iterator[str]:
     yield "\n## Largest errors\n"
-    gaps = [(g.rms / g.noise, d, key) for d in draws for key, g in d.gaps.items()]
+    gaps = [(g.over, d, key) for d in draws for key, g in d.gaps.items()]
     for size, d, (word, channel) in sorted(gaps, key=lambda row: -row[0])[:most]:
         yield f"* {channel} over {word}: {size:.2f} of the noise ({d.gaps[word, channel].rms:.3g}); seed {d.seed}, {d.kind}"
     pulls = [(abs(x), x, d, n) for d in draws for n, x in d.pulls.items() if not d.inside[n]]
@@ -419,36 +370,8 @@ def _worst(draws: Sequence[SlipDraw], most: int = 12) -> Iterable[str]:
         yield f"* {name}: {x:+.1f} standard errors; seed {d.seed}, {d.kind}"
     bounds = Counter(name for d in draws for name in d.at_bound)
     yield "* at a bound: " + (", ".join(f"{n} {k}" for n, k in bounds.most_common()) or "none")
-    for d in draws:
-        if not d.trusted:
-            yield f"* seed {d.seed}, {d.kind}: {'; '.join(d.reasons)}"
-
-
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("builds", type=int, nargs="?", default=60)
-    ask.add_argument(
-        "--first", type=int, default=0, help="first seed; the kind of campaign follows from the seed"
-    )
-    ask.add_argument("--only", type=int, nargs="*", help="these seeds only")
-    ask.add_argument("--off", type=float, default=0.12, help="largest relative distance of a coefficient")
-    ask.add_argument("--minutes", type=float, default=1e9, help="no further build is started after this time")
-    ask.add_argument(
-        "--exact", action="store_true", help="rigs whose zeros are right, as far as coefficients take them up"
-    )
-    ask.add_argument("--pickle", help="file for all draws")
-    given = ask.parse_args()
-    seeds = given.only or range(given.first, given.first + given.builds)
-    began, kinds, draws = time.monotonic(), list(KINDS), []
-    for seed in seeds:
-        if time.monotonic() - began > 60.0 * given.minutes:
-            break
-        draws.append(one(seed, kinds[seed % len(kinds)], given.off, exact=given.exact))
-        if given.pickle:
-            Path(given.pickle).write_bytes(pickle.dumps(draws))
-    print(f"{len(draws)} builds\n")
-    print("\n".join(tables(draws)))
+    yield from (f"* seed {d.seed}, {d.kind}: {'; '.join(d.reasons)}" for d in draws if not d.trusted)
 
 
 if __name__ == "__main__":
-    main()
+    harness.study(one, page, worlds=KINDS, draws=60, in_turn=True, off=0.12, exact=False, size=1.0)

@@ -1,38 +1,37 @@
 """Do steps of sideslip and of slip give the relaxation lengths? `nice python tests/studies/steps_study.py 200`.
 
 Draws tyres around a car's and a motorcycle's file with other carcasses, and recordings of steps with other noise, correlation of
-the noise, sampling rate, speed, loads and pressures. ``--whole 40`` builds whole campaigns with sweeps and steps from a cold
+the noise, sampling rate, speed, loads and pressures. ``--whole`` builds whole campaigns with sweeps and steps from a cold
 start instead. Prints the tables of docs/recovery.md.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
+import harness
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
 from drawn_rigs import SAFE, on_disk, scaled
-from recovery_study import coverage
 from slip_study import RIGHT, SPEED, UNSETTLED, VEHICLES, Kind, SlipDraw, Vehicle, sweeps
 
 import mffit
 import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import DIRECTIONS, Relaxation, relaxation
+from mffit.fit.relaxation import DIRECTIONS, relaxation
 from mffit.points.loading import read
 from mffit.rig import Simulation
 from mffit.scatter import rms
 
 NONE_KNOWN = Posterior((), np.zeros((0, 0)))
 STEPPED = {"alpha": ("alpha_deg", (0, 1, 0, -1, 0)), "kappa": ("kappa", (0, 0.025, 0, -0.025, 0))}
+KINDS = {
+    f"{word}, {size}": Kind(vehicle, thin=size == "thin")
+    for size in ("thin", "full")
+    for word, vehicle in VEHICLES.items()
+}
 
 
 @dataclass
@@ -81,34 +80,19 @@ def step_runs(vehicle: Vehicle, rng: np.random.Generator) -> list[dict[str, Any]
     ]  # fmt: skip
 
 
-def content_of(kind: Kind, runs: list[dict[str, Any]], noise: dict[str, float]) -> dict[str, Any]:
-    """The campaign as a ``rig.toml``."""
-    return {
-        "faults": {"draw": True, **RIGHT},
-        "noise": noise,
-        "conditions": {"V_mps": SPEED},
-        "tyre": {"name": "drawn", "nominal_speed": SPEED, "side": "left", **kind.vehicle.tyre},
-        "rig": {"type": "flat-track", "axes": "sae"},
-        "sweep": runs,
-    }
-
-
-def one(seed: int, whole: bool) -> StepsDraw:
+def one(job: harness.Job) -> StepsDraw:
     """Draw and simulate the steps, and fit them with the rest of the tyre known, or from a whole campaign."""
-    rng = np.random.default_rng(17000 + seed)
-    word = list(VEHICLES)[seed % 2]
-    kind = Kind(VEHICLES[word], thin=seed % 4 < 2)
+    rng, kind, whole = np.random.default_rng(17000 + job.seed), KINDS[job.world], job.given.whole
     true = drawn_tyre(kind.vehicle, rng, 0.12)
-    draw = StepsDraw(kind=f"{word}, {'thin' if kind.thin else 'full'}", seed=seed)
+    draw = StepsDraw(kind=job.world, seed=job.seed)
     runs = step_runs(kind.vehicle, rng)
     noise = {key: float(x * 2.0 ** rng.uniform(-1.0, 1.0)) for key, x in kind.vehicle.noise.items()}
-    content = content_of(kind, (sweeps(kind) if whole else []) + runs, noise)
-    with on_disk(true, content, seed) as (path, _):
+    content = kind.vehicle.content((sweeps(kind) if whole else []) + runs, RIGHT, noise)
+    with on_disk(true, content, job.seed) as (path, _):
         if whole:
-            result = mffit.build(path)
+            result = mffit.build(path, with_report=False)
             draw.seconds, found = result.fit.seconds, result.fit.relaxation
-            names = [name for direction in DIRECTIONS for name in direction.names]
-            draw.note_coefficients(result.fit, true, names)
+            draw.note_coefficients(result.fit, true, [name for one in DIRECTIONS for name in one.names])
         else:
             start = true.replace(**{one.names[0]: 2.0 * true[one.names[0]] for one in DIRECTIONS})
             start = start.replace(**{name: 0.0 for one in DIRECTIONS for name in one.names[1:]})
@@ -117,58 +101,36 @@ def one(seed: int, whole: bool) -> StepsDraw:
             for direction in found:
                 for name, q in direction.found.items():
                     draw.note(name, q.value, q.u, true[name])
-    _note_lengths(draw, found, true, runs)
+    rate = round(runs[0]["recording"]["rate_Hz"])
+    for direction in found:
+        sigma = direction.direction.sigma
+        for run in direction.runs:
+            truth = float(getattr(true.state(run.load, p=run.pressure), sigma))
+            draw.lengths.append((sigma, *run.length[:2], truth, rate))
+    draw.unclear = len(runs) - len(draw.lengths)
     return draw
 
 
-def _note_lengths(
-    draw: StepsDraw, found: Sequence[Relaxation], true: tir.Tyre, runs: list[dict[str, Any]]
-) -> None:
-    for direction in found:
-        for run in direction.runs:
-            truth = float(getattr(true.state(run.load, p=run.pressure), direction.direction.sigma))
-            rate = round(runs[0]["recording"]["rate_Hz"])
-            draw.lengths.append((direction.direction.sigma, *run.length[:2], truth, rate))
-    draw.unclear = len(runs) - len(draw.lengths)
-
-
-def tables(draws: Sequence[StepsDraw]) -> Iterable[str]:
-    """Lines of all tables."""
-    yield "| length | runs | inside 95 % | rms error [mm] | rms u [mm] | mean pull | sd of pull |"
-    yield "|---" * 7 + "|"
-    rows = [(row, draw) for draw in draws for row in draw.lengths]
-    groups = {
-        "sigma_y": lambda r, d: r[0] == "sigma_y",
-        "sigma_x": lambda r, d: r[0] == "sigma_x",
-        **{f"{v}": lambda r, d, v=v: d.kind.startswith(v) for v in VEHICLES},
-        **{f"{k} Hz": lambda r, d, k=k: r[4] == k for k in (10, 20, 50, 100)},
-    }
-    for word, belongs in groups.items():
-        some = np.array([row[1:4] for row, draw in rows if belongs(row, draw)])
-        if not len(some):
-            continue
-        error = some[:, 0] - some[:, 2]
-        pull = error / some[:, 1]
-        yield (
-            f"| {word} | {len(some)} | {np.mean(np.abs(pull) < SAFE):.0%} | {1e3 * rms(error):.1f} | {1e3 * rms(some[:, 1]):.1f} "
-            f"| {np.mean(pull):+.2f} | {np.std(pull):.2f} |"
-        )
-    for word in dict.fromkeys(d.kind for d in draws):
-        some = [d for d in draws if d.kind == word]
-        yield f"\n{word}: {len(some)} draws, {sum(d.unclear for d in some)} runs or draws that gave no length"
-    yield from coverage(draws)
-
-
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("draws", type=int, nargs="?", default=200)
-    ask.add_argument("--whole", action="store_true", help="build whole campaigns")
-    ask.add_argument("--first", type=int, default=0, help="first seed")
-    given = ask.parse_args()
-    draws = [one(seed, whole=given.whole) for seed in range(given.first, given.first + given.draws)]
-    print(f"{len(draws)} draws\n")
-    print("\n".join(tables(draws)))
+def page(_: Any, drawn: Mapping[str, list[StepsDraw]]) -> Iterator[str]:
+    draws = [d for rows in drawn.values() for d in rows]
+    yield f"{len(draws)} draws"
+    lengths = [(row, d.kind.split(", ")[0]) for d in draws for row in d.lengths]
+    groups: dict[str, list[tuple[float, ...]]] = {}
+    for (sigma, *found, rate), vehicle in lengths:
+        for word in (sigma, vehicle, f"{rate} Hz"):
+            groups.setdefault(word, []).append(tuple(found))
+    rows = []
+    for word in sorted(groups):
+        length, u, truth = np.array(groups[word]).T
+        pull = (length - truth) / u
+        errors = (f"{1e3 * rms(length - truth):.1f}", f"{1e3 * rms(u):.1f}", f"{np.mean(pull):+.2f}")
+        rows.append((word, len(u), harness.percent(np.abs(pull) < SAFE), *errors, f"{np.std(pull):.2f}"))
+    head = ("length", "runs", "inside 95 %", "rms error [mm]", "rms u [mm]", "mean pull", "sd of pull")
+    yield from harness.table(head, rows)
+    for word, some in drawn.items():
+        yield f"* {word}: {len(some)} draws, {sum(d.unclear for d in some)} runs or draws that gave no length"
+    yield from harness.coverage(draws)
 
 
 if __name__ == "__main__":
-    main()
+    harness.study(one, page, worlds=KINDS, draws=200, in_turn=True, whole=False)

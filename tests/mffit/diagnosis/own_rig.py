@@ -1,27 +1,31 @@
-"""A rig written from the definitions of the documentation, for studies of the diagnosis; it uses nothing of ``mffit``.
+"""A rig written from the definitions of the documentation, for blind sets; it uses nothing of ``mffit``.
 
 Forces of the tyre come from ``tir``, everything around them from here: programme, causes of the library, causes outside it.
+The diagnosis of a set is judged against the noise-free readings between the settings.
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from blind_scores import Verdict
+from blind_set import SAMPLES
+from disc_files import write_project, write_sweep
 from scipy.optimize import brentq
 from scipy.special import chdtri, chndtr
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
-
-from disc_files import write_project, write_sweep
-
 import tir
+from mffit import pipeline
+from mffit.rig import Simulation
+from mffit.scatter import rms
 from tir import Tyre
 
-SAMPLES = Path(__file__).parents[2] / "samples"
 U_FY, U_MZ = 6.0, 0.6  # N, Nm
 UP = (-8, -6, -4.5, -3, -2, -1, 0, 1, 2, 3, 4.5, 6, 8)  # deg
 CAMBERS = (-45, -35, -25, -15, -8, 0, 8, 15, 25, 35, 45)  # deg
@@ -165,28 +169,19 @@ class Outside:
     """A cause outside the library: what it does to the settings or to the readings, in proportion to ``size``."""
 
     settings: Callable[[Run], Run] = lambda run: run
-    forces: Callable[[Run, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] = lambda run, Fy, Mz: (
-        Fy,
-        Mz,
-    )
+    forces: Callable[[Run, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] = lambda run, *F: F
     part: tuple[str, ...] = ()  #: effects that describe a part of it correctly
 
 
 def _sliding(s: float, rng: np.random.Generator) -> Outside:
-    """Friction falls with the sliding angle beyond the formula's curve."""
     knee = rng.uniform(2.5, 4.5)
     return Outside(
         forces=lambda run, Fy, Mz: (Fy * (1.0 - s * np.maximum(np.abs(run.alpha) - knee, 0.0)), Mz)
     )
 
 
-def _spring(s: float, rng: np.random.Generator) -> Outside:
-    """A hose or cable beside the moment cell acts as a spring over the steering angle."""
-    return Outside(forces=lambda run, Fy, Mz: (Fy, Mz - s * run.alpha))
-
-
 def _turned(s: float, rng: np.random.Generator) -> Outside:
-    """The load cell is turned about all three axes; Mx from its lever under Fy, My from rolling resistance."""
+    """Mx from its lever under Fy, My from rolling resistance."""
     roll, pitch, yaw = s * rng.normal(size=3)
 
     def forces(run, Fy, Mz):
@@ -196,23 +191,13 @@ def _turned(s: float, rng: np.random.Generator) -> Outside:
     return Outside(forces=forces, part=("crosstalk-fz-fy",))
 
 
-def _edge(s: float, rng: np.random.Generator) -> Outside:
-    """The edge of the belt pushes back with the cube of the sideslip angle."""
-    return Outside(forces=lambda run, Fy, Mz: (Fy - s * run.alpha**3, Mz))
-
-
 def _ripple(s: float, rng: np.random.Generator) -> Outside:
-    """The teeth of the sideslip drive: the angle is off periodically."""
     pitch, phase = rng.uniform(1.1, 3.4), rng.uniform(0.0, 2.0 * np.pi)
-    return Outside(
-        settings=lambda run: replace(
-            run, alpha=run.alpha + s * np.sin(2.0 * np.pi * run.alpha / pitch + phase)
-        )
-    )
+    wave = lambda run: s * np.sin(2.0 * np.pi * run.alpha / pitch + phase)  # noqa: E731
+    return Outside(settings=lambda run: replace(run, alpha=run.alpha + wave(run)))
 
 
 def _pressure(s: float, rng: np.random.Generator) -> Outside:
-    """The pressure was another one than read, by a factor, in a third of the runs."""
     drawn = rng.integers(1 << 31)
 
     def settings(run):
@@ -223,37 +208,21 @@ def _pressure(s: float, rng: np.random.Generator) -> Outside:
     return Outside(settings=settings)
 
 
-def _camber_scale(s: float, rng: np.random.Generator) -> Outside:
-    """The camber axis turns by a factor more than it reads."""
-    return Outside(settings=lambda run: replace(run, gamma=run.gamma * (1.0 + s)))
-
-
-def _sideslip_scale(s: float, rng: np.random.Generator) -> Outside:
-    """The sideslip axis turns by a factor more than it reads."""
-    return Outside(settings=lambda run: replace(run, alpha=run.alpha * (1.0 + s)))
-
-
-def _crossed(s: float, rng: np.random.Generator) -> Outside:
-    """Side force appears in the moment channel."""
-    return Outside(forces=lambda run, Fy, Mz: (Fy, Mz + s * Fy))
-
-
 def _clipped(s: float, rng: np.random.Generator) -> Outside:
-    """Amplifier that compresses one sign of large forces."""
     sign, knee = rng.choice((-1.0, 1.0)), rng.uniform(600.0, 1200.0)
     return Outside(forces=lambda run, Fy, Mz: (Fy - s * sign * np.maximum(sign * Fy - knee, 0.0), Mz))
 
 
 OUTSIDE: dict[str, Callable[[float, np.random.Generator], Outside]] = {
     "friction that falls with sliding": _sliding,
-    "spring beside the moment cell": _spring,
+    "spring beside the moment cell": lambda s, _: Outside(forces=lambda r, Fy, Mz: (Fy, Mz - s * r.alpha)),
     "load cell turned in three axes": _turned,
-    "edge of the belt, alpha^3": _edge,
+    "edge of the belt, alpha^3": lambda s, _: Outside(forces=lambda r, Fy, Mz: (Fy - s * r.alpha**3, Mz)),
     "ripple of the sideslip drive": _ripple,
     "pressure wrong in a third of the runs": _pressure,
-    "scale of the camber axis": _camber_scale,
-    "scale of the sideslip axis": _sideslip_scale,
-    "side force in the moment channel": _crossed,
+    "scale of the camber axis": lambda s, _: Outside(lambda run: replace(run, gamma=run.gamma * (1.0 + s))),
+    "scale of the sideslip axis": lambda s, _: Outside(lambda run: replace(run, alpha=run.alpha * (1.0 + s))),
+    "side force in the moment channel": lambda s, _: Outside(forces=lambda r, Fy, Mz: (Fy, Mz + s * Fy)),
     "compression of one sign of the force": _clipped,
 }
 """Causes outside the library, each drawn with its size."""
@@ -261,22 +230,22 @@ OUTSIDE: dict[str, Callable[[float, np.random.Generator], Outside]] = {
 
 @dataclass(frozen=True)
 class Set:
-    """One set of sweeps, and what is hidden in it."""
+    """One set of sweeps, and what is hidden in it; the model given is exact."""
 
     name: str
-    cause: str
-    given: Tyre
-    true: Tyre
+    tyre: Tyre
     run: Run
     numbers: Numbers
     outside: Outside | None
-    Fy: np.ndarray  #: with noise
-    Mz: np.ndarray
-    times_limit: float = 0.0  #: size over the detection limit
-    part: tuple[str, ...] = field(default=())  #: ids that count as right
+    part: tuple[str, ...]  #: ids that count as right
 
     def noise_free(self, run: Run) -> tuple[np.ndarray, np.ndarray]:
-        return readings(self.true, run, self.numbers, self.outside)
+        return readings(self.tyre, run, self.numbers, self.outside)
+
+    def gap(self) -> float:
+        """Square root of the chi2 of what is hidden."""
+        gap = np.concatenate(self.noise_free(self.run)) - np.concatenate(readings(self.tyre, self.run, {}))
+        return float(np.sqrt(np.sum((gap / np.repeat((U_FY, U_MZ), len(self.run))) ** 2)))
 
 
 def drawn_tyre(rng: np.random.Generator) -> Tyre:
@@ -297,8 +266,15 @@ def detection_limit(numbers: int) -> float:
     return float(brentq(lambda c: chndtr(level, numbers, c) - 0.05, 1.0, 500.0))
 
 
-def library_set(cause: str, seed: int, low: float = 3.0, high: float = 10.0) -> Set:
-    """A set with one effect of the library, ``low`` to ``high`` times its detection limit; the model is exact."""
+def sized(goal: float, of_size: Callable[[float], Set], size: float = 1.0) -> Set:
+    """The set whose gap has the wanted size."""
+    for _ in range(8):
+        size *= goal / of_size(size).gap()
+    return of_size(size)
+
+
+def library_set(cause: str, seed: int, low: float = 3.0, high: float = 10.0) -> tuple[Set, Any]:
+    """A set with one effect of the library, ``low`` to ``high`` times its detection limit, and the generator of its noise."""
     rng = np.random.default_rng((seed, *cause.encode()))
     tyre = drawn_tyre(rng)
     run = programme(float(tyre["FNOMIN"]), float(tyre["NOMPRES"]) / 1e3, rng)
@@ -310,89 +286,105 @@ def library_set(cause: str, seed: int, low: float = 3.0, high: float = 10.0) -> 
         sizes -= np.sum(counts * sizes) / np.sum(counts)  # the common part is another effect
         unit = {number + f: 0.01 * s for f, s in zip(files, sizes, strict=True)}
     else:
-        unit = {number: float(rng.choice((-1.0, 1.0))) * UNIT.get(number, 0.01)}
+        unit = _unit(number, rng)
     times = float(np.exp(rng.uniform(np.log(low), np.log(high))))
-    clean = np.concatenate(readings(tyre, run, {}))
-    u = np.repeat((U_FY, U_MZ), len(run))
 
-    def chi(size: float) -> float:
-        gap = np.concatenate(readings(tyre, run, {n: size * v for n, v in unit.items()})) - clean
-        return float(np.sqrt(np.sum((gap / u) ** 2)))
+    def of_size(size: float) -> Set:
+        return Set(f"{cause}-{seed}", tyre, run, {n: size * v for n, v in unit.items()}, None, (cause,))
 
-    size, goal = 1.0, times * np.sqrt(detection_limit(len(unit)))
-    for _ in range(8):
-        size *= goal / chi(size)
-    numbers = {n: size * v for n, v in unit.items()}
-    Fy, Mz = readings(tyre, run, numbers)
-    return Set(
-        f"{cause}-{seed}", cause, tyre, tyre, run, numbers, None, Fy + rng.normal(0, U_FY, len(run)),
-        Mz + rng.normal(0, U_MZ, len(run)), times, (cause,),
-    )  # fmt: skip
+    return sized(times * np.sqrt(detection_limit(len(unit))), of_size), rng
 
 
-def outside_set(cause: str, seed: int) -> Set:
-    """A set with a cause outside the library, chi2 of its gap between 150 and 15000; the model is exact."""
+def _unit(number: str, rng: np.random.Generator) -> dict[str, float]:
+    return {number: float(rng.choice((-1.0, 1.0))) * UNIT.get(number, 0.01)}
+
+
+def _plain(rng: np.random.Generator) -> float:
+    """Size of a gap whose chi2 is between 150 and 15000."""
+    return float(np.sqrt(np.exp(rng.uniform(np.log(150.0), np.log(15000.0)))))
+
+
+def outside_set(cause: str, seed: int) -> tuple[Set, Any]:
+    """A set with a cause outside the library."""
     rng = np.random.default_rng((seed, *cause.encode()))
     tyre = drawn_tyre(rng)
     run = programme(float(tyre["FNOMIN"]), float(tyre["NOMPRES"]) / 1e3, rng)
-    goal = float(np.sqrt(np.exp(rng.uniform(np.log(150.0), np.log(15000.0)))))
+    goal = _plain(rng)
     sign, drawn = float(rng.choice((-1.0, 1.0))), int(rng.integers(1 << 31))
-    u, clean = np.repeat((U_FY, U_MZ), len(run)), np.concatenate(readings(tyre, run, {}))
 
-    def gap(size: float) -> float:
+    def of_size(size: float) -> Set:
         made = OUTSIDE[cause](sign * size, np.random.default_rng(drawn))
-        return float(np.sqrt(np.sum(((np.concatenate(readings(tyre, run, {}, made)) - clean) / u) ** 2)))
+        return Set(f"{cause}-{seed}", tyre, run, {}, made, made.part)
 
-    size = 1e-3
-    for _ in range(8):
-        size *= goal / gap(size)
-    outside = OUTSIDE[cause](sign * size, np.random.default_rng(drawn))
-    Fy, Mz = readings(tyre, run, {}, outside)
-    return Set(
-        f"{cause}-{seed}", cause, tyre, tyre, run, {}, outside, Fy + rng.normal(0, U_FY, len(run)),
-        Mz + rng.normal(0, U_MZ, len(run)), goal**2, outside.part,
-    )  # fmt: skip
+    return sized(goal, of_size, 1e-3), rng
 
 
-def mixed_set(cause: str, other: str, seed: int) -> Set:
-    """A set with an effect of the library and a cause outside it, chi2 of each gap between 150 and 15000."""
+def mixed_set(cause: str, other: str, seed: int) -> tuple[Set, Any]:
+    """A set with an effect of the library and a cause outside it."""
     rng = np.random.default_rng((seed, *cause.encode(), *other.encode()))
-    unknown = outside_set(other, int(rng.integers(1 << 31)))
-    run, tyre = unknown.run, unknown.given
-    number = {LIBRARY[cause]: float(rng.choice((-1.0, 1.0))) * UNIT.get(LIBRARY[cause], 0.01)}
-    u, clean = np.repeat((U_FY, U_MZ), len(run)), np.concatenate(readings(tyre, run, {}))
-    goal, size = float(np.sqrt(np.exp(rng.uniform(np.log(150.0), np.log(15000.0))))), 1.0
-    for _ in range(8):
-        gap = np.concatenate(readings(tyre, run, {n: size * v for n, v in number.items()})) - clean
-        size *= goal / float(np.sqrt(np.sum((gap / u) ** 2)))
-    numbers = {n: size * v for n, v in number.items()}
-    Fy, Mz = readings(tyre, run, numbers, unknown.outside)
-    return replace(
-        unknown, name=f"{cause} + {other}-{seed}", cause=cause, numbers=numbers, part=(cause, *unknown.part),
-        times_limit=goal**2 / unknown.times_limit, Fy=Fy + rng.normal(0, U_FY, len(run)), Mz=Mz + rng.normal(0, U_MZ, len(run)),
-    )  # fmt: skip
+    unknown, _ = outside_set(other, int(rng.integers(1 << 31)))
+    unit = _unit(LIBRARY[cause], rng)
+
+    def of_size(size: float) -> Set:
+        numbers = {n: size * v for n, v in unit.items()}
+        return replace(unknown, numbers=numbers, outside=None, part=(cause, *unknown.part))
+
+    alone = sized(_plain(rng), of_size)
+    return replace(alone, name=f"{cause} + {other}-{seed}", outside=unknown.outside), rng
 
 
-def write(drawn: Set, folder: Path) -> None:
-    """``tyre.toml``, sweeps and ``given.tir`` of a set."""
-    folder.mkdir(parents=True, exist_ok=True)
-    drawn.given.write(folder / "given.tir")
-    run, tyre, files = drawn.run, drawn.given, list(dict.fromkeys(drawn.run.file.tolist()))
-    conditions = (run.alpha, run.gamma, run.Fz, run.p, run.V, run.backward, np.round(run.t, 3), run.T)
+def write(drawn: Set, rng: np.random.Generator, folder: Path) -> None:
+    """``tyre.toml``, sweeps with noise and ``given.tir`` of a set."""
+    drawn.tyre.write(folder / "given.tir")
+    run, tyre, files = drawn.run, drawn.tyre, list(dict.fromkeys(drawn.run.file.tolist()))
+    Fy, Mz = (
+        x + rng.normal(0, u, len(run)) for x, u in zip(drawn.noise_free(run), (U_FY, U_MZ), strict=True)
+    )
+    columns = (run.alpha, run.gamma, run.Fz, run.p, run.V, run.backward, np.round(run.t, 3), run.T)
     for name in files:
         rows = run.file == name
-        write_sweep(
-            folder / f"{name}.csv", *(column[rows] for column in conditions),
-            Fy=drawn.Fy[rows], Mz=drawn.Mz[rows], u=(U_FY, U_MZ),
-        )  # fmt: skip
+        own = (column[rows] for column in columns)
+        write_sweep(folder / f"{name}.csv", *own, Fy=Fy[rows], Mz=Mz[rows], u=(U_FY, U_MZ))
     Re = float(tyre.state(float(tyre["FNOMIN"]), Vx=6.0).Re)
-    write_project(
-        folder,
-        "set",
-        tyre,
-        files,
-        path_radius=RADIUS,
-        effective_radius=Re,
-        turn_slip=True,
-        u_coefficients=0.0,
+    model = {"turn_slip": True, "u_coefficients": 0.0}
+    write_project(folder, "set", tyre, files, path_radius=RADIUS, effective_radius=Re, **model)
+
+
+def judge(drawn: Set, rng: np.random.Generator) -> Verdict:
+    """The verdict on a diagnosis from files, as a user would make it."""
+    with tempfile.TemporaryDirectory() as scratch:
+        write(drawn, rng, Path(scratch))
+        began = time.process_time()
+        found = pipeline.diagnose(Path(scratch) / "tyre.toml", Path(scratch) / "given.tir")
+        seconds = time.process_time() - began
+    run, points = _between(drawn.run, found.points)
+    truth = drawn.noise_free(run)
+
+    def gap(model: Sequence[np.ndarray]) -> float:
+        return rms(np.array([(t - m) / u for t, m, u in zip(truth, model, (U_FY, U_MZ), strict=True)]))
+
+    given, file = (Simulation.of(t, turn_slip=True).readings(points) for t in (drawn.tyre, found.tyre))
+    after = gap(np.split(found.state.predict(points), 2))
+    if dict(found.tyre.values) != dict(drawn.tyre.values):
+        after = max(after, gap((file.Fy, file.Mz)))
+    return Verdict(
+        name=drawn.name,
+        causes=drawn.part,
+        structure="",
+        named=tuple(one.effect.id for one in found.effects),
+        ties=tuple(tuple(one.tied_with) for one in found.effects),
+        unexplained=found.unexplained,
+        right_region=False,
+        shrink=gap((given.Fy, given.Mz)) / max(after, 1e-6),
+        seconds=seconds,
+        confidence=tuple(one.confidence for one in found.effects),
     )
+
+
+def _between(run: Run, points: Any) -> tuple[Run, Any]:
+    """The settings moved by a quarter of a degree of sideslip and a tenth of the camber, in the order of the points."""
+    names = [points.sweep_names[k].removesuffix(".csv") for k in dict.fromkeys(points.sweep.tolist())]
+    order = np.concatenate([np.flatnonzero(run.file == name) for name in names])
+    moved = Run(**{name: values[order] for name, values in vars(run).items()})
+    moved = replace(moved, alpha=moved.alpha + 0.25 * (np.abs(moved.alpha) < 7.5), gamma=0.93 * moved.gamma)
+    return moved, points.replace(alpha=np.radians(moved.alpha), gamma=np.radians(moved.gamma))
