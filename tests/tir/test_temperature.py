@@ -117,3 +117,26 @@ def test_the_uncertainty_of_moved_terms_is_that_of_drawn_ones():
     stated = file.at_temperature(80.0).measured
     for name in names:
         assert np.std([terms[name].value for terms in moved]) == pytest.approx(stated[name].u, rel=0.12)
+
+
+def test_the_uncertainty_of_both_moved_terms_is_propagated_from_both():
+    """By central differences of the moved terms, with a linear term so uncertain that it matters to the quadratic one."""
+    wide = CURVED | {"rig.k_T_grip_per_K": tir.Quantity(-0.005, 0.004, "1/K")}
+    names = ("rig.k_T_grip_per_K", "rig.k_T_grip_per_K2")
+
+    def moved(**changes: float) -> dict[str, float]:
+        terms = {
+            n: q._replace(value=q.value + changes.get(n.removeprefix("rig."), 0.0)) for n, q in wide.items()
+        }
+        found = tir.read(FRONT).annotate(measured=terms).at_temperature(80.0).measured
+        return {name: found[name].value for name in names}
+
+    stated = tir.read(FRONT).annotate(measured=wide).at_temperature(80.0).measured
+    steps = {"k_T_grip_per_K": 1e-6, "k_T_grip_per_K2": 1e-9}
+    for name in names:
+        parts = [
+            (moved(**{term: h})[name] - moved(**{term: -h})[name]) / (2.0 * h) * wide[f"rig.{term}"].u
+            for term, h in steps.items()
+        ]
+        assert min(map(abs, parts)) > 0.05 * max(map(abs, parts))  # each of them counts
+        assert stated[name].u == pytest.approx(np.hypot(*parts), rel=1e-5)

@@ -599,3 +599,13 @@ def test_a_file_of_pac2002_is_as_chrono_reads_it_and_keeps_the_overturning_momen
     assert keys["LENGTH"] == "'meter'"
     assert all(line.find("$") == -1 or line[line.find("$") - 1] == " " for line in lines)
     assert float(keys["CAMMAX"]) == pytest.approx(math.radians(15.0))
+
+
+def test_the_shift_by_camber_is_that_of_the_camber_stiffness_factor():
+    """(55): without vertical shifts the side force vanishes at a sideslip of -(PHY1 + PHY2 dfz + PHY3 gamma LGAY LKYG)."""
+    none = dict.fromkeys(("PVY1", "PVY2", "PVY3", "PVY4", "PHY2"), 0.0)
+    given = {**read_old(OLD).values, **none, "PHY1": 0.002, "PHY3": 0.03, "LGAY": 1.5, "LKYG": 0.4}
+    p, gamma = mf52.in_terms_of_62(given), 0.1
+    alpha = np.linspace(-0.02, 0.02, 4001)
+    Fy = mf52.forces(p, np.full(4001, 4000.0), alpha, np.full(4001, gamma)).Fy
+    assert alpha[np.argmin(np.abs(Fy))] == pytest.approx(-(0.002 + 0.03 * gamma * 1.5 * 0.4), abs=1e-5)

@@ -7,7 +7,9 @@ import pytest
 from plain_tyre import NEWTON, Plain, settings
 
 from mffit.measured import measure
+from mffit.measured.drift import shares_of_sweeps
 from mffit.parts import split
+from mffit.points import make_points
 from mffit.suspicion.trust import JudgedMeasurement, judge
 
 LOADS = (1000.0, 1500.0, 2000.0)
@@ -85,3 +87,34 @@ def test_a_drift_below_what_every_slope_is_uncertain_by_is_not_said():
     assert found.drift.chance < 1e-3
     assert said(found, points) == ()
     assert contribution(found) == 0.0
+
+
+def repeats(factor, *, sweeps=2, noise=0.0, seed=1):
+    """Sweeps over the same cambers at loads up to 1 % apart, with forces that grow with the load.
+
+    The forces of every second sweep are larger by ``factor``, too.
+    """
+    gamma = np.radians(np.tile(np.repeat([-20.0, 0.0, 25.0], 4), sweeps))
+    sweep, Fz = np.repeat(np.arange(sweeps), 12), np.repeat(np.linspace(1500.0, 1515.0, sweeps), 12)
+    points = make_points(
+        0.0, gamma, Fz, p=250e3, V=6.0, phi_t=-0.75, sweep=sweep, sweep_names=[f"r{k}" for k in range(sweeps)]
+    )
+    Fy = 0.9 * Fz * gamma * np.where(sweep % 2, factor, 1.0)
+    Fy = Fy + noise * np.random.default_rng(seed).standard_normal(len(Fy))
+    return shares_of_sweeps(points.replace(Fy=Fy, u_Fy=np.full(len(Fy), noise or 0.1)))
+
+
+def test_a_force_that_grows_with_the_load_is_no_drift():
+    assert repeats(1.0).drift.apart == pytest.approx(0.0, abs=1e-4)
+    assert repeats(1.03).drift.apart == pytest.approx(0.03, rel=0.02)
+
+
+def test_chance_is_how_often_sound_sweeps_show_as_much():
+    """Without drift the most likely scatter is often none, whose chance is a half, and small chances are as rare as they say.
+
+    A little rarer: where zeros that shift explain the readings better, nothing is said.
+    """
+    found = [repeats(1.0, sweeps=10, noise=5.0, seed=k) for k in range(150)]
+    chances = np.array([0.5 if one is None else one.drift.chance for one in found])
+    assert max(chances) == pytest.approx(0.5, abs=0.01)
+    assert 0.1 < np.mean(chances < 0.2) < 0.25
