@@ -8,9 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import LOADS, Built, belt, brush, build
+from scipy.interpolate import RegularGridInterpolator
 
 import mffit
 import tir
+from mffit.prediction.correction import correction
 from mffit.scatter import rms
 
 TABLE = "brush-correction.csv"
@@ -87,3 +89,29 @@ def test_an_input_that_was_held_has_no_column(tmp_path):
     assert np.all(np.isfinite(table))
     best = built.predict(**table[["alpha_deg", "Fz_N"]], gamma_deg=0.0)
     assert table.u_Fy_missed_N.to_numpy() == pytest.approx(best.u_Fy_best_N.to_numpy(), rel=0.02)
+
+
+def test_a_table_of_few_nodes_uses_them_and_says_what_lines_between_them_add(foreign: Built, monkeypatch):
+    """Its statement is that of lines between the table's own values, against the model error at other places."""
+    monkeypatch.setattr("mffit.prediction.constants.MOST_NODES", 250)
+    result, random = foreign.result, np.random.default_rng(7)
+    found = correction(result.prediction, result.fit.tyre, list(CHANNELS))
+    assert 80 < len(found.table) <= 250
+    axes = [np.unique(found.table[name]) for name in ("alpha_deg", "gamma_deg", "Fz_N")]
+    at = pd.DataFrame(
+        dict(
+            zip(
+                ("alpha_deg", "gamma_deg", "Fz_N"),
+                (random.uniform(x[0], x[-1], 600) for x in axes),
+                strict=True,
+            )
+        )
+    )
+    best, added = mffit.predict(foreign.folder, at), []
+    nodes = found.table.sort_values(["alpha_deg", "gamma_deg", "Fz_N"])
+    for name, unit in CHANNELS.items():
+        missed = (best[f"{name}_best_{unit}"] - best[f"{name}_{unit}"]).to_numpy()
+        values = nodes[f"{name}_missed_{unit}"].to_numpy().reshape([len(x) for x in axes])
+        lines = RegularGridInterpolator(axes, values)(at.to_numpy())
+        added.append(rms(lines - missed) / rms(missed))
+    assert max(added) == pytest.approx(found.added, rel=0.25)
