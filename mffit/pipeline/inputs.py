@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import tir
 from mffit import points
-from mffit.config import Config
+from mffit.config import Config, SweepTable
 from mffit.config.models import given_values
 from mffit.errors import InputError
 from mffit.fit.at_nominal import CONDITIONS, Nominal, tyre_at_nominal
@@ -27,6 +29,59 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
     with formats.reading_once():
         found = points.read(config, continuous=continuous)
     return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
+
+
+class Usable(NamedTuple):
+    """Points of the sweeps that can be used together."""
+
+    reading: Reading | None  #: None if no sweeps can be
+    refused: dict[str, str]  #: by the file of a sweep, why it was left out
+    problem: str  #: why there is no reading
+
+
+@formats.reading_once()
+def read_usable(config: Config, required: Collection[str], doubted: Collection[str] = ()) -> Usable:
+    """As :func:`read_points`, without the sweeps that make the points unusable.
+
+    If all together are refused, those whose file is ``required`` are read alone, without a file that the refusal names. The
+    others are then added in their order, each unless the points are refused with it, those of which this is ``doubted`` last.
+    """
+
+    def together(sweeps: Sequence[SweepTable]) -> Reading | InputError | None:
+        try:
+            return read_points(config.model_copy(update={"sweep": tuple(sweeps)})) if sweeps else None
+        except InputError as error:
+            return error
+
+    found = together(config.sweep)
+    if not isinstance(found, InputError):
+        return Usable(found, {}, "")
+    taken = [sweep for sweep in config.sweep if sweep.file in required]
+    refused: dict[str, str] = {}
+    foreign: dict[str, str] = {}
+    while isinstance(found := together(taken), InputError) and found.file is not None:
+        named = {sweep.file: str(found) for sweep in taken if Path(sweep.file).name == found.file.name}
+        if not named:
+            break
+        refused |= named
+        taken = [sweep for sweep in taken if sweep.file not in named]
+    further = [sweep for sweep in config.sweep if sweep.file not in required]
+    groups = [
+        [one for one in further if one.file not in doubted],
+        *([one] for one in further if one.file in doubted),
+    ]
+    while groups:
+        group = groups.pop(0)
+        more = together([*taken, *group])
+        if isinstance(more, Reading):
+            taken, found = [*taken, *group], more
+        elif len(group) > 1:
+            groups = [[sweep] for sweep in group] + groups
+        else:
+            foreign |= {sweep.file: str(more) for sweep in group}
+    if isinstance(found, InputError):
+        return Usable(None, refused, str(found))
+    return Usable(found, refused | foreign, "")
 
 
 def read_base(config: Config) -> Tyre | None:

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
 from mffit import config as configuration
+from mffit.config import Config, SweepTable
 from mffit.config.loading import STAND_IN, checked
 from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
+from mffit.pipeline.inputs import input_names
 from mffit.points.loading import read
 from mffit.points.stretch import stretch_table
 from mffit.recordings import DiscPath, Sniffed, Stated, disc_signs, project_text, sniff
+from mffit.recordings.disc import files_of_folder
 from mffit.recordings.guess import NOTHING_NAMED
-from mffit.recordings.project_file import load_beyond, slug, tyre_found
+from mffit.recordings.project_file import load_beyond, relative, slug, sweeps_text, tyre_found
+from mffit.recordings.recording import rolls_backward
 from mffit.recordings.sniffed import configuration_of, stated_of_tyre
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
@@ -92,6 +96,35 @@ def project_of(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed,
         reading = sniffed.reading
         sniffed = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, doubt)))
     return sniffed, project_text(sniffed, folder, stated)
+
+
+def unlisted(config: Config) -> Iterator[Path]:
+    """Recordings that ``tyre.toml`` does not name, in its folder and in those within it that hold sweeps."""
+    folder = config.folder
+    named = {(folder / name).resolve() for name in input_names(config)}
+    of_sweeps = ((folder / sweep.file).parent for sweep in config.sweep)
+    within = (path for path in of_sweeps if path.resolve().is_relative_to(folder.resolve()))
+    for place in dict.fromkeys([folder, *within]):
+        for path in files_of_folder(place) if place.is_dir() else ():
+            if path.resolve() not in named and path.name != STRETCHES:
+                yield path
+
+
+def entry_of(path: Path, config: Config) -> SweepTable:
+    """The [[sweep]] of a recording that ``tyre.toml`` does not list: as a listed one with these headings, else as recognised.
+
+    Raises InputError if it cannot be read or is not recognised.
+    """
+    raw = formats.read(path)
+    for known in (one for one in config.sweep if one.columns):
+        with suppress(InputError):  # it is missing yet, or still being written
+            other = formats.read(config.folder / known.file)
+            if (raw.headings, raw.units) == (other.headings, other.units):
+                entry = SweepTable(file=relative(path, config.folder), columns=known.columns)
+                return entry.model_copy(update={"direction": "backward"}) if rolls_backward(path) else entry
+    found = sniff([path], unloaded_radius=config.tyre.unloaded_radius)
+    text = sweeps_text(found, config.folder, config.columns)
+    return SweepTable.model_validate(tomllib.loads(text)["sweep"][0])
 
 
 def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:

@@ -10,19 +10,31 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from mffit import as_json, planning
+from mffit import as_json, fit, planning
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
+from mffit.measured import Measured
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
-from mffit.pipeline.measuring import measure
+from mffit.pipeline.measuring import epsilon_gamma, measure
 from mffit.pipeline.refining import finite_spin_bias, undistorted
-from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
-from mffit.planning.goals import BANDS, EPSILON, JOINT
-from mffit.planning.prospect import Direct, DirectU
+from mffit.planning import (
+    Addition,
+    Goal,
+    NextRun,
+    Plan,
+    PlannedRun,
+    addition_named,
+    next_run,
+    read_goal,
+    wording,
+)
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT
+from mffit.planning.plan import U
+from mffit.planning.prospect import Direct, DirectProspect, DirectU, Prospect, nominal_load
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import column
@@ -98,6 +110,35 @@ def plan_of(
             without=without,
             progress=progress,
         )
+
+
+def next_run_of(config: Config, points: Points, measured: Measured) -> NextRun | None:
+    """The most informative next run, before a build: for eps_gamma by the direct method, whose readings there the measured
+    slopes predict; on a flat track for the file, by a first fit.
+
+    None if no run lowers the uncertainty enough, or if the points cannot determine a first fit yet.
+    """
+    base, on_disc = read_base(config), config.rig.on_disc
+    goal = read_goal(EPSILON if on_disc else FILE, on_disc=on_disc)
+
+    def direct(points: Points) -> DirectU | None:
+        found = epsilon_gamma(config, points, base)
+        return None if found is None else DirectU(found.u, found.u)
+
+    try:
+        if on_disc:
+            rig = fit.begin(config, points, measured, base).simulation
+
+            def predicted(run: PlannedRun) -> Points:
+                return run.points.replace(**rig.readings(run.points))
+
+            u: U = DirectProspect(points, nominal_load(config, measured), predicted, direct).u
+        else:
+            found = fit.sketch(config, points, measured, base)
+            u = Prospect(config, points, measured, found, direct).u_of(goal)
+        return next_run(config, points, goal, u)
+    except InputError:
+        return None
 
 
 def _direct_method(result: BuildResult) -> Direct:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,30 +12,20 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
-from mffit import fit, planning
 from mffit.config import Config, SweepTable
 from mffit.config.toml_file import toml_text
 from mffit.errors import InputError
-from mffit.measured import Measured
-from mffit.pipeline.inputs import input_names, read_base, read_points
-from mffit.pipeline.intake import STRETCHES
-from mffit.pipeline.measuring import alignment_of, epsilon_gamma, spin_of
-from mffit.planning import NextRun, next_run, read_goal
-from mffit.planning.goals import EPSILON, FILE
-from mffit.planning.plan import U
-from mffit.planning.prospect import DirectProspect, DirectU, Prospect, nominal_load
-from mffit.points import Points
+from mffit.pipeline.inputs import read_usable
+from mffit.pipeline.intake import entry_of, unlisted
+from mffit.pipeline.measuring import alignment_of, spin_of
+from mffit.pipeline.planning import next_run_of
 from mffit.points.loading import Reading, read
-from mffit.recordings import sniff
-from mffit.recordings.arriving import ArrivingFiles, Signature, ends_within_line, same_headings
-from mffit.recordings.disc import files_of_folder
-from mffit.recordings.project_file import relative, sweeps_text
-from mffit.recordings.recording import rolls_backward
-from mffit.results.campaign import Arrival, WatchedCampaign
+from mffit.recordings.arriving import Seen, is_cut_off, look_at
+from mffit.recordings.project_file import relative
+from mffit.results.campaign import NOTHING_YET, Arrival, WatchedCampaign
 from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.loading import NUMBER
-from tir import Quantity
 
 LOOK_EVERY = 1.0
 """Time [s] from one look at the folder to the next."""
@@ -79,117 +69,132 @@ def watch(
 
 
 class _File(NamedTuple):
-    """A file that rests, as it was read."""
+    """A complete file."""
 
-    signature: Signature
+    signature: tuple[int, int]  #: as in :class:`Seen`
     entry: SweepTable
-    listed: bool
     problem: str = ""  #: why it cannot be read
 
 
 class _Watch:
-    """A campaign that is looked at again and again; what it holds of files was seen at the last look."""
+    """A campaign that is looked at again and again."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        self.config = configuration.load(path, awaiting=True)
-        self.waiting: tuple[Path, ...] = ()  #: files that are being written
-        self._wrong: tuple[str, str] = ("", "")  #: what was wrong with tyre.toml at the look before, and now
-        self._arriving = ArrivingFiles()
-        self._files: dict[Path, _File] = {}  #: that rest, those of tyre.toml first
-        self._shown: tuple[Config, str, dict[Path, _File]] | None = None
-        """What the last campaign was made of."""
+        self.path, self.config = path, configuration.load(path, awaiting=True)
+        self._seen: dict[Path, Seen] = {}
+        self._files: dict[Path, _File] = {}  #: the complete ones, those of tyre.toml first
+        self._shown: object = None  #: what the last campaign was made of
+        self._last = NOTHING_YET
         self._states: dict[str, tuple[object, ...]] = {}  #: of its files, by their names
-        self._said: set[str] = set()
-        self._epsilon: Quantity | None = None
+        self._said: set[str] = set()  #: its warnings, without their numbers
         self._see()
+
+    @property
+    def waiting(self) -> list[Path]:
+        """Files that are being written."""
+        return [path for path in self._seen if path not in self._files]
 
     @formats.reading_once()
     def look(self) -> WatchedCampaign | None:
         """The campaign if something has changed since the look before; None otherwise."""
-        self._see()
-        shown = self._shown[2] if self._shown else {}
-        rewritten = {path: shown[path] for path in self.waiting if path in shown}  # no news until complete
-        if (self.config, self._lasting_problem, rewritten | self._files) == self._shown:
-            return None
-        self._shown = self.config, self._lasting_problem, self._files
-        return self._campaign()
-
-    def _see(self) -> None:
-        self._reload()
-        listed = {self.config.folder / entry.file: entry for entry in self.config.sweep}
-        paths = [*listed, *self._unlisted(listed)]
-        self._arriving.look(map(file_of, paths))
-        before, self._files = self._files, {}
-        waiting = []
-        for path in paths:
-            signature = self._arriving.signature(file_of(path))
-            entry, known = listed.get(path), before.get(path)
-            if signature is None:
-                continue
-            if known is not None and known.signature == signature and _as_listed(known, entry):
-                self._files[path] = known
-            elif (found := self._read(path, signature, entry)) is not None:
-                self._files[path] = found
-            else:
-                waiting.append(path)
-        self.waiting = tuple(waiting)
-
-    @property
-    def _lasting_problem(self) -> str:
-        """What is wrong with tyre.toml, unless it is just being saved."""
-        return self._wrong[1] if self._wrong[0] == self._wrong[1] else ""
-
-    def _reload(self) -> None:
-        """Read tyre.toml again; if it is wrong, the one before counts."""
+        before = self._files
         try:
             config = configuration.load(self.path, awaiting=True)
         except InputError as error:
-            self._wrong = self._wrong[1], str(error)
-            return
-        self._wrong = self._wrong[1], ""
+            known, self._shown = self._shown, str(error)
+            wrong = replace(self._last, changed=(), warnings=(), problem=str(error))
+            return wrong if known != self._shown else None
         if config.model_copy(update={"sweep": self.config.sweep}) != self.config:
             self._files = {}  # read them again: columns or axes may be others
         self.config = config
-
-    def _unlisted(self, listed: Iterable[Path]) -> Iterator[Path]:
-        """Recordings in the project's folder, and in those within it that hold sweeps, that tyre.toml does not name."""
-        config = self.config
-        named = {(config.folder / name).resolve() for name in input_names(config)}
-        inside = (path.parent for path in listed if path.resolve().is_relative_to(config.folder.resolve()))
-        for folder in dict.fromkeys([config.folder, *inside]):
-            for path in files_of_folder(folder) if folder.is_dir() else ():
-                if path.resolve() not in named and path.name != STRETCHES:
-                    yield path
-
-    def _read(self, path: Path, signature: Signature, listed: SweepTable | None) -> _File | None:
-        """A file that is complete, or that stays unreadable; None while it is being written."""
-        file = file_of(path)
-        if not self._arriving.rests(file):
+        self._see()
+        rewritten = {path: before[path] for path in self.waiting if path in before}  # no news until complete
+        if (config, rewritten | self._files) == self._shown:
             return None
-        final = self._arriving.is_final(file)
-        entry = listed or SweepTable(file=self._name(path))
+        self._shown = config, self._files
+        self._last = self._campaign()
+        return self._last
+
+    def _see(self) -> None:
+        """Look at every file, and read those that have become complete."""
+        listed = {self.config.folder / entry.file: entry for entry in self.config.sweep}
+        there = look_at((*listed, *unlisted(self.config)), self._seen)
+        in_order = sorted(there, key=lambda path: 0 if path in listed else there[path].signature[1])
+        self._seen = {path: there[path] for path in in_order}
+        known, self._files = self._files, {}
+        for path, seen in self._seen.items():
+            file, entry = known.get(path), listed.get(path)
+            if file is None or file.signature != seen.signature or file.entry != (entry or file.entry):
+                file = self._read(path, seen, entry) if seen.looks else None
+            if file is not None:
+                self._files[path] = file
+
+    def _read(self, path: Path, seen: Seen, entry: SweepTable | None) -> _File | None:
+        """A file that is complete, or that stays unreadable; None while it is being written."""
         try:
-            if not final and ends_within_line(file):
+            if not seen.is_final and is_cut_off(file_of(path)):
                 return None
-            entry = listed or self._recognised(path)
+            entry = entry or entry_of(path, self.config)
             read(self._of([entry]), may_be_empty=True)
         except InputError as error:
-            return _File(signature, entry, listed is not None, str(error)) if final else None
-        self._arriving.take(file)
-        return _File(signature, entry, listed is not None)
+            entry = entry or SweepTable(file=self._name(path))
+            return _File(seen.signature, entry, str(error)) if seen.is_final else None
+        return _File(seen.signature, entry)
 
-    def _recognised(self, path: Path) -> SweepTable:
-        """The [[sweep]] of a recording that tyre.toml does not list: as a listed one with these headings, else as recognised."""
-        config, name = self.config, self._name(path)
-        for known in self._files.values():
-            alike = known.listed and known.entry.columns and not known.problem
-            if alike and same_headings(path, config.folder / known.entry.file):
-                entry = SweepTable(file=name, columns=known.entry.columns)
-                return entry.model_copy(update={"direction": "backward"}) if rolls_backward(path) else entry
-        found = sniff([path], unloaded_radius=config.tyre.unloaded_radius)
-        text = sweeps_text(found, config.folder, config.columns)
-        return SweepTable.model_validate(tomllib.loads(text)["sweep"][0])
+    def _campaign(self) -> WatchedCampaign:
+        """What the complete files say."""
+        files, listed = self._files.values(), {entry.file for entry in self.config.sweep}
+        sound = [file for file in files if not file.problem]
+        doubted = {name for name, (is_refused, *_) in self._states.items() if is_refused}
+        usable = read_usable(self._of(file.entry for file in sound), listed, doubted)
+        refused = {file.entry.file: file.problem for file in files if file.problem} | usable.refused
+        taken = [file.entry for file in sound if file.entry.file not in refused]
+        reading, problem = usable.reading, usable.problem
+        measured = alignment = planned = None
+        try:
+            with threadpool_limits(1):  # the matrices are small: threads cost more than they save
+                if reading is not None:
+                    measured = spin_of(self._of(taken), reading)
+                    alignment = alignment_of(self._of(taken), reading.points)
+                    planned = next_run_of(self._of(taken), reading.points, measured)
+        except InputError as error:
+            problem = str(error)
+        given = measured.warnings if measured else reading.warnings if reading else ()
+        warnings = {NUMBER.sub("0", sentence): sentence for sentence in given}
+        said, self._said = self._said, set(warnings)
+        changed = tuple(self._changed(reading, refused, listed))
+        missing = [entry.file for entry in self.config.sweep if entry.file not in self._states]
+        return WatchedCampaign(
+            changed=changed,
+            taken=tuple(entry.file for entry in taken),
+            awaited=tuple(dict.fromkeys([*missing, *map(self._name, self.waiting)])),
+            points=0 if reading is None else len(reading.points),
+            measured=measured,
+            before=self._last.epsilon_gamma,
+            alignment=alignment,
+            next_run=planned,
+            warnings=tuple(sentence for kind, sentence in warnings.items() if kind not in said),
+            problem=problem,
+        )
+
+    def _changed(
+        self, reading: Reading | None, refused: Mapping[str, str], listed: Collection[str]
+    ) -> Iterator[Arrival]:
+        """What became of files since the campaign before; other numbers in a sentence are no change."""
+        before, self._states = self._states, {}
+        files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
+        for file in self._files.values():
+            name, text = file.entry.file, ""
+            why, own = refused.get(name, ""), int(np.sum(files == name))
+            if not why and name not in listed:
+                text = toml_text(
+                    {"sweep": [file.entry.model_dump(mode="json", exclude_defaults=True)]}
+                ).strip()
+            self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
+            if self._states[name] != before.get(name):
+                yield Arrival(name, "refused" if why else "taken", own, why, text)
+        there = {*self._states, *map(self._name, self.waiting)}
+        yield from (Arrival(name, "gone") for name in before if name not in there)
 
     def _name(self, path: Path) -> str:
         return relative(path, self.config.folder)
@@ -197,97 +202,3 @@ class _Watch:
     def _of(self, entries: Iterable[SweepTable]) -> Config:
         """The configuration of some sweeps."""
         return self.config.model_copy(update={"sweep": tuple(entries)})
-
-    def _campaign(self) -> WatchedCampaign:
-        refused = {path: file.problem for path, file in self._files.items() if file.problem}
-        problem, reading, measured, alignment, planned = self._lasting_problem, None, None, None, None
-        while taken := {path: file.entry for path, file in self._files.items() if path not in refused}:
-            config = self._of(taken.values())
-            try:
-                reading = read_points(config)
-                with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-                    measured = spin_of(config, reading)
-                    alignment = alignment_of(config, reading.points)
-                    planned = next_of(config, reading.points, measured)
-            except InputError as error:
-                at_fault = [path for path in taken if error.file is not None and error.file.name == path.name]
-                if reading is None and at_fault:
-                    refused[at_fault[0]] = str(error)
-                    continue
-                problem = problem or str(error)
-            break
-        before, self._epsilon = self._epsilon, measured.epsilon_gamma if measured else None
-        given = measured.warnings if measured else reading.warnings if reading else ()
-        return WatchedCampaign(
-            changed=self._changed(reading, refused),
-            taken=tuple(entry.file for entry in taken.values()),
-            awaited=self._awaited(),
-            points=0 if reading is None else len(reading.points),
-            measured=measured,
-            before=before,
-            alignment=alignment,
-            next_run=planned,
-            warnings=self._not_said(given),
-            problem=problem,
-        )
-
-    def _changed(self, reading: Reading | None, refused: Mapping[Path, str]) -> tuple[Arrival, ...]:
-        """What became of files since the campaign before; other numbers in a sentence are no change."""
-        before, self._states, new = self._states, {}, []
-        for path, file in self._files.items():
-            name, own, why = file.entry.file, 0, refused.get(path, "")
-            if reading is not None and not why and name in reading.points.files:
-                own = int(np.sum(reading.points.file == reading.points.files.index(name)))
-            entry = file.entry.model_dump(mode="json", exclude_defaults=True)
-            text = "" if file.listed else toml_text({"sweep": [entry]}).strip()
-            self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
-            if self._states[name] != before.get(name):
-                new.append(Arrival(name, "refused" if why else "taken", own, why, text))
-        there = {*self._states, *map(self._name, self.waiting)}
-        return (*new, *(Arrival(name, "gone") for name in before if name not in there))
-
-    def _awaited(self) -> tuple[str, ...]:
-        """Files that are missing or being written."""
-        there = {file.entry.file for file in self._files.values()}
-        missing = [entry.file for entry in self.config.sweep if entry.file not in there]
-        return tuple(dict.fromkeys([*missing, *map(self._name, self.waiting)]))
-
-    def _not_said(self, warnings: Iterable[str]) -> tuple[str, ...]:
-        """Warnings that the campaign before did not have, with whatever numbers."""
-        before, kinds = self._said, {NUMBER.sub("0", sentence): sentence for sentence in warnings}
-        self._said = set(kinds)
-        return tuple(sentence for kind, sentence in kinds.items() if kind not in before)
-
-
-def next_of(config: Config, points: Points, measured: Measured) -> NextRun | None:
-    """The most informative next run: for eps_gamma by the direct method, whose readings there the measured slopes predict; on
-    a flat track for the file, by a first fit.
-
-    None if no run lowers the uncertainty enough, or if the points cannot determine a first fit yet.
-    """
-    base, on_disc = read_base(config), config.rig.on_disc
-    goal = read_goal(EPSILON if on_disc else FILE, on_disc=on_disc)
-
-    def direct(points: Points) -> DirectU | None:
-        found = epsilon_gamma(config, points, base)
-        return None if found is None else DirectU(found.u, found.u)
-
-    try:
-        if on_disc:
-            rig = fit.begin(config, points, measured, base).simulation
-
-            def predicted(run: planning.PlannedRun) -> Points:
-                return run.points.replace(**rig.readings(run.points))
-
-            u: U = DirectProspect(points, nominal_load(config, measured), predicted, direct).u
-        else:
-            found = fit.sketch(config, points, measured, base)
-            u = Prospect(config, points, measured, found, direct).u_of(goal)
-        return next_run(config, points, goal, u)
-    except InputError:
-        return None
-
-
-def _as_listed(known: _File, entry: SweepTable | None) -> bool:
-    """Whether a file was read as tyre.toml lists it now, or does not."""
-    return known.entry == entry if known.listed or entry is not None else True

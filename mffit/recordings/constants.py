@@ -52,6 +52,6 @@ NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly 
 LOOKS_OF_PATIENCE = Count(
     10,
     "-",
-    "Looks at a folder, usually one a second, for which a file that ends within a line, cannot be read or has grown before is "
+    "Looks at a folder, usually one a second, for which a file that ends within a line or cannot be read is "
     "taken for one that is still being written: programs at a rig write their buffers every few seconds.",
 )

@@ -60,3 +60,7 @@ keys(
         found.next_run and {**document(found.next_run.step), "goal": found.next_run.goal.label}
     ),
 )
+
+
+NOTHING_YET = WatchedCampaign((), (), (), 0, None, None, None, None, (), "")
+"""A campaign before its first file."""

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from mffit.errors import InputError
 from mffit.progress import Progress, ShownStep
+from mffit.results.campaign import Arrival
 from mffit.window import constants
 from tir.errors import TirError
 
@@ -65,9 +66,12 @@ def carry_out(kind: str, path: Path, progress: Progress) -> dict[str, Any] | Non
                 raise InputError("names no base file to compare with; add base under [tyre]", file=path)
             pipeline.compare(path.parent / base, out, out=out / "comparison", progress=progress)
         case "watch":
-            *_, last = pipeline.watch(path, once=True)
-            unlisted = [one.file for one in last.changed if one.sweep]
-            return {"lines": text.campaign_lines(last), "unlisted": unlisted}
+            arrivals: dict[str, Arrival] = {}
+            for last in pipeline.watch(path, once=True):
+                arrivals |= {one.file: one for one in last.changed}
+            refused = [text.arrival_line(one) for one in arrivals.values() if one.state == "refused"]
+            unlisted = [one.file for one in arrivals.values() if one.sweep]
+            return {"lines": [*text.campaign_lines(last), *refused], "unlisted": unlisted}
     return None
 
 

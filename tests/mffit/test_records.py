@@ -15,10 +15,10 @@ from small_rigs import disc, simulated
 
 import mffit
 import tir
+from mffit.as_json import plain
 from mffit.effects import CATALOG
 from mffit.made import METHOD, source
 from mffit.report import text
-from mffit.as_json import plain
 
 LAB = {
     "order": "T-1234",

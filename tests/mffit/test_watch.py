@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import io
 import json
 import os
 import shutil
@@ -11,6 +12,7 @@ from contextlib import suppress
 from itertools import count
 
 import numpy as np
+import pandas as pd
 import pytest
 from disc_project import ZEROS, disc_project, rows
 
@@ -18,6 +20,7 @@ import mffit
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.recordings.constants import LOOKS_OF_PATIENCE
+from mffit.report.text import campaign_text
 
 LONG = int(LOOKS_OF_PATIENCE) + 2
 TIMES = count(1)
@@ -174,6 +177,38 @@ def test_a_sweep_against_all_others_is_set_aside_with_the_sentence_of_a_build(ri
     assert found.epsilon_gamma is not None
 
 
+def leaning(content: bytes) -> bytes:
+    """A table whose side force is along the leaning axis of the wheel, as another rig may report it."""
+    table = pd.read_csv(io.BytesIO(content))
+    gamma = np.radians(table["gamma_deg"])
+    force = table["Fy_N"] * np.cos(gamma) + 2.0 * table["Fz_N"] * np.sin(gamma)
+    return table.assign(Fy_N=force).to_csv(index=False).encode()
+
+
+def test_a_foreign_file_for_which_the_rig_is_blamed_is_left_out_and_named(rig):
+    path, contents = rig
+    names = ["sideslip_1500.csv"]
+    head = path.read_text().partition("[[sweep]]")[0]
+    path.write_text(head + "".join(f'[[sweep]]\nfile = "{name}"\n' for name in names))
+    for name in names:
+        put(path.parent / name, contents[name])
+    (alone,) = mffit.watch(path, once=True, pause=lambda seconds: None)
+    foreign = {"rear.csv": "camber_1000.csv", "rear_again.csv": "camber_1500.csv"}
+    for name, origin in foreign.items():
+        put(path.parent / name, leaning(contents[origin]))
+    put(path.parent / "more.csv", contents["sideslip_1000.csv"])
+    (found,) = mffit.watch(path, once=True, pause=lambda seconds: None)
+    assert not found.problem
+    assert found.taken == (*names, "more.csv")
+    assert found.points == alone.points + 13
+    states = {one.file: one for one in found.changed}
+    assert all(states[name].state == "refused" and not states[name].sweep for name in foreign)
+
+    assert states["more.csv"].sweep
+    said = campaign_text(found).replace("\n", " ")
+    assert all(f"not taken: {name}: " in said for name in foreign)
+
+
 def test_files_that_nobody_listed_are_taken_in_and_shown_as_toml(rig):
     path, contents = rig
     for name, content in contents.items():
@@ -214,6 +249,15 @@ def test_columns_of_listed_sweeps_hold_for_new_files_with_their_headings(rig):
     assert found[-1].points == 17
 
 
+def test_a_replaced_file_is_read_again_as_soon_as_it_rests(rig):
+    path, contents = rig
+    name = "sideslip_1500.csv"
+    put(path.parent / name, contents[name])
+    fewer = b"\n".join(contents[name].splitlines()[:-3]) + b"\n"
+    found = played(path, [None, lambda: put(path.parent / name, fewer), None])
+    assert [(one.points, one.changed[0].state) for one in found] == [(13, "taken"), (10, "taken")]
+
+
 def test_files_that_are_gone_leave(rig):
     path, contents = rig
     for name in ("sideslip_1500.csv", "camber_1500.csv"):
@@ -236,6 +280,8 @@ def test_tyre_toml_is_read_again_and_its_last_state_kept_while_it_is_wrong(rig):
         lambda: put(path, text.replace("u_effective_radius = 0.0005", "u_effective_radius = 0.02")),
         None,
     ]
+    assert len(played(path, steps[:2])) == 2  # said at the look after it
+    path.write_text(text)
     first, wrong, last = played(path, steps)
     assert "rigg" in wrong.problem
     assert wrong.epsilon_gamma == first.epsilon_gamma

@@ -14,10 +14,11 @@ if TYPE_CHECKING:
     from mffit.report.text.plan import plan_summary
     from mffit.report.text.prediction import prediction_summary
     from mffit.report.text.recordings import sniff_summary
-    from mffit.report.text.watching import campaign_lines, campaign_text
+    from mffit.report.text.watching import arrival_line, campaign_lines, campaign_text
 
 __all__ = [
     "alignment_table",
+    "arrival_line",
     "budget_table",
     "build_explained",
     "build_summary",

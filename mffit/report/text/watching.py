@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from mffit.constants import NAMED_IN_SENTENCE
 from mffit.measured import Alignment
 from mffit.planning import wording
@@ -19,7 +21,7 @@ def campaign_text(found: WatchedCampaign) -> str:
     taken = [one.file for one in found.changed if one.state == "taken"]
     many = [f"{some(taken)}: taken"] if len(taken) > NAMED_IN_SENTENCE else []
     single = (one for one in found.changed if not (many and one.state == "taken"))
-    lines = [*many, *map(_arrival, single), *campaign_lines(found)]
+    lines = [*many, *map(arrival_line, single), *campaign_lines(found)]
     lines += [f"warning: {sentence}" for sentence in found.warnings]
     listed = [
         line for one in found.changed if one.state == "taken" for line in one.sweep.splitlines() if line
@@ -46,10 +48,14 @@ def campaign_lines(found: WatchedCampaign) -> list[str]:
     return lines
 
 
-def _arrival(one: Arrival) -> str:
+def arrival_line(one: Arrival) -> str:
+    """What became of a file."""
     if one.state == "gone":
         return f"{one.file} is gone"
-    return f"{one.file}: {one.points} points" if one.state == "taken" else f"not taken: {one.why}"
+    if one.state == "taken":
+        return f"{one.file}: {one.points} points"
+    name = "" if Path(one.file).name in one.why else f"{one.file}: "
+    return f"not taken: {name}{one.why}"
 
 
 def _numbers(found: WatchedCampaign) -> list[str]:
