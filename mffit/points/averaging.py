@@ -80,8 +80,14 @@ def means(
             # Without scatter no standard error can be estimated.
             stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
         u[channel] = stated
+    begin, end = (
+        np.repeat(ends, counts) for ends in zip(*[(s.rests_from, s.end) for s in stretches], strict=True)
+    )
+    last = np.r_[first[1:], len(rows)] - 1
     points = found.replace(
         **{f"u_{channel}": values for channel, values in u.items()},
+        line=sweep.line[np.where(moving, rows[first], begin)],
+        last_line=sweep.line[np.where(moving, rows[last], end - 1)],
         continuous=moving,
         time=np.where(moving, _mean(sweep.time, rows, first), np.nan),
         sweep=np.repeat([names.index(label) for label in labels], counts),

@@ -112,7 +112,7 @@ def settled(
         drift, error = _drift(x[begin : stretch.end])
         if abs(drift) > max(clear * error, harmless):
             return stretch._replace(dropped=f"still drifting by {drift:.3g} {unit}")
-    return Stretch(begin, stretch.end)
+    return Stretch(begin, stretch.end, transient=begin - stretch.begin)
 
 
 def _too_short(time: np.ndarray, begin: int, end: int) -> str:

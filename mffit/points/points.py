@@ -13,7 +13,7 @@ from mffit.points import constants
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.sweeps.sweep import MeasuredRows
 
-INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
+INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "last_line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
 OF_SI = {"deg": 180.0 / np.pi, "kPa": 1e-3}
 
@@ -47,6 +47,8 @@ class Points(MeasuredRows):
     phi_t: np.ndarray  #: turn slip of the path, declared radius [1/m]
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
     continuous: np.ndarray  #: bool: a sample of a moving sweep, not a steady point
+    last_line: np.ndarray
+    """Last line of the readings that belong to a point, from ``line`` on: its rest, with the samples in which forces settle."""
     sweep: np.ndarray  #: index into ``sweep_names``
     file: np.ndarray  #: index into ``files``
     setup: np.ndarray  #: set-up of the rig, index into ``setups``
@@ -147,12 +149,13 @@ def make_points(
 
     ``sweep_names``, ``files`` and ``setups`` are the names that the fields ``sweep``, ``file`` and ``setup`` count; ``table``
     has the input columns as reported. Of the other ``fields`` of :class:`Points`, ``p``, ``V`` and ``phi_t`` are required;
-    ``OPTIONAL`` has the defaults of the others.
+    ``OPTIONAL`` has the defaults of the others; ``last_line`` is ``line`` if it is not given.
 
     Raises TypeError if a required field is missing, or a field is unknown; ValueError if lengths disagree, or ``direction`` or
     ``mount`` is neither +1 nor -1.
     """
     given = {**OPTIONAL, "alpha": alpha, "gamma": gamma, "Fz": Fz, **fields}
+    given.setdefault("last_line", given["line"])
     if missing := [name for name in ARRAYS if name not in given]:
         raise TypeError(f"make_points needs {', '.join(missing)}")
     _refuse_unknown(given)

@@ -19,6 +19,12 @@ class Stretch(NamedTuple):
     dropped: str = ""  #: why the samples give no point; empty if they do
     kind: str = PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle or the slip moves; ``MOVE``: anything else
     swept: str = ""  #: setting that a sweep moves: "alpha", "gamma", "kappa" or "Fz"; empty for other kinds
+    transient: int = 0  #: number of samples before ``begin`` in which the settings rest and the forces settle
+
+    @property
+    def rests_from(self) -> int:
+        """First sample in which the settings rest."""
+        return self.begin - self.transient
 
 
 class StretchNote(NamedTuple):

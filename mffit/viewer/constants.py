@@ -17,9 +17,6 @@ SLIDER_LEAST = Real(
 MOST_CHIPS = Count(
     24, "-", "Most levels of a condition with a button each: three lines; above it, the filter is a range."
 )
-LINES_OF_A_SAMPLE = Count(
-    3, "-", "Median distance in lines from which points of a file are means of several lines each."
-)
 POINTS_OF_BANDS = Count(
     1500,
     "-",

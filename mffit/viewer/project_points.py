@@ -62,7 +62,7 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
         "mount": read.mount,
         "file": read.file,
         "line": read.line,
-        "more": last_lines(read) - read.line,
+        "more": read.last_line - read.line,
     }
     found |= {f"{kind}.{name}": column for kind, part in named.items() for name, column in part.items()}
     return {
@@ -142,21 +142,6 @@ def facets(points: Points) -> tuple[list[dict[str, object]], dict[str, np.ndarra
         found.append(_facet(name, word, words, shared))
         groups[name] = of
     return found, groups
-
-
-def last_lines(points: Points) -> np.ndarray:
-    """Last line (n,) that each point is made of: its own, or in a recording the line before that of the next point."""
-    out = points.line.copy()
-    for file in np.unique(points.file):
-        rows = np.flatnonzero(points.file == file)
-        rows = rows[np.argsort(points.line[rows], kind="stable")]
-        apart = np.diff(points.line[rows])
-        usual = int(np.median(apart)) if len(apart) else 1
-        if usual < constants.LINES_OF_A_SAMPLE:
-            continue
-        length = np.minimum(np.append(apart, usual), usual)
-        out[rows] = points.line[rows] + np.maximum(length, 1) - 1
-    return out
 
 
 def _shown(points: Points) -> dict[str, np.ndarray]:

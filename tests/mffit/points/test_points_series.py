@@ -12,6 +12,7 @@ from scipy.signal import lfilter
 
 from mffit import config as configuration
 from mffit import points
+from mffit.config.models import FitTable
 from mffit.errors import InputError
 from mffit.points.steady import SteadySettings, moves, stretches
 
@@ -24,7 +25,7 @@ STATIONS = np.array([-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0])
 def series(
     stations: np.ndarray = STATIONS,
     *,
-    hold: float = 30.0,
+    hold: float | np.ndarray = 30.0,
     rate: float = RATE,
     steering: float = 2.0,
     encoder_deg: float = 0.0,
@@ -36,7 +37,8 @@ def series(
 ) -> pd.DataFrame:
     """A rig that steers from station to station and holds; the force follows with a lag of ``settle_s``."""
     travel = np.abs(np.diff(stations)) / steering
-    arrivals = np.r_[0.0, np.cumsum(travel + hold)]
+    hold = np.broadcast_to(hold, len(stations))
+    arrivals = np.r_[0.0, np.cumsum(travel + hold[:-1])]
     corners = np.column_stack([arrivals, arrivals + hold]).ravel()
     time = np.arange(int(corners[-1] * rate) + 1) / rate
     alpha = np.interp(time, corners, np.repeat(stations, 2))
@@ -95,6 +97,25 @@ def test_the_points_of_many_series_are_covered_by_their_errors(project):
         for k in range(20)
     ]
     assert 0.89 <= np.mean(inside) <= 0.99
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("how", [{}, {"settle_s": 2.0}, {"settle_s": 1.0, "encoder_deg": 0.05}])
+def test_every_point_can_be_left_out_alone_by_its_lines(project, how, seed):
+    """However long each rest was; what is left of a rest, such as the part in which the force settles, gives no other point."""
+    name, holds = "series.csv", np.random.default_rng(seed).uniform(5.0, 60.0, len(STATIONS))
+    project.add(name, series(hold=holds, seed=seed, **how))
+    config = configuration.load(project.write())
+    own = of_file(points.load(config)[0], name)
+    assert len(own) >= len(STATIONS) - 1
+    assert np.all(own.line[1:] > own.last_line[:-1])
+    for k in range(len(own)):
+        lines = f"{own.line[k]}-{own.last_line[k]}"
+        less = config.model_copy(
+            update={"fit": FitTable(exclude=({"file": name, "lines": lines, "why": "x"},))}
+        )
+        left = of_file(points.load(less)[0], name)
+        assert left.line.tolist() == np.delete(own.line, k).tolist()
 
 
 @pytest.mark.parametrize("encoder_deg", [0.01, 0.05])

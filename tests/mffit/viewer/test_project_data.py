@@ -12,7 +12,7 @@ from mffit.points import make_points
 from mffit.quantities import CONDITIONS
 from mffit.viewer.project import project_data
 from mffit.viewer.project_coefficients import coefficient_rows
-from mffit.viewer.project_points import facets, last_lines
+from mffit.viewer.project_points import facets
 
 
 def points(line, file=0, **fields):
@@ -29,19 +29,6 @@ def points(line, file=0, **fields):
         files=("a", "b"),
         **fields,
     )
-
-
-def test_a_mean_of_a_recording_has_its_lines():
-    """Ten samples a point, then a gap, which belongs to no point; the last one is as long as the others."""
-    assert last_lines(points([5, 15, 25, 100, 110])).tolist() == [14, 24, 34, 109, 119]
-
-
-def test_a_finished_point_is_one_line():
-    assert last_lines(points([2, 3, 4, 9, 10])).tolist() == [2, 3, 4, 9, 10]
-
-
-def test_lines_are_those_of_each_file():
-    assert last_lines(points([5, 15, 25, 2, 3, 4], file=[0, 0, 0, 1, 1, 1])).tolist() == [14, 24, 34, 2, 3, 4]
 
 
 def test_points_are_grouped_by_their_set_points():
