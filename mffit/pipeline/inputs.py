@@ -19,6 +19,7 @@ from mffit.sheets import file_of, sheet_of
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from tir import Tyre
+from tir.errors import TirError
 from tir.formula import is_old
 
 
@@ -116,6 +117,18 @@ def _converted(path: Path) -> Tyre:
     from mffit.conversion import convert  # a fit, which few projects need
 
     return convert(path).tyre
+
+
+def check_named_files(config: Config) -> None:
+    """Refuse as a build does, with InputError, a base file or priors that cannot be used as the configuration uses them."""
+    from mffit.fit.by_hand import hand_of  # of a fit, which few questions need
+    from mffit.fit.priors import of_fleet
+
+    try:
+        hand_of(config, read_base(config))
+    except TirError as error:
+        raise InputError(str(error), key="tyre.base") from None
+    of_fleet(config)
 
 
 def base_notes(config: Config, base: Tyre | None) -> tuple[str, ...]:

@@ -41,6 +41,7 @@ def project_data(result: BuildResult) -> dict[str, Json]:
             "points": columns(points, result.excluded, fitted),
             "hand": result.config.hand,
             "exclude": result.config.fit.exclude,
+            "inputs": result.made.inputs,
             "trusted": result.trusted,
             "warnings": result.warnings,
             "seconds": result.seconds,

@@ -254,9 +254,12 @@ async def _events(session: Session, request: Request, closing: Callable[[], bool
 
 
 async def _content(request: Request) -> dict[str, Any]:
-    """The JSON object of a request; empty if it has none, or too large a one."""
+    """The JSON object of a request; empty if it has none. Raises InputError if it is too large."""
+    body = await _body(request, int(constants.LARGEST_REQUEST))
+    if body is None:
+        raise InputError(f"a change has at most {constants.LARGEST_REQUEST / 1e6:g} MB; make it in parts")
     try:
-        found = json.loads(await _body(request, int(constants.LARGEST_REQUEST)) or b"")
+        found = json.loads(body)
     except (ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}

@@ -14,4 +14,6 @@ LARGEST_RECORDING = Count(
     "-",
     "Largest recording in bytes that the page takes: an hour of 30 channels at 100 a second as text.",
 )
-LARGEST_REQUEST = Count(1_000_000, "-", "Largest request in bytes: a thousand points left out at once.")
+LARGEST_REQUEST = Count(
+    1_000_000, "-", "Largest request in bytes: seventy thousand single lines left out at once."
+)

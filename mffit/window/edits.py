@@ -10,7 +10,7 @@ import tomlkit
 from tomlkit.items import AoT, Array, Table
 
 from mffit.config.by_hand import KEYS
-from mffit.config.lines import LineRange, line_ranges, ranges_text
+from mffit.config.lines import LineListError, LineRange, line_ranges, ranges_text
 from mffit.errors import InputError, shortened
 from mffit.window.settings import TABLES, value_of
 
@@ -49,7 +49,7 @@ def coefficient(text: str, *, name: str, entry: float | Mapping[str, Any] | None
 
 
 def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> str:
-    """The text with readings added to ``[fit] exclude``, each with ``file`` as in [[sweep]], ``first`` and ``last`` line.
+    """The text with readings added to ``[fit] exclude``: of each ``file``, as in [[sweep]], the ``lines``, such as "39-44, 60".
 
     An entry of the same file and reason is extended.
     """
@@ -172,40 +172,42 @@ def _exclude(document: Any) -> Any:
     return table["exclude"]
 
 
-def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]]:
-    found: dict[str, list[LineRange]] = {}
+def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, Sequence[LineRange]]:
+    """Lines by file. Raises InputError if a reading lacks one of them, or its lines are no list of lines."""
+    found: dict[str, list[str]] = {}
     for reading in readings:
         try:
-            file, first, last = str(reading["file"]), int(reading["first"]), int(reading["last"])
-        except (KeyError, TypeError, ValueError, OverflowError):
-            raise InputError("a reading needs file, first and last line") from None
-        if not 1 <= first <= last:
-            raise InputError("the first and last line of a reading are not in order; select it again")
-        found.setdefault(file, []).append((first, last))
+            file, lines = str(reading["file"]), str(reading["lines"])
+        except (KeyError, TypeError):
+            raise InputError("readings need file and lines") from None
+        found.setdefault(file, []).append(lines)
     try:
-        return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
-    except ValueError as error:  # of lines beyond any file
-        raise InputError(f"a reading cannot be at these lines: {error}") from None
+        return {file: line_ranges(", ".join(lines)) for file, lines in found.items()}
+    except LineListError as error:
+        raise InputError(f"readings cannot be at these lines: {error}") from None
 
 
 def _ranges(entry: Mapping[str, Any]) -> tuple[LineRange, ...]:
     return line_ranges(str(entry["lines"]))
 
 
-def _lines(ranges: Sequence[LineRange]) -> str:
+def _lines(ranges: Iterable[LineRange]) -> str:
     """The list of lines as text; ranges that touch are joined."""
     return ranges_text(line_ranges(ranges_text(ranges)))
 
 
-def _without(ranges: Iterable[LineRange], taken: Iterable[LineRange]) -> list[LineRange]:
-    """The ranges without the lines of others."""
-    kept = list(ranges)
-    for first, last in taken:
-        kept = [
-            part
-            for a, b in kept
-            for part in ((a, min(b, first - 1)), (max(a, last + 1), b))
-            if part[0] <= part[1]
-        ]
-        kept = list(dict.fromkeys(kept))
+def _without(ranges: Sequence[LineRange], taken: Iterable[LineRange]) -> list[LineRange]:
+    """The ranges without the lines of others; ``ranges`` are in order."""
+    kept, others, k = [], sorted(taken), 0
+    for first, last in ranges:
+        while k < len(others) and others[k][1] < first:
+            k += 1
+        j = k
+        while j < len(others) and others[j][0] <= last:
+            if first < others[j][0]:
+                kept.append((first, others[j][0] - 1))
+            first = max(first, others[j][1] + 1)
+            j += 1
+        if first <= last:
+            kept.append((first, last))
     return kept

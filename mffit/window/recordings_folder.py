@@ -12,7 +12,6 @@ import numpy as np
 
 from mffit import config
 from mffit.config import Config
-from mffit.config.lines import line_ranges
 from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
 from mffit.output import digest
@@ -189,9 +188,8 @@ class RecordingsFolder:
             chosen = self._chosen_files(choice)
         found = sniff(sorted(chosen), unloaded_radius=project.tyre.unloaded_radius, chosen=chosen)
         bad = [
-            {"file": relative(run.recording, self.folder), "first": first, "last": last, "why": run.why}
+            {"file": relative(run.recording, self.folder), "lines": run.lines, "why": run.why}
             for run in found.bad_runs
-            for first, last in line_ranges(run.lines)
         ]
         return {"sweeps": sweeps_text(found, self.folder, project.columns), "bad": bad}
 

@@ -17,7 +17,8 @@ from mffit.config.lines import ExcludeTable
 from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
-from mffit.output import ChangedMeanwhile, finish_save, save_over
+from mffit.output import ChangedMeanwhile, digest, finish_save, save_over
+from mffit.pipeline.inputs import check_named_files, input_names
 from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
 from mffit.sweeps.loading import check_excluded
@@ -99,6 +100,9 @@ class ProjectFile:
             if after == before:
                 return
             self._refuse_lines(self._checked(after), self._excluded(before))
+            refusal = self._refusal(after)
+            if refusal is not None and str(refusal) != str(self._refusal(before)):
+                raise refusal
             save_over(self.path, before, after)
         except ChangedMeanwhile as error:
             shown = self._shown.get(seen, before)
@@ -146,6 +150,14 @@ class ProjectFile:
         tables, lines = tables_of(content, self.path, TYRE_TOML)
         return checked(tables, path=self.path, folder=self.path.parent, lines=lines)
 
+    def _refusal(self, content: bytes) -> InputError | None:
+        """Why a build refuses the files that a content names beside the recordings; None if it does not."""
+        try:
+            check_named_files(self._checked(content))
+        except InputError as error:
+            return error
+        return None
+
     def _excluded(self, content: bytes) -> Sequence[ExcludeTable]:
         """The entries of ``[fit] exclude``; none if the file is wrong elsewhere."""
         try:
@@ -181,6 +193,7 @@ class Session:
         self.last: RunOutcome | None = None  #: of the last run
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
+        self._digests: dict[Path, tuple[tuple[int, int], str]] = {}  #: of its inputs, by size and time [ns]
         self._run: Run | None = None
         self._news: dict[str, Any] | None = None  #: what new recordings say, for the page
         self._reading: Run | None = None  #: by which they are read
@@ -191,13 +204,13 @@ class Session:
         """What the page must know beside the data of the fit, as JSON."""
         with self._lock:
             self._collect()
-            digest = self.file.digest
-            problem, config = self._read(digest)
+            now = self.file.digest
+            problem, config = self._read(now)
             self._look_for_recordings()
             return {
                 "project": digest_of(bytes(self.file.path)),
-                "digest": digest,
-                "is_fitted": self._fitted == digest,
+                "digest": now,
+                "is_fitted": self._fitted == now and config is not None and self._is_of(config),
                 "fits": self.fits,
                 "problem": problem,
                 "hand": {} if config is None else config.hand,
@@ -283,6 +296,22 @@ class Session:
             news = self._unlisted_news(self._seen[2])
             self._news = news if news and news["unlisted"] else None  # the fit lacks those
             self._fitted = run.digest
+
+    def _is_of(self, config: Config) -> bool:
+        """Whether the last fit was made of the files that the configuration names, as they are now."""
+        now = {name: self._digest_of(config.folder / name) for name in input_names(config)}
+        return self.data is not None and now == self.data["inputs"]
+
+    def _digest_of(self, path: Path) -> str:
+        """Digest of a file, read again only if it has changed; empty if it is gone."""
+        try:
+            stat = path.stat()
+            signature = stat.st_size, stat.st_mtime_ns
+            if path not in self._digests or self._digests[path][0] != signature:
+                self._digests[path] = signature, digest(path)
+        except OSError:
+            return ""
+        return self._digests[path][1]
 
     def _unlisted_news(self, config: Config | None) -> dict[str, Any] | None:
         """What new recordings say, ``unlisted`` those that tyre.toml still lacks."""

@@ -156,15 +156,17 @@ function markLeftOut(entries) {
   fitMisfits = {};
   version++;
 }
-// Lines of points as [{file, first, last}]; points that follow each other in a file are one range.
+// Lines of points as [{file, lines}], in the notation of tyre.toml; ranges that touch are one.
 function lineRanges(members) {
-  const {file, line, last} = columns, found = [];
+  const {file, line, last} = columns, found = new Map();
   for (const i of Int32Array.from(members).sort((a, b) => file[a] - file[b] || line[a] - line[b])) {
-    const name = project.points.files[file[i]], before = found.at(-1);
-    if (before && before.file === name && line[i] <= before.last + 1) before.last = Math.max(before.last, last[i]);
-    else found.push({file: name, first: line[i], last: last[i]});
+    const name = project.points.files[file[i]], ranges = found.get(name) ?? [], before = ranges.at(-1);
+    if (before && line[i] <= before[1] + 1) before[1] = Math.max(before[1], last[i]);
+    else ranges.push([line[i], last[i]]);
+    found.set(name, ranges);
   }
-  return found;
+  const text = ([from, to]) => from === to ? `${from}` : `${from}-${to}`;
+  return [...found].map(([name, ranges]) => ({file: name, lines: ranges.map(text).join(", ")}));
 }
 function whyLeftOut(i) {
   const file = project.points.files[columns.file[i]], line = columns.line[i];

@@ -187,7 +187,7 @@ function showStatus() {
   if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
   if (live.last && live.last.state === "stopped") return say("Stopped; nothing was written.");
-  say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml." : "tyre.toml differs from the fit that is shown: Refit.");
+  say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml." : "tyre.toml or a file that it names differs from the fit that is shown: Refit.");
 }
 function showLinks() {
   const parts = [];

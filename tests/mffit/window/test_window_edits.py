@@ -39,7 +39,7 @@ file = "a.csv"
 
 
 def reading(file: str, first: int, last: int | None = None) -> dict[str, object]:
-    return {"file": file, "first": first, "last": first if last is None else last}
+    return {"file": file, "lines": f"{first}" if last is None else f"{first}-{last}"}
 
 
 def changed_lines(before: str, after: str) -> tuple[set[str], set[str]]:
@@ -156,8 +156,18 @@ def test_lines_are_left_out_as_a_set(steps):
     assert sorted(found) == sorted(wanted)  # each line once
 
 
+def test_thousands_of_readings_are_left_out_and_taken_back_one_by_one(tyre_toml):
+    """As a selection of every other reading has them; the number of comparisons is that of the ranges, not its square."""
+    every_other = ", ".join(str(line) for line in range(2, 60_000, 2))
+    found = leave_out(TEXT, readings=[{"file": "b.csv", "lines": every_other}], why="x")
+    assert tomllib.loads(found)["fit"]["exclude"][-1]["lines"] == every_other
+    half = ", ".join(str(line) for line in range(2, 60_000, 4))
+    rest = tomllib.loads(take_back(found, readings=[{"file": "b.csv", "lines": half}]))["fit"]["exclude"][-1]
+    assert rest["lines"] == ", ".join(str(line) for line in range(4, 60_000, 4))
+
+
 def test_readings_without_a_line_are_refused():
-    with pytest.raises(InputError, match="first and last line"):
+    with pytest.raises(InputError, match="file and lines"):
         leave_out(TEXT, readings=[{"file": "a.csv"}], why="x")
 
 

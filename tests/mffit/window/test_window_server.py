@@ -206,31 +206,31 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
         ("coefficient", {"name": "PCY1", "entry": {"min": "1.6"}}, "is a text, not a number"),
         ("__import__", {}, "not a change"),
         ("coefficient", {"name": ["PCY1"], "entry": 1.0}, "cannot be done with"),
-        ("leave_out", {"readings": [{"file": "a", "first": 5, "last": 2}], "why": "x"}, "not in order"),
+        ("leave_out", {"readings": [{"file": "a", "lines": "5-2"}], "why": "x"}, "ends before it begins"),
         (
             "leave_out",
-            {"readings": [{"file": "a", "first": 1, "last": 1e400}], "why": "x"},
-            "first and last line",
+            {"readings": [{"file": "a", "lines": 1e400}], "why": "x"},
+            "not a line or a range of lines",
         ),
         ("coefficient", {"name": "PCY1", "entry": 10**400}, "more digits than a number can have"),
         (
             "leave_out",
-            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**400}], "why": "x"},
+            {"readings": [{"file": "camber_900.csv", "lines": f"2-{10**400}"}], "why": "x"},
             "beyond the end of any file",
         ),
         (
             "leave_out",
-            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 10**11}], "why": "x"},
+            {"readings": [{"file": "camber_900.csv", "lines": f"2-{10**11}"}], "why": "x"},
             "beyond the end of the file; the readings of camber_900.csv are in lines 2-",
         ),
         (
             "leave_out",
-            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 2}], "why": "\ud800"},
+            {"readings": [{"file": "camber_900.csv", "lines": "2"}], "why": "\ud800"},
             "cannot hold a character",
         ),
         (
             "leave_out",
-            {"readings": [{"file": "../secret.csv", "first": 1, "last": 1}], "why": "x"},
+            {"readings": [{"file": "../secret.csv", "lines": "1"}], "why": "x"},
             "not the file",
         ),
     ],
@@ -244,13 +244,57 @@ def test_what_is_not_possible_is_refused_with_a_sentence(client, session, name, 
 
 
 @pytest.mark.parametrize(
-    "body", [b"", b"no json", b"[]", b'{"a":' + b"[" * 200_000, b"{" + b" " * 2_000_000 + b"}"]
+    ("body", "sentence"),
+    [
+        *((body, "a change needs do, seen and with") for body in (b"", b"no json", b"[]")),
+        (b'{"a":' + b"[" * 200_000, "a change needs do, seen and with"),
+        (b"{" + b" " * 2_000_000 + b"}", "a change has at most 1 MB; make it in parts"),
+    ],
 )
-def test_a_request_that_is_no_change_is_refused(client, session, body):
+def test_a_request_that_is_no_change_is_refused(client, session, body, sentence):
     before = session.file.path.read_bytes()
     answer = client.post(f"{client.home}edit", content=body)
-    assert (answer.status_code, answer.json()["error"]) == (422, "a change needs do, seen and with")
+    assert (answer.status_code, answer.json()["error"]) == (422, sentence)
     assert session.file.path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "sentence"),
+    [
+        ("base", "nothere.tir", "nothere.tir does not exist"),
+        ("base", "camber_900.csv", "camber_900.csv"),
+        ("priors", "nothere.json", "there is no file"),
+    ],
+)
+def test_a_file_that_a_build_refuses_is_not_named_in_tyre_toml(client, session, key, name, sentence):
+    before = session.file.path.read_bytes()
+    answer = edit(client, session, "setting", table="tyre", key=key, value=f'"{name}"')
+    assert answer.status_code == 422
+    assert sentence in answer.json()["error"]
+    assert session.file.path.read_bytes() == before
+
+
+def test_a_project_that_a_build_refuses_already_can_be_changed(client, session):
+    path = session.file.path
+    named = re.sub("base = .*", "base = 'nothere.tir'", path.read_text())
+    path.write_text(named)
+    assert "nothere" in named
+    assert edit(client, session, "coefficient", name="PCY1", entry=1.35).status_code == 200
+    assert edit(client, session, "setting", table="tyre", key="base", value="").status_code == 200
+
+
+@pytest.mark.parametrize("change", ["replaced", "gone"])
+def test_curves_of_other_readings_are_not_those_of_a_build(session, change):
+    assert session.state()["is_fitted"]
+    recording = session.file.path.parent / "camber_900.csv"
+    content = recording.read_bytes()
+    if change == "gone":
+        recording.unlink()
+    else:
+        recording.write_bytes(content.replace(b"0", b"1", 1))
+    assert not session.state()["is_fitted"]
+    recording.write_bytes(content)
+    assert session.state()["is_fitted"]
 
 
 def test_two_windows_do_not_overwrite_each_other(client, session):
