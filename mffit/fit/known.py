@@ -83,7 +83,7 @@ def known_before_fit(
             known.values, RADIUS_COEFFICIENTS, lambda v: effective_radius(v, loads, speed), radii, hand.held
         )
         known = known.having(found, "measured")
-    if measured.epsilon_gamma is not None:
+    if measured.carried is not None:
         known = known.having({"PECP1": measured.pecp1, "PECP2": measured.pecp2}, "measured")
     if config.tyre.side == "symmetric":
         known = known.having(dict.fromkeys(ODD_TERMS, 0.0), "given")

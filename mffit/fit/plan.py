@@ -119,11 +119,10 @@ def fit_plan(
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
     extra = ["Q_RE0"] if rig and config.rig.on_disc and config.rolling_radius else []
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}
-    if measured.epsilon_gamma is not None and config.spin.pecp1 == "model":
+    if measured.carried is not None and measured.carried.is_free:
         extra.append("PECP1")
-    elif measured.epsilon_gamma is not None:
-        debiased = measured.epsilon_gamma_debiased if config.spin.pecp1 == "debiased" else None
-        held["PECP1"] = (debiased or measured.epsilon_gamma).u
+    elif measured.carried is not None:
+        held["PECP1"] = measured.carried.pecp1.u
     elif turning is not None:
         scatter.setdefault("PECP1", scatter_of("PECP1", start["PECP1"], from_base=False, curved=True))
         for name in turning.start:

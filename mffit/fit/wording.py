@@ -24,6 +24,7 @@ from mffit.fit.ranges import single_load, single_pressure
 from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.written.files import Files, file_names, name_at_temperature
 from mffit.measured import Measured
+from mffit.measured.wording import SOURCES
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import BESIDE, UNITS, WORDS, ZEROS, shown, unit_of, words_of
@@ -47,9 +48,9 @@ def explanations(
         out.append(
             f"Set by hand in [coefficients]: {said}. Every file has held values, and uncertainties take them as exact."
         )
-    if measured.epsilon_gamma is not None and "PECP1" not in hand.held:
-        said = PECP1_IS[config.spin.pecp1].format(measured=measured.epsilon_gamma.value)
-        out.append(f"PECP1 = {float(values['PECP1']):.4f} is {said}.")
+    carried = measured.carried
+    if carried is not None and "PECP1" not in hand.held:
+        out.append(f"PECP1 = {float(values['PECP1']):.4f} is eps_gamma {SOURCES[carried.source]}.")
     return out
 
 
@@ -145,15 +146,6 @@ def beside_sentence(band: BandBesideSweeps) -> str:
         if band.wider
         else ""
     )
-
-
-PECP1_IS = {
-    "debiased": "the measured eps_gamma {measured:.4f} less the bias that the finite spin of the disc adds to it",
-    "direct": "the measured eps_gamma itself; because the spin of the disc is not small, the model's turn-slip force differs "
-    "slightly from the measured one",
-    "model": "the joint estimate of tyre and rig; the directly measured eps_gamma is {measured:.4f}",
-}
-"""By ``spin.pecp1`` of tyre.toml, the origin of PECP1 in words."""
 
 
 def bands_sentence(bands: Bands, held: Mapping[str, float], values: Mapping[str, Any], why: str) -> str:

@@ -15,16 +15,17 @@ from mffit.scatter import rms
 from tir import Quantity
 
 EPSILON = {
+    "file": "as its file carries it",
     "direct": "direct method",
     "alone": "joint estimate of its own build",
     "together": "joint estimate of all tyres",
 }
-"""The three estimates of eps_gamma in words."""
+"""The estimates of eps_gamma in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One specimen with three estimates of eps_gamma, each None if not measured."""
+    """One specimen with the estimates of eps_gamma, each None if not measured."""
 
     specimen: Specimen
     rig: int  #: index of its rig in the fleet
@@ -36,6 +37,11 @@ class Row:
     @property
     def direct(self) -> Quantity | None:
         """eps_gamma by the direct method."""
+        return self.specimen.epsilon_direct
+
+    @property
+    def file(self) -> Quantity | None:
+        """eps_gamma as the property file carries it."""
         return self.specimen.epsilon_gamma
 
 
@@ -74,8 +80,16 @@ class Fleet:
     rigs: tuple[Hierarchy | None, ...]  #: None if no build of the rig has free numbers
     notes: tuple[str, ...]
 
+    @property
+    def estimates(self) -> dict[str, str]:
+        """The known estimates of eps_gamma, in words; without the direct method's where all files carry it."""
+        known = {key: words for key, words in EPSILON.items() if any(self.numbers(key))}
+        if self.numbers("direct") == self.numbers("file"):
+            known.pop("direct", None)
+        return known
+
     def numbers(self, key: str) -> list[Quantity | None]:
-        """One number of every specimen; ``direct``, ``alone`` and ``together`` are eps_gamma."""
+        """One number of every specimen; those of :data:`EPSILON` are eps_gamma."""
         if key in EPSILON:
             return [getattr(row, key) for row in self.rows]
         return [row.numbers.get(key) for row in self.rows]

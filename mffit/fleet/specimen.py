@@ -30,7 +30,8 @@ class Specimen:
     on_disc: bool
     rig: Mapping[str, Any]  #: the table [rig] of the build
     information: Information | None  #: None if nothing was free
-    epsilon_gamma: Quantity | None  #: of the direct method
+    epsilon_gamma: Quantity | None  #: as the property file carries it
+    epsilon_direct: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
     reasons: tuple[str, ...] = ()  #: reasons against trusting the build; empty for a sound one
@@ -107,7 +108,6 @@ def read(folder: str | Path) -> Specimen:
         files, spin = result["files"], result["spin"]
         on_disc = resolved["rig"]["type"] == "rotating-disk"
         use = "turn-slip" if on_disc and "turn-slip" in files else next(iter(files))
-        epsilon = spin["epsilon_gamma"]
         return Specimen(
             name=str(result["tyre"]["name"]),
             folder=folder,
@@ -116,9 +116,8 @@ def read(folder: str | Path) -> Specimen:
             on_disc=on_disc,
             rig=resolved["rig"],
             information=read_information(folder / INFORMATION),
-            epsilon_gamma=None
-            if epsilon is None
-            else Quantity(float(epsilon), float(spin["u_epsilon_gamma"]), "-"),
+            epsilon_gamma=_stated(spin, "epsilon_gamma"),
+            epsilon_direct=_stated(spin, "epsilon_gamma_direct"),
             misfit={name: row["rmse"] for name, row in result["fit"]["channels"].items() if row["n"]},
             warnings=tuple(result["warnings"]),
             reasons=tuple(result.get("reasons", ())),
@@ -133,6 +132,11 @@ def read(folder: str | Path) -> Specimen:
         raise InputError(
             "is incomplete, or not written by `mffit build`; build this tyre again", file=folder
         ) from None
+
+
+def _stated(spin: Mapping[str, Any], key: str) -> Quantity | None:
+    value = spin[key]
+    return None if value is None else Quantity(float(value), float(spin[f"u_{key}"]), "-")
 
 
 def read_information(path: Path) -> Information | None:

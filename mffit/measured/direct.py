@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
@@ -16,6 +17,7 @@ from mffit.measured import wording
 from mffit.measured.axis import (
     SetupAngle,
     ZeroAngle,
+    ZeroSplit,
     angles_of_setups,
     at_true_zero,
     camber_at_true_zero,
@@ -25,10 +27,28 @@ from mffit.measured.axis import (
 )
 from mffit.measured.calibration import Factors, calibration, powers_of_load
 from mffit.measured.drift import shares_of_sweeps
-from mffit.measured.epsilon import corrected, epsilon_from_moments, factor, load_dependence, stiffer_in_camber
+from mffit.measured.epsilon import (
+    LoadDependence,
+    carried_by_file,
+    corrected,
+    epsilon_from_moments,
+    factor,
+    load_dependence,
+    stiffer_in_camber,
+)
 from mffit.measured.evidence import DirectEvidence, evidence_of, rest_of_play
 from mffit.measured.radii import effective_radius_at
-from mffit.measured.result import Drift, LoadResult, Measured, SetupScatter, SideslipZeros
+from mffit.measured.result import (
+    NO_FIT,
+    AfterFit,
+    Drift,
+    LoadResult,
+    Measured,
+    MeasuredFacts,
+    SetupScatter,
+    SideslipZeros,
+    SpinStatement,
+)
 from mffit.measured.setups import excess_forces, results_of_setups, setup_scatter, warnings_of_setups
 from mffit.measured.stiffnesses import LoadSlopes, assumed_stiffness, cornering_stiffness, load_slopes
 from mffit.measured.turning import Turning, turning
@@ -36,6 +56,7 @@ from mffit.measured.uncertain import agreed, budget, quantity, quantity_if
 from mffit.measured.zeros import LoadGroup, load_groups, zeros_by_path
 from mffit.parts import Parts
 from mffit.points import Points, levels, main_pressure
+from mffit.quantities import DIRECT
 from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared, RigError
 from mffit.scatter import ALARM
 from tir import Quantity, Tyre
@@ -52,14 +73,30 @@ class _AtLoad:
     yields: float  #: relative change of C_alpha by a compliance of the steering of 1 deg/Nm
 
 
-def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
+Judge = Callable[[MeasuredFacts], SpinStatement]
+"""Judges direct measurements before they are stated."""
+
+
+def without_judgement(_: MeasuredFacts) -> SpinStatement:
+    """No judgement: a build judges the whole result."""
+    return SpinStatement()
+
+
+def measure(
+    config: Config,
+    points: Points,
+    parts: Parts,
+    base: Tyre | None = None,
+    after: AfterFit = NO_FIT,
+    judge: Judge = without_judgement,
+) -> Measured:
     """Stiffnesses, turn-slip force and eps_gamma at every load, from points with the angles as read; stiffnesses only on a flat
     track.
 
-    ``base`` is the property file that supplies the shape of Re over load for loads at which r_e was not measured. Raises
-    InputError if the turn-slip force points towards the centre of the disc.
+    ``base`` is the property file that supplies the shape of Re over load for loads at which r_e was not measured, ``after`` what
+    a fit to these points adds. Raises InputError if the turn-slip force points towards the centre of the disc.
     """
-    evidence = evidence_of(config, points, parts, base)
+    evidence = evidence_of(config, points, parts, base, after.spin)
     warnings = [*parts.unpaired]
     rows = []
     stiffnesses = []
@@ -81,14 +118,37 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         calibrated = partial(calibration, evidence, group, powers_of_load(stiffnesses, group.load))
         # With camber sweeps in both directions (skew), no correction is needed: their mean holds at true zero sideslip.
         found, troubles = _at_load(
-            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes), calibrated
+            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes), calibrated, after
         )
         rows += [] if found is None else [found]
         warnings += troubles
-    measured, troubles = _assembled(evidence, rows, skew)
-    warnings += [*troubles, *warnings_of_setups(points, measured.nominal, scatter, config)]
-    return replace(
-        measured, warnings=tuple(warnings), setup_scatter=scatter, sideslip_zeros=zeros, drift=drift
+    rows += _of_model_alone(after, rows)
+    row, law, notes, of_nominal = _at_nominal(evidence, rows, skew)
+    stated, left = judge(MeasuredFacts(row, zeros, drift)), config.rig.u("alpha_0_deg")
+    on_disc = None if law is None else row
+    return Measured(
+        per_load=tuple(found.row for found in rows),
+        nominal=row,
+        carried=carried_by_file(config, row, law, after.pecp1) if row and law else None,
+        r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
+        misaligned=on_disc is not None and on_disc.slips_beyond(left),
+        notes=notes,
+        warnings=(
+            *stated.warnings,
+            *warnings,
+            *of_nominal,
+            *warnings_of_setups(points, row, scatter, config),
+        ),
+        load_note=law.note if law else "",
+        setup_scatter=scatter,
+        sideslip_zeros=zeros,
+        drift=drift,
+        misaligned_setups=_misaligned_setups(evidence, on_disc) if on_disc else {},
+        axis_off=on_disc is not None and on_disc.axis_off(left),
+        camber_skew=skew,
+        epsilon_gamma_model=after.epsilon_gamma,
+        made=stated.made,
+        reasons=stated.reasons,
     )
 
 
@@ -155,6 +215,7 @@ def _at_load(
     group: LoadGroup,
     slopes: LoadSlopes,
     calibrated: Callable[[LoadSlopes, Turning | None], Factors],
+    after: AfterFit,
 ) -> tuple[_AtLoad | None, list[str]]:
     """Results and warnings at one load, with eps_gamma if all its inputs were measured; None without any result."""
     C_alpha, rig = slopes.C_alpha, evidence.rig
@@ -163,118 +224,136 @@ def _at_load(
     found, troubles = (None, []) if rig is None else turning(evidence, group, slopes)
     factors = calibrated(slopes, found)
     slopes = slopes.calibrated(factors.C_alpha, factors.C_gamma)
-    if rig is None:
-        straight = _AtLoad(_row(evidence, group, slopes, None), None, factors.yields)
-        return (straight if slopes.exists else None), []
+    if rig is None and not slopes.exists:
+        return None, []
     found = found and found.calibrated(factors.F_phit)
-    r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
-    row = replace(_row(evidence, group, slopes, found), r_e=quantity_if(r_e, "m"), R=quantity_if(rig.R, "m"))
-    of_radii = {name: budget(radius) for name, radius in (("r_e", r_e), ("R", rig.R)) if radius is not None}
-    row = replace(row, budgets={**row.budgets, **of_radii})
-    if found is None or slopes.C_gamma is None or r_e is None:
-        return _AtLoad(row, None, factors.yields), troubles
+    numbers = _numbers(evidence, group, slopes, found)
+    fields: dict[str, Any] = {} if found is None else _of_zeros(evidence, group, found, slopes)
+    epsilon, r_e = None, numbers["r_e"]
+    if found is not None and slopes.C_gamma is not None and r_e is not None:
+        epsilon, of_epsilon = _epsilons(evidence, group, slopes, found, r_e)
+        fields |= of_epsilon
+        fields["setups"] = results_of_setups(evidence, found, C_alpha, slopes.C_gamma, r_e)
+    own = after.stiffnesses.get(group.load, {})
+    measured = {name: x for name, x in numbers.items() if x is not None and name not in own}
+    fields |= {name: quantity(x, DIRECT[name].unit) for name, x in measured.items()} | {**own}
+    fields |= {"budgets": {name: budget(x) for name, x in measured.items()}, "of_model": tuple(own)}
+    return _AtLoad(LoadResult(load=group.load, **fields), epsilon, factors.yields), troubles
+
+
+def _of_model_alone(after: AfterFit, rows: Sequence[_AtLoad]) -> list[_AtLoad]:
+    """Results at loads at which only the fitted model has any."""
+    measured = {found.row.load for found in rows}
+    return [
+        _AtLoad(LoadResult(load, of_model=tuple(own), **dict[str, Any](own)), None, 0.0)
+        for load, own in after.stiffnesses.items()
+        if load not in measured
+    ]
+
+
+def _numbers(
+    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None
+) -> dict[str, UFloat | None]:
+    """The quantities at one load that eps_gamma is made of, by their names in :class:`LoadResult`."""
+    u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
+    stiffness = at_true_zero(slopes.C_alpha, slopes.bend, _split(evidence, group, found, slopes), u_axis)
+    return {
+        "C_alpha": stiffness,
+        "C_gamma": slopes.C_gamma,
+        "C_phit": found and found.C_phit,
+        "F_phit": found and found.force,
+        "r_e": effective_radius_at(group.load, evidence.radii, evidence.base) if evidence.rig else None,
+        "R": evidence.rig and evidence.rig.R,
+    }
+
+
+def _split(
+    evidence: DirectEvidence, group: LoadGroup, found: Turning | None, slopes: LoadSlopes
+) -> ZeroSplit | None:
+    """The parts of alpha_M from axis and tyre; None if it was not measured."""
+    if found is None:
+        return None
+    C_alpha = slope_at(slopes.C_alpha, group.load)
+    return split_of_zero(found.alpha_M, C_alpha, evidence.config.rig.u("alpha_0_deg"))
+
+
+def _of_zeros(
+    evidence: DirectEvidence, group: LoadGroup, found: Turning, slopes: LoadSlopes
+) -> dict[str, Any]:
+    """Fields of :class:`LoadResult` from the zeros."""
+    zeros, split = found.zeros, _split(evidence, group, found, slopes)
+    return {
+        "alpha_M": quantity_if(found.alpha_M, "rad"),
+        "misalignment": quantity_if(split.misalignment, "rad") if split else None,
+        "ply_steer": quantity_if(split.ply_steer, "rad") if split else None,
+        "conicity": quantity_if(found.conicity, "N"),
+        "F_forward": float(zeros.forward.nominal_value),
+        "F_backward": math.nan if zeros.backward is None else float(zeros.backward.nominal_value),
+        "paths": found.phi_t,
+    }
+
+
+def _epsilons(
+    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning, r_e: UFloat
+) -> tuple[UFloat, dict[str, Any]]:
+    """eps_gamma at one load, and the fields of :class:`LoadResult` with all its estimates."""
+    assert slopes.C_gamma is not None
     stiffer = stiffer_in_camber(evidence, group)
     epsilon = factor(evidence, slopes.C_gamma, found, r_e, stiffer)
     slope, secant = (
         None if C is None else factor(evidence, C, found, r_e, stiffer) for C in (slopes.slope, slopes.secant)
     )
-    row = replace(
-        row,
-        epsilon_gamma=quantity(epsilon.plain, "-"),
-        # The bias of the secant is far larger than that of finite spin, so only the slope is corrected.
-        epsilon_debiased=None if slope is None else quantity(slope.debiased, "-"),
-        epsilon_slope=None if slope is None else float(slope.plain.nominal_value),
-        epsilon_secant=None if secant is None else float(secant.plain.nominal_value),
-        epsilon_moment=epsilon_from_moments(evidence, group, found, r_e),
-        setups=results_of_setups(evidence, found, C_alpha, slopes.C_gamma, r_e),
-        budget=budget(epsilon.plain),
-    )
-    return _AtLoad(row, epsilon.plain, factors.yields), troubles
+    # The bias of the secant is far larger than the usual one of finite spin, so without a model only the slope is corrected.
+    corrected = epsilon if evidence.spin_of_model else slope
+    return epsilon.plain, {
+        "epsilon_gamma": quantity(epsilon.plain, "-"),
+        "epsilon_debiased": None if corrected is None else quantity(corrected.debiased, "-"),
+        "epsilon_slope": None if slope is None else float(slope.plain.nominal_value),
+        "epsilon_secant": None if secant is None else float(secant.plain.nominal_value),
+        "epsilon_moment": epsilon_from_moments(evidence, group, found, r_e),
+        "budget": budget(epsilon.plain),
+    }
 
 
-def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
-    """The record of one load without eps_gamma."""
-    u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
-    C_alpha = slope_at(slopes.C_alpha, group.load)
-    split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
-    stiffness = at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis)
-    numbers = {"C_alpha": stiffness, "C_gamma": slopes.C_gamma}
-    if found is not None:
-        numbers |= {"C_phit": found.C_phit, "F_phit": found.force}
-    row = LoadResult(
-        load=group.load,
-        C_alpha=quantity_if(stiffness, "N/rad"),
-        C_gamma=quantity_if(slopes.C_gamma, "N/rad"),
-        budgets={name: budget(number) for name, number in numbers.items() if number is not None},
-    )
-    if found is None:
-        return row
-    zeros = found.zeros
-    return replace(
-        row,
-        F_phit=quantity(found.force, "N"),
-        C_phit=quantity(found.C_phit, "Nm"),
-        alpha_M=quantity_if(found.alpha_M, "rad"),
-        misalignment=quantity_if(split.misalignment, "rad") if split else None,
-        ply_steer=quantity_if(split.ply_steer, "rad") if split else None,
-        conicity=quantity_if(found.conicity, "N"),
-        F_forward=float(zeros.forward.nominal_value),
-        F_backward=math.nan if zeros.backward is None else float(zeros.backward.nominal_value),
-        paths=found.phi_t,
-    )
+class _AtNominal(NamedTuple):
+    """The result at the nominal load, and what is said of it."""
+
+    row: LoadResult | None
+    law: LoadDependence | None = None  #: None if eps_gamma was not measured
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
-def _assembled(
-    evidence: DirectEvidence, rows: Sequence[_AtLoad], skew: Quantity | None
-) -> tuple[Measured, list[str]]:
-    """The results of all loads with eps_gamma over load and notes, and the warnings."""
+def _at_nominal(evidence: DirectEvidence, rows: Sequence[_AtLoad], skew: Quantity | None) -> _AtNominal:
+    """The result at the load nearest to the nominal one that has eps_gamma, and eps_gamma over load; else the nearest result."""
     nominal_load = evidence.config.tyre.nominal_load
-    per_load = tuple(found.row for found in rows)
     nearest = min(rows, key=lambda found: abs(found.row.load - nominal_load), default=None)
     of_slopes = [] if nearest is None else _if_steering_yields(evidence.config, nearest)
     if nearest is not None and not np.any(np.isfinite(evidence.points.T)):
         of_slopes.append(wording.UNKNOWN_WARMTH)
     known = [(found, found.epsilon) for found in rows if found.epsilon is not None]
-    measured = Measured(
-        per_load=per_load,
-        nominal=None if nearest is None else nearest.row,
-        pecp1=None,
-        pecp2=0.0,
-        u_pecp2=None,
-        r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
-        misaligned=False,
-        notes=(*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *of_slopes),
-        warnings=(),
-        camber_skew=skew,
-    )
     if not known:
+        per_load = [found.row for found in rows]
         lacking = wording.nothing_measured(
             camber=any(row.C_gamma is not None for row in per_load),
             zeros=any(row.C_phit is not None for row in per_load),
             radius=bool(evidence.radii),
         )
-        return measured, [lacking] if evidence.rig else []
+        notes = (*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *of_slopes)
+        return _AtNominal(nearest.row if nearest else None, None, notes, (lacking,) if evidence.rig else ())
     loads = [found.row.load for found, _ in known]
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
-    nominal = known[at][0]
-    left = evidence.config.rig.u("alpha_0_deg")
-    said, off = wording.alignment(nominal.row, left), nominal.row.axis_off(left)
-    notes = (*_notes(evidence, nominal.row, skew, law.note), *of_slopes)
-    measured = replace(
-        measured,
-        nominal=nominal.row,
-        pecp1=law.pecp1,
-        pecp2=law.pecp2,
-        u_pecp2=law.u_pecp2,
-        misaligned=nominal.row.slips_beyond(left),
-        misaligned_setups=_misaligned_setups(evidence, nominal.row),
-        axis_off=off,
-        notes=notes if off or not said else (said, *notes),
-        load_note=law.note,
+    row, left = known[at][0].row, evidence.config.rig.u("alpha_0_deg")
+    said, off = wording.alignment(row, left), row.axis_off(left)
+    notes = (*_notes(evidence, row, skew, law.note), *of_slopes)
+    elsewhere = _taken_elsewhere(evidence, [found.row for found in rows], row.load)
+    return _AtNominal(
+        row,
+        law,
+        notes if off or not said else (said, *notes),
+        (*elsewhere, *([said] if off else []), *_skew_warning(evidence, skew)),
     )
-    elsewhere = _taken_elsewhere(evidence, per_load, nominal.row.load)
-    return measured, [*elsewhere, *([said] if off else []), *_skew_warning(evidence, skew)]
 
 
 def _taken_elsewhere(evidence: DirectEvidence, per_load: Sequence[LoadResult], taken: float) -> list[str]:

@@ -9,15 +9,18 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
+from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, COVERAGE_FACTOR_95, LARGEST_CAMBER_REDUCTION, USUAL_U_MOMENT
 from mffit.measured import constants, wording
 from mffit.measured.camber_reduction import camber_reduction, true_camber_stiffness
 from mffit.measured.evidence import DirectEvidence
+from mffit.measured.result import CarriedEpsilon, LoadResult, Source
 from mffit.measured.stiffnesses import slope_at_zero, sweep
 from mffit.measured.turning import Turning
 from mffit.measured.uncertain import combined
 from mffit.measured.zeros import LoadGroup, zeros
 from mffit.rig_errors import AtZero
+from tir import Quantity
 
 
 class Factor(NamedTuple):
@@ -40,7 +43,7 @@ def factor(
         C_gamma = C_gamma * (1.0 - stiffer)
     ratio = camber_reduction(found.C_phit, C_gamma, r_e)
     spin = (1.0 - ratio.nominal_value) * found.phi_t[0] ** 2
-    plain = ratio if evidence.published else ratio + spin * evidence.spin_left
+    plain = ratio if evidence.published and not evidence.spin_of_model else ratio + spin * evidence.spin_left
     return Factor(plain, ratio - spin * evidence.spin_known)
 
 
@@ -89,6 +92,22 @@ def epsilon_from_moments(
             1.0 + r_e.n * slope.value / (math.copysign(moment.n * rig.R.n, moment.n * found.zeros.phi_t))
         )
     )
+
+
+def carried_by_file(
+    config: Config, row: LoadResult, law: LoadDependence, fitted: Quantity | None
+) -> CarriedEpsilon:
+    """PECP1 and PECP2 of the property file: the one place that decides between the estimates of eps_gamma.
+
+    ``row`` is the result at the nominal load, and ``fitted`` PECP1 after a fit. [coefficients] can hold PECP1 only where the
+    choice is "model".
+    """
+    by_hand = config.coefficients.get("PECP1")
+    source: Source = "hand" if by_hand is not None and by_hand.is_held else config.spin.pecp1
+    measured = {"direct": row.epsilon_gamma, "debiased": row.epsilon_debiased or row.epsilon_gamma}
+    pecp1 = measured.get(source) or fitted or row.epsilon_gamma
+    assert pecp1 is not None
+    return CarriedEpsilon(source, pecp1, law.pecp2, law.u_pecp2)
 
 
 class LoadDependence(NamedTuple):

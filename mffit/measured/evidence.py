@@ -25,7 +25,7 @@ from mffit.measured.uncertain import named
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.rig_errors import BY_NAME, DECLARED
-from tir import Tyre
+from tir import Quantity, Tyre
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +41,8 @@ class DirectEvidence:
     base: Tyre | None
     conicity: UFloat  #: force over load
     spin_left: UFloat  #: bias of finite spin in an uncorrected value, as :data:`constants.SPIN_LOSS` [m^2]: 0 with uncertainty
-    spin_known: UFloat  #: bias of finite spin for the correction: the usual value with its uncertainty [m^2]
+    spin_known: UFloat  #: bias of finite spin for the correction, with its uncertainty [m^2]
+    spin_of_model: bool  #: whether this bias is that of a fitted model, for the configured method
     warming: UFloat  #: relative change of stiffness with temperature [1/K]
     calibration: Mapping[str, UFloat]  #: multiplicative errors of the readings, by name
     excess: Mapping[str, UFloat] = field(default_factory=dict)
@@ -61,12 +62,18 @@ class DirectEvidence:
         return self.points.Fy if self.rig is None else self.parts.Fy_odd
 
 
-def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None) -> DirectEvidence:
-    """The inputs of the direct method from points with the angles as read, and from declared or usual errors."""
+def evidence_of(
+    config: Config, points: Points, parts: Parts, base: Tyre | None, spin: Quantity | None = None
+) -> DirectEvidence:
+    """The inputs of the direct method from points with the angles as read, and from declared or usual errors.
+
+    ``spin`` is the bias of finite spin by a fitted model, as :data:`constants.SPIN_LOSS` [m^2]; by default the usual one.
+    """
     R = measured_path_radius(config)
     u = {error.name: config.rig.u(error.name) for error, _ in DECLARED}
-    loss = float(constants.SPIN_LOSS)
-    u_loss = 0.5 * loss  # covers no loss (a brush that does not slide) and twice the usual loss
+    usual = float(constants.SPIN_LOSS)
+    # The usual uncertainty covers no loss (a brush that does not slide) and twice the usual loss.
+    loss, u_loss = (usual, 0.5 * usual) if spin is None else (spin.value, spin.u)
     return DirectEvidence(
         config=config,
         points=backlash_corrected(points, config),
@@ -79,6 +86,7 @@ def evidence_of(config: Config, points: Points, parts: Parts, base: Tyre | None)
         # JCGM 100, F.2.4.5: a known but uncorrected effect enlarges the uncertainty by its size.
         spin_left=named(0.0, math.hypot(loss, u_loss), FINITE_SPIN, "m^2"),
         spin_known=named(loss, u_loss, FINITE_SPIN, "m^2"),
+        spin_of_model=spin is not None,
         calibration={
             error.name: named(0.0, u[error.name], declared.source, declared.unit)
             for error, declared in DECLARED

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -143,6 +142,7 @@ class LoadResult(Brief):
     budget: tuple[Contribution, ...] = ()  #: of epsilon_gamma
     budgets: Mapping[str, tuple[Contribution, ...]] = field(default_factory=dict)
     """Budgets of the other measured quantities, by their name in :data:`KEYS`."""
+    of_model: tuple[str, ...] = ()  #: names of the quantities that are a fitted model's
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual path first [1/m]
     setups: tuple[SetupResult, ...] = ()  #: results from every path and set-up alone, if there are several
 
@@ -180,11 +180,15 @@ class LoadResult(Brief):
     @property
     def headline(self) -> str:
         """The load, and eps_gamma if it was measured there."""
-        found = self.epsilon_gamma
-        said = (
-            "" if found is None else f", {DIRECT['epsilon_gamma'].ascii} {found.value:.3f} +- {found.u:.2g}"
-        )
-        return f"{CONDITIONS['Fz_N'].of(self.load)}{said}"
+        return headline(self.load, self.epsilon_gamma)
+
+
+def headline(load: float, epsilon: Quantity | None) -> str:
+    """A load [N], and eps_gamma if it is known there."""
+    said = (
+        "" if epsilon is None else f", {DIRECT['epsilon_gamma'].ascii} {epsilon.value:.3f} +- {epsilon.u:.2g}"
+    )
+    return f"{CONDITIONS['Fz_N'].of(load)}{said}"
 
 
 KEYS = {
@@ -211,15 +215,61 @@ NO_LOAD = {"load_N": None, **{key: None for name in KEYS.values() for key in wit
 """The numbers at the nominal load if nothing was measured there."""
 
 
+Source = Literal["direct", "debiased", "model", "hand"]
+"""Origins of PECP1 on a disc: the choices of ``[spin] pecp1``, and a value held in [coefficients]."""
+
+
+class CarriedEpsilon(NamedTuple):
+    """eps_gamma as the property file carries it."""
+
+    source: Source
+    pecp1: Quantity  #: at the nominal load; before a fit that frees PECP1, the direct value, from which it starts
+    pecp2: float
+    u_pecp2: float | None
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the fit determines PECP1."""
+        return self.source in ("model", "hand")
+
+
+@dataclass(frozen=True, slots=True)
+class AfterFit:
+    """What a fitted model adds to the direct measurements; nothing before a fit."""
+
+    spin: Quantity | None = None  #: bias of finite spin over (1 - eps_gamma) phi_t^2, by the model [m^2]
+    epsilon_gamma: float | None = None  #: by (17) from the forces of the model
+    pecp1: Quantity | None = None  #: PECP1 of the written file
+    stiffnesses: Mapping[float, Mapping[str, Quantity]] = field(default_factory=dict)
+    """By load [N], stiffnesses by their names in :class:`LoadResult`, which replace measured ones."""
+
+
+NO_FIT = AfterFit()
+
+
+class MeasuredFacts(NamedTuple):
+    """What the rules of trust need of direct measurements."""
+
+    nominal: LoadResult | None
+    sideslip_zeros: tuple[SideslipZeros, ...]
+    drift: Drift | None
+
+
+class SpinStatement(NamedTuple):
+    """What ``mffit spin`` states beside the measurements."""
+
+    reasons: tuple[str, ...] = ()  #: reasons against trust
+    warnings: tuple[str, ...] = ()
+    made: Made | None = None
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Measured(Brief):
     """Results of the direct method, without a model."""
 
     per_load: tuple[LoadResult, ...]
     nominal: LoadResult | None  #: the load nearest FNOMIN; None if nothing could be measured
-    pecp1: float | None
-    pecp2: float
-    u_pecp2: float | None
+    carried: CarriedEpsilon | None  #: eps_gamma of the property file; None if it was not measured
     r_e_loads: Mapping[float, float]  #: measured effective radius [m] by load [N]
     misaligned: bool  #: whether alpha_M exceeds the alignment uncertainty; the fit then accounts for alpha_M
     notes: tuple[str, ...]  #: remarks that need no action
@@ -232,9 +282,11 @@ class Measured(Brief):
     """By set-up whose alpha_M exceeds the alignment uncertainty, alpha_M at the nominal load [rad]."""
     axis_off: bool = False  #: whether moreover the misalignment of the axis is clearly not zero
     camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
-    epsilon_gamma_model: float | None = None
-    made: Made | None = None  #: set by ``mffit spin``
-    reasons: tuple[str, ...] = ()  #: reasons against trust, set by ``mffit spin``
+    epsilon_gamma_model: float | None = (
+        None  #: by (17) from the forces of the fitted model; None before a fit
+    )
+    made: Made | None = None  #: of ``mffit spin`` only
+    reasons: tuple[str, ...] = ()  #: reasons against trust, of ``mffit spin`` only
 
     @property
     def trusted(self) -> bool:
@@ -243,11 +295,29 @@ class Measured(Brief):
 
     @property
     def headline(self) -> str:
-        """eps_gamma at the nominal load."""
-        return self.nominal.headline if self.nominal else "nothing"
+        """The nominal load, and eps_gamma of the property file if it was measured."""
+        return headline(self.nominal.load, self.epsilon_of_file) if self.nominal else "nothing"
+
+    @property
+    def epsilon_of_file(self) -> Quantity | None:
+        """eps_gamma at the nominal load as the property file carries it."""
+        return self.carried.pecp1 if self.carried else None
+
+    @property
+    def pecp1(self) -> float | None:
+        return self.carried.pecp1.value if self.carried else None
+
+    @property
+    def pecp2(self) -> float:
+        return self.carried.pecp2 if self.carried else 0.0
+
+    @property
+    def u_pecp2(self) -> float | None:
+        return self.carried.u_pecp2 if self.carried else None
 
     @property
     def epsilon_gamma(self) -> Quantity | None:
+        """eps_gamma at the nominal load as measured, by (17)."""
         return self.nominal.epsilon_gamma if self.nominal else None
 
     @property
@@ -302,39 +372,13 @@ class Measured(Brief):
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
-    def debiased(self, bias: float) -> Measured:
-        """The record with the bias of finite spin that a fitted model predicts, instead of the usual bias.
-
-        The plain eps_gamma still contains the bias, so its uncertainty includes it.
-        """
-        row, direct = self.nominal, self.epsilon_gamma
-        assert row is not None
-        assert direct is not None
-        u_bias = constants.SPIN_BIAS_OF_MODEL * abs(bias)
-        before = math.hypot(*(line.contribution for line in row.budget if line.source == FINITE_SPIN))
-        rest = math.sqrt(max(direct.u**2 - before**2, 0.0))
-        both = math.hypot(bias, u_bias)
-        spin = Contribution(FINITE_SPIN, both, "-", both, value=0.0, sensitivity=1.0)
-        lines = [line for line in row.budget if line.source != FINITE_SPIN]
-        whole, corrected = math.hypot(rest, both), direct.value - bias
-        named = dataclasses.replace(
-            row,
-            epsilon_gamma=Quantity(direct.value, whole, direct.unit),
-            epsilon_debiased=Quantity(corrected, math.hypot(rest, u_bias), direct.unit),
-            budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
-        )
-        return self.with_nominal(named)
-
-    def with_nominal(self, row: LoadResult) -> Measured:
-        """The record with another row at the nominal load."""
-        rows = tuple(row if other is self.nominal else other for other in self.per_load)
-        return dataclasses.replace(self, nominal=row, per_load=rows)
-
     def quantities(self) -> dict[str, Quantity]:
         """The quantities at the nominal load for the structured comments of the property file."""
         if self.nominal is None:
             return {}
         found = {key: getattr(self.nominal, name) for name, key in KEYS.items()}
+        if self.carried is not None and self.carried.source != "direct":
+            found |= {"epsilon_gamma": self.epsilon_of_file, "epsilon_gamma_direct": self.epsilon_gamma}
         out = {key: quantity for key, quantity in found.items() if quantity is not None}
         if self.epsilon_gamma_debiased is not None:
             out["epsilon_gamma_debiased"] = self.epsilon_gamma_debiased
@@ -347,7 +391,8 @@ class Measured(Brief):
 # SI units, ISO signs, k = 1. The judgement stands at the top of ``spin.json`` and of ``result.json``.
 keys(
     Measured,
-    "**judged **at_nominal epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
+    "**judged **at_nominal ±epsilon_gamma=epsilon_of_file ±epsilon_gamma_direct=epsilon_gamma epsilon_gamma_source "
+    "epsilon_gamma_model ±epsilon_gamma_debiased pecp1 pecp2 u_pecp2 budget budgets "
     "expanded=nominal.expanded ±camber_skew_deg misaligned=axis_off coverage_factor setups setup_scatter drift notes "
     "per_load [made]",
     judged=lambda found: (
@@ -356,6 +401,7 @@ keys(
         else {"trusted": found.trusted, "reasons": found.reasons, "warnings": found.warnings}
     ),
     at_nominal=lambda found: found.nominal or NO_LOAD,
+    epsilon_gamma_source=lambda found: found.carried and found.carried.source,
     coverage_factor=lambda _: 1,
     setups=lambda found: () if found.nominal is None else found.nominal.setups,
 )

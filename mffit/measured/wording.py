@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
-from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, usual_ply_steer
+from mffit.measured.result import Alignment, LoadResult, Measured, SetupScatter, Source, usual_ply_steer
 from mffit.rounding import ascii_only, stated
 from tir import Quantity
 
@@ -225,20 +226,40 @@ def setup_scatter(found: SetupScatter) -> str:
     )
 
 
-def epsilon_values(measured: Measured) -> str:
-    """A comparison of the estimates of eps_gamma, in words; empty with one estimate."""
-    direct, debiased, model = (
-        measured.epsilon_gamma,
-        measured.epsilon_gamma_debiased,
-        measured.epsilon_gamma_model,
-    )
-    if direct is None or debiased is None:
-        return ""
-    joint = f"; the fitted model's turn-slip force corresponds to {model:.3f}" if model is not None else ""
-    return (
-        f"measured {direct.value:.3f}, to which the finite spin of the disc contributes {direct.value - debiased.value:+.3f}"
-        f"{joint}; estimates that differ by less than {2.0 * direct.u:.3f} agree within their uncertainty"
-    )
+SOURCES: Mapping[Source, str] = {
+    "direct": "as measured",
+    "debiased": "as measured, less the bias that the finite spin of the disc adds",
+    "model": "by the joint estimate of tyre and rig, from all points",
+    "hand": "as set in [coefficients]",
+}
+"""By its source, which eps_gamma the property file carries."""
+
+
+class OtherEstimate(NamedTuple):
+    """An estimate of eps_gamma that the property file does not carry."""
+
+    name: str
+    value: Quantity
+    why: str  #: why it differs from that of the file
+
+
+def beside_the_file(measured: Measured) -> list[OtherEstimate]:
+    """The other estimates of eps_gamma with uncertainty, each with the reason for its difference."""
+    direct, debiased, carried = measured.epsilon_gamma, measured.epsilon_gamma_debiased, measured.carried
+    if carried is None or direct is None:
+        return []
+    apart = abs(direct.value - carried.pecp1.value) / direct.u
+    found = []
+    if carried.source in ("model", "hand"):
+        why = f"from zeros and camber sweeps alone, whose errors of the rig the fit knows better: {apart:.1f} u apart"
+        found.append(OtherEstimate("measured", direct, why))
+    if debiased is not None:
+        why = f"the finite spin of the disc adds {direct.value - debiased.value:+.3f}"
+        if carried.source == "debiased":
+            found.append(OtherEstimate("measured", direct, why))
+        else:
+            found.append(OtherEstimate("debiased", debiased, f"{why} to what is measured"))
+    return found
 
 
 def steering(compliance: float, change: float) -> str:

@@ -17,17 +17,14 @@ from mffit.config.laboratory import lab_warnings
 from mffit.diagnosis import wording
 from mffit.fit import FitResult
 from mffit.made import made
-from mffit.measured import Measured
 from mffit.output import refuse_early
-from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure, said
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
-from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
-from mffit.points.loading import Reading
+from mffit.pipeline.refining import fit_and_measure
 from mffit.prediction import correction, missed_at_readings, missed_sentence
 from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent
 from mffit.results import CORRECTION, BuildResult
@@ -69,14 +66,14 @@ def build(
     base = read_base(config)
     made_of = made(input_hashes(config))
     progress(MEASURING)
-    parts, measured = measure(config, reading.points, base)
+    parts, before = measure(config, reading.points, base)
     names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
         further = f"{config.tyre.name}{CORRECTION}"
         refuse_early(Path(out), (*names.values(), special, further, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-        measured, fitted = _fitted(config, reading, parts, measured, base, progress)
+        measured, fitted = fit_and_measure(config, reading, parts, before, base, progress)
         progress(JUDGING)
         assert fitted.files is not None
         files = fitted.files.by_use
@@ -139,34 +136,6 @@ def build(
         progress(f"{WRITING} {'report' if with_report else 'files'}")
         write_build(result, Path(out), reading.stretches, with_report=with_report)
     return result
-
-
-def _fitted(
-    config: Config, reading: Reading, parts: Parts, measured: Measured, base: Tyre | None, progress: Progress
-) -> tuple[Measured, FitResult]:
-    """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
-
-    points = reading.points
-
-    def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
-
-    fitted = fit(measured)
-    sound = without_outliers(config, points, measured, fitted, base)
-    if sound is not None:
-        measured, fitted = sound, fit(sound)
-    bias = finite_spin_bias(config, points, undistorted(config, fitted), base)
-    if bias is not None:
-        measured = measured.debiased(bias)
-        if config.spin.pecp1 == "debiased":
-            assert measured.epsilon_gamma_debiased is not None
-            measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
-            fitted = fit(measured)
-    if measured.nominal is not None:
-        straight = fitting.straight_cornering_stiffness(fitted, points, measured.nominal)
-        measured = measured.with_nominal(replace(measured.nominal, C_alpha_straight=straight))
-    pecp1 = measured.pecp1 if measured.epsilon_gamma is None else float(fitted.written["PECP1"])
-    return replace(measured, epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=pecp1), fitted
 
 
 def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate) -> Iterator[Tyre]:

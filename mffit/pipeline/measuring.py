@@ -17,8 +17,10 @@ from mffit import parts as decomposition
 from mffit import points as ingestion
 from mffit.config import Config
 from mffit.errors import InputError
-from mffit.made import made
+from mffit.made import Made, made
 from mffit.measured import Alignment, Measured, radius_readings
+from mffit.measured.direct import Judge, without_judgement
+from mffit.measured.result import NO_FIT, AfterFit, MeasuredFacts, SpinStatement
 from mffit.output import output_folder
 from mffit.parts import Parts
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
@@ -34,32 +36,23 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     Writes ``spin.json`` if ``out`` is given.
     """
     config = configuration.load(config)
-    measured = replace(spin_of(config, read_points(config)), made=made(input_hashes(config)))
+    measured = spin_of(config, read_points(config), made(input_hashes(config)))
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
             as_json.write(folder / "spin.json", measured)
     return measured
 
 
-def spin_of(config: Config, reading: Reading) -> Measured:
+def spin_of(config: Config, reading: Reading, made_of: Made | None = None) -> Measured:
     """:func:`spin` of points that were read."""
-    _, measured = measure(config, reading.points, read_base(config))
-    trust = judged_measurement(config, reading.points, measured)
-    warnings = (*said(trust), *reading.warnings, *measured.warnings)
-    return replace(measured, warnings=warnings, reasons=trust.reasons)
+    points = reading.points
 
+    def judged(facts: MeasuredFacts) -> SpinStatement:
+        counts = not follows_path(config)
+        trust = judge(JudgedMeasurement(points=points, radius_counts=counts, **facts._asdict()))
+        return SpinStatement(trust.reasons, (*said(trust), *reading.warnings), made_of)
 
-def judged_measurement(config: Config, points: Points, measured: Measured) -> Trust:
-    """The judgement of direct measurements by the rules that need no fit."""
-    return judge(
-        JudgedMeasurement(
-            points=points,
-            nominal=measured.nominal,
-            radius_counts=not follows_path(config),
-            sideslip_zeros=measured.sideslip_zeros,
-            drift=measured.drift,
-        )
-    )
+    return measure(config, points, read_base(config), judge=judged)[1]
 
 
 def said(trust: Trust) -> tuple[str, ...]:
@@ -114,12 +107,18 @@ def _aligned(
     return direct.align(points, axes=config.rig.axes, measured=stiffness, resolution_deg=resolution_deg)
 
 
-def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
+def measure(
+    config: Config,
+    points: Points,
+    base: Tyre | None,
+    after: AfterFit = NO_FIT,
+    judge: Judge = without_judgement,
+) -> tuple[Parts, Measured]:
     """The odd and even parts of the points, and the direct measurements from those that roll freely, if there are any."""
     rolling = _rolling(points)
     own = points if np.all(rolling) else points.select(rolling)
     parts = decomposition.split(own)
-    measured = direct.measure(config, own, parts, base)
+    measured = direct.measure(config, own, parts, base, after, judge)
     parts = replace(parts, alpha_odd=direct.odd_alpha(own, parts, config))
     return (parts if own is points else parts.among(points, rolling)), measured
 

@@ -16,11 +16,12 @@ from mffit.config import Config
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
 from mffit.measured import Measured
+from mffit.measured.result import AfterFit
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, measure
-from mffit.pipeline.refining import finite_spin_bias, undistorted
+from mffit.pipeline.refining import spin_of_model, undistorted
 from mffit.planning import (
     Addition,
     Goal,
@@ -151,15 +152,14 @@ def _direct_method(result: BuildResult) -> Direct:
             measured = measure(config, points, base)[1]
         except InputError:
             return None
-        raw = measured.epsilon_gamma
-        if raw is None:
+        if measured.carried is None:
             return None
-        bias = finite_spin_bias(config, points, model, base)
-        known = measured if bias is None else measured.debiased(bias)
-        if known.epsilon_gamma_debiased is not None and config.spin.pecp1 == "debiased":
-            return DirectU(known.epsilon_gamma_debiased.u, known.epsilon_gamma_debiased.u)
-        assert known.epsilon_gamma is not None
-        return DirectU(stated=known.epsilon_gamma.u, held=raw.u)
+        spin = spin_of_model(config, points, measured, model, base)
+        known = measured if spin is None else measure(config, points, base, AfterFit(spin=spin))[1]
+        assert known.carried is not None
+        of_fit = known if known.carried.source == "debiased" else measured  # that which the fit holds
+        assert of_fit.carried is not None
+        return DirectU(stated=known.carried.pecp1.u, held=of_fit.carried.pecp1.u)
 
     return direct
 

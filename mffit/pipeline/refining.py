@@ -1,4 +1,4 @@
-"""What a fit changes in the direct measurements: rejected readings, and the bias of finite spin."""
+"""The fit, and what it adds to the direct measurements: rejected readings, the bias of finite spin, stiffnesses at rest."""
 
 from __future__ import annotations
 
@@ -7,32 +7,112 @@ from dataclasses import replace
 import numpy as np
 
 from mffit import fit as fitting
+from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.fit import FitResult
-from mffit.measured import Measured
+from mffit.measured import KEYS, Measured
+from mffit.measured.constants import SPIN_BIAS_OF_MODEL
+from mffit.measured.result import AfterFit
+from mffit.parts import Parts
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.points import Points
+from mffit.points.loading import Reading
+from mffit.progress import Progress
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
-from tir import Tyre
+from tir import Quantity, Tyre
 
 
-def without_outliers(
-    config: Config, points: Points, measured: Measured, fitted: FitResult, base: Tyre | None
-) -> Measured | None:
-    """The direct method without the readings that the fit rejected; None if they make no difference."""
+def fit_and_measure(
+    config: Config, reading: Reading, parts: Parts, before: Measured, base: Tyre | None, progress: Progress
+) -> tuple[Measured, FitResult]:
+    """The fit, and the direct measurements with what the fit adds to them.
+
+    ``before`` are the measurements without a fit. The fit is repeated if its outliers, or its bias of finite spin, change the
+    eps_gamma that it holds.
+    """
+    points = reading.points
+
+    def fit(measured: Measured) -> FitResult:
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
+
+    fitted = fit(before)
+    sound = without_outliers(points, fitted)
+    if sound is not points:
+        again = measure(config, sound, base)[1]
+        if again != before:
+            before, fitted = again, fit(again)
+    spin = spin_of_model(config, points, before, undistorted(config, fitted), base)
+    if spin is not None and before.carried is not None and before.carried.source == "debiased":
+        before = measure(config, sound, base, AfterFit(spin=spin))[1]
+        fitted = fit(before)
+    return measure(config, sound, base, _after(config, points, before, fitted, spin))[1], fitted
+
+
+def _after(
+    config: Config, points: Points, before: Measured, fitted: FitResult, spin: Quantity | None
+) -> AfterFit:
+    """What a fit adds to the measurements ``before`` it."""
+    stiffnesses: dict[float, dict[str, Quantity]] = {}
+    if not config.rig.on_disc:
+        stiffnesses = at_rest(config, points, before, fitted)
+    if before.nominal is not None:
+        load = before.nominal.load
+        straight = stiffnesses.get(load, {}).get("C_alpha") or fitting.straight_cornering_stiffness(
+            fitted, points, before.nominal
+        )
+        if straight is not None:
+            stiffnesses[load] = {**stiffnesses.get(load, {}), "C_alpha_straight": straight}
+    stderr = fitted.coefficients["PECP1"].stderr
+    pecp1 = Quantity(float(fitted.written["PECP1"]), stderr or 0.0, "-")
+    return AfterFit(spin, fitted.epsilon_gamma_model, pecp1, stiffnesses)
+
+
+def at_rest(
+    config: Config, points: Points, before: Measured, fitted: FitResult
+) -> dict[float, dict[str, Quantity]]:
+    """By load [N], stiffnesses of the fitted model where sweeps moved; the nominal load where nothing was measured at rest.
+
+    The force lags behind a moving angle, and the few readings at rest beside moving sweeps hardly show a slope. The fit separates
+    the lag from the tyre.
+    """
+    moving = points.select(points.continuous & points.free_rolling)
+    if not len(moving):
+        return {}
+    loads = [row.load for row in before.per_load] or [config.tyre.nominal_load]
+    found = {}
+    for load in loads:
+        numbers = characteristics(
+            fitted.tyre, load, turn_slip=False, known=fitted.posterior, predictor=fitted.prediction
+        )
+        named = {name: numbers[KEYS[name]] for name in ("C_alpha", "C_gamma")}
+        found[load] = {name: number for name, number in named.items() if number.u}
+    return found
+
+
+def without_outliers(points: Points, fitted: FitResult) -> Points:
+    """The points without the readings of Fy and Mz that the fit rejected; the same record if it rejected none."""
     if not fitted.outliers:
-        return None
+        return points
     readings = {}
     for channel in SIDEWAYS:
         rejected = [outlier.row for outlier in fitted.outliers if outlier.channel == channel]
         readings[channel] = np.where(
             np.isin(np.arange(len(points)), rejected), np.nan, getattr(points, channel)
         )
-    sound = points.replace(**readings).select(np.isfinite(readings["Fy"]))
-    again = measure(config, sound, base)[1]
-    return None if again == measured else again
+    return points.replace(**readings).select(np.isfinite(readings["Fy"]))
+
+
+def spin_of_model(
+    config: Config, points: Points, before: Measured, simulation: Simulation | None, base: Tyre | None
+) -> Quantity | None:
+    """Bias of finite spin over (1 - eps_gamma) phi_t^2 [m^2], by a fitted model; None if eps_gamma was not measured."""
+    row, bias = before.nominal, finite_spin_bias(config, points, simulation, base)
+    if bias is None or row is None or row.epsilon_gamma is None:
+        return None
+    size = bias / ((1.0 - row.epsilon_gamma.value) * row.paths[0] ** 2)
+    return Quantity(size, float(SPIN_BIAS_OF_MODEL) * abs(size), "m^2")
 
 
 def finite_spin_bias(

@@ -144,7 +144,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         sections=groupby(sorted(view.rows, key=lambda row: _section(row) == OTHERS), key=_section),
         channels=CHANNELS,
         of_number=words.of_number,
-        epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
         of_residuals=of_residuals,
         conditions=CONDITIONS,

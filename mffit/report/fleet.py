@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tir import Quantity
 
 LOOKS = {
+    "file": Look(colour=style.CONTRAST, marker="^", size=4.0, width=1.2),
     "direct": Look(colour=style.FAINT, marker="s", size=4.0, width=1.2),
     "alone": Look(colour=style.CALM, marker="D", size=4.0, width=1.2),
     "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
@@ -33,14 +34,15 @@ APART = 0.22
 
 def epsilon_of_all(found: Fleet) -> Sheet:
     """Camber reduction factor of every specimen by each estimate; every bar is one standard uncertainty."""
-    if not any(any(found.numbers(key)) for key in EPSILON):
+    estimates = found.estimates
+    if not estimates:
         return NOTHING
     series = [
-        _bars(found.numbers(key), APART * (k - 1), LOOKS[key], words)
-        for k, (key, words) in enumerate(EPSILON.items())
+        _bars(found.numbers(key), APART * (k - (len(estimates) - 1) / 2.0), LOOKS[key], words)
+        for k, (key, words) in enumerate(estimates.items())
     ]
     panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
-    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()})
+    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in estimates.items()})
 
 
 def numbers_of_all(found: Fleet) -> Sheet:
@@ -115,7 +117,7 @@ def headline(found: Fleet) -> str:
 
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
     """Write ``plots/*.png`` and ``fleet.html`` to an existing folder; ``priors``: whether it holds ``priors.json``."""
-    estimates = {key: words for key, words in EPSILON.items() if any(found.numbers(key))}
+    estimates = found.estimates
     page.write(
         "fleet.html.j2",
         folder / "fleet.html",

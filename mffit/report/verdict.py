@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
+from mffit.measured import KEYS
+from mffit.measured.wording import SOURCES
 from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
@@ -53,8 +55,10 @@ def headlines(result: BuildResult) -> list[Headline]:
     """The four numbers that a user came for: of the direct method on a disc, then of the model where data decide them."""
     nominal, found = result.measured.nominal, []
     if result.measured.epsilon_gamma is not None and nominal is not None:
-        at = f"at {number(nominal.load, 0)} N; PECP1 in the file: {number(result.measured.pecp1, 4)}"
-        of_disc = (("epsilon_gamma", nominal.epsilon_gamma, at), ("C_phit", nominal.C_phit, "turn slip"))
+        carried = result.measured.carried
+        at = f"PECP1 of the file, {SOURCES[carried.source]} at {number(nominal.load, 0)} N" if carried else ""
+        epsilon = result.measured.epsilon_of_file
+        of_disc = (("epsilon_gamma", epsilon, at), ("C_phit", nominal.C_phit, "turn slip"))
         found = [_headline(DIRECT[name], value, note) for name, value, note in of_disc if value is not None]
     tyre = result.tyres[result.fitted]
     load = float(tyre["FNOMIN"])
@@ -62,9 +66,13 @@ def headlines(result: BuildResult) -> list[Headline]:
         tyre, load, turn_slip=result.on_disc, known=result.fit.posterior, predictor=result.prediction
     )
     fitted = {name for name, a in result.fit.channels.items() if a.n}
-    tested, note = Tested.of([tyre]), f"of the model at {number(load, 0)} N, straight path"
+    loads = dict.fromkeys(of_model, load)
+    if nominal is not None and not result.on_disc:  # the same numbers as in result.json
+        of_model |= {KEYS[name]: getattr(nominal, name) for name in nominal.of_model}
+        loads |= {KEYS[name]: nominal.load for name in nominal.of_model}
+    tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):
-        value = of_model[key]
+        value, note = of_model[key], f"of the model at {number(loads[key], 0)} N, straight path"
         if DECIDED_BY[key].channel in fitted and value.u:
             end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
             found.append(_headline(CHARACTERISTICS[key], value, note, end))

@@ -274,7 +274,7 @@ def test_spin_writes_the_spin_part_of_the_build(built, result, tmp_path, capsys)
     content = json.loads((tmp_path / "spin" / "spin.json").read_text(encoding="utf-8"))
     # what only the finished file can tell
     fitted = {"epsilon_gamma_model", "pecp1", "epsilon_gamma_debiased", "u_epsilon_gamma_debiased"}
-    fitted |= {"u_epsilon_gamma", "budget", "per_load", "expanded"}
+    fitted |= {"u_epsilon_gamma", "u_epsilon_gamma_direct", "u_pecp2", "budget", "per_load", "expanded"}
     fitted |= {"made", "trusted", "reasons", "warnings"}  # in result.json beside the part
     fitted |= {"C_alpha_straight_N_per_rad", "u_C_alpha_straight_N_per_rad"}
     assert {k: v for k, v in content.items() if k not in fitted} == {

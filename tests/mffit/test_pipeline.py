@@ -171,7 +171,7 @@ def test_where_pecp1_comes_from(small, tmp_path):
     result, _ = small
     assert result.tyre["PECP1"] == result.measured.epsilon_gamma.value == result.measured.pecp1
     assert result.measured.epsilon_gamma_model != result.measured.epsilon_gamma.value
-    stated = f"PECP1 = {result.tyre['PECP1']:.4f} is the measured eps_gamma itself"
+    stated = f"PECP1 = {result.tyre['PECP1']:.4f} is eps_gamma as measured."
     assert sum(stated in sentence for sentence in result.fit.explanations) == 1
     campaign(tmp_path, faults={"F0_N": 15.0}, spin={"pecp1": "debiased"})
     debiased = mffit.build(tmp_path / "tyre.toml")

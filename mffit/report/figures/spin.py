@@ -80,7 +80,7 @@ def camber_reduction(view: BuildView) -> Sheet:
 
 def _among_published(name: str, measured: Measured) -> Panel:
     rows = [(tyre.name, tyre.epsilon_gamma, tyre.u) for tyre in TYRES]
-    own = measured.epsilon_gamma
+    own = measured.epsilon_of_file
     if own is not None:
         rows.append((textwrap.shorten(name, 24, placeholder="…"), own.value, own.u))
     places = np.arange(len(rows))

@@ -98,14 +98,19 @@ def spin_numbers(measured: Measured, names: Sequence[str] = NUMBERS) -> str:
     row = measured.nominal
     if row is None:
         return ""
-    found = [(name, DIRECT[name], getattr(row, name)) for name in names]
-    load = CONDITIONS["Fz_N"].of(row.load)
-    explained = {**EXPLAINED, "epsilon_gamma": f" at {load}"}
+    found = {name: getattr(row, name) for name in names} | {"epsilon_gamma": measured.epsilon_of_file}
+    explained = {**EXPLAINED, **dict.fromkeys(row.of_model, " (of the fitted model)")}
+    carried = measured.carried
+    if carried is not None:
+        source = "" if carried.source == "direct" else f", {wording.SOURCES[carried.source]}"
+        explained["epsilon_gamma"] = f" at {CONDITIONS['Fz_N'].of(row.load)}{source}"
     lines = [
-        f"{q.ascii:<10} {stated(value, q.unit_behind)}{explained.get(name, '')}"
-        for name, q, value in found
+        f"{DIRECT[name].ascii:<10} {stated(value, DIRECT[name].unit_behind)}{explained.get(name, '')}"
+        for name, value in found.items()
         if value is not None
     ]
+    others = wording.beside_the_file(measured) if carried is not None and carried.source != "direct" else []
+    lines[1:1] = [f"{one.name:<10} {stated(one.value)}: {one.why}" for one in others]
     return "\n".join(lines)
 
 
@@ -125,7 +130,7 @@ def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
     plain = {
         "slope": row.epsilon_slope,
         "secant": row.epsilon_secant,
-        "written file": measured.epsilon_gamma_model,
+        "force of the file": measured.epsilon_gamma_model,
         "Mz (informational)": row.epsilon_moment,
     }
     found = [f"{name} {as_good_as(value, u)}" for name, value in plain.items() if value is not None]

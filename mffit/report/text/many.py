@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mffit.fleet import EPSILON, Fleet
+from mffit.fleet import Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT, SIDEWAYS, QuantityName
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.results import BuildOutcome
@@ -20,10 +20,10 @@ def misfit_channels(found: Fleet) -> dict[str, QuantityName]:
 
 def fleet_summary(found: Fleet) -> str:
     """The text that ``mffit fleet`` prints: eps_gamma of every tyre, scatter between tyres, errors of the rig."""
-    known = [key for key in EPSILON if any(found.numbers(key))]
+    known = found.estimates
     channels = misfit_channels(found)
     misfits = [channel.column(name) for name, channel in channels.items()]
-    head = ("tyre", *(EPSILON[key] for key in known), *misfits)
+    head = ("tyre", *known.values(), *misfits)
     rows = [
         (
             row.specimen.name,
@@ -32,7 +32,7 @@ def fleet_summary(found: Fleet) -> str:
         )
         for row in found.rows
     ]
-    words = {**{key: f"{DIRECT['epsilon_gamma'].ascii}, {EPSILON[key]}" for key in known}}
+    words = {**{key: f"{DIRECT['epsilon_gamma'].ascii}, {said}" for key, said in known.items()}}
     words |= {key: quantity.column(quantity.ascii) for key, quantity in COMPARED.items()}
     scatters = [
         (label, as_good_as(s.mean, s.u), number(s.sd, digits=2), number(s.u, digits=2))

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.fit.wording import PECP1_IS, explanations, file_sentences, ranges_sentence
+from mffit.fit.wording import explanations, file_sentences, ranges_sentence
 from mffit.fit.written.files import Files, file_names
 from mffit.fit.written.misfit import FileFigures, Misfit
 
@@ -124,20 +124,6 @@ def test_pressures_of_one_level_are_one(lowest, words):
     assert words in ranges_sentence(Files({}, TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {}))
 
 
-@pytest.mark.parametrize(
-    ("source", "words"),
-    [
-        ("debiased", "is the measured eps_gamma 0.1200 less the bias"),
-        ("direct", "is the measured eps_gamma itself"),
-        ("model", "is the joint estimate of tyre and rig"),
-    ],
-)
-def test_the_origin_of_pecp1_is_stated(source, words):
-    said = f"is {PECP1_IS[source].format(measured=0.12)}"
-    assert words in said
-    assert ("0.1200" in said) == (source != "direct")
-
-
 @pytest.mark.parametrize("measured", [True, False])
 def test_pecp1_is_explained_where_it_was_measured(measured):
     config = SimpleNamespace(
@@ -145,9 +131,9 @@ def test_pecp1_is_explained_where_it_was_measured(measured):
         spin=SimpleNamespace(exact="turn-slip", pecp1="model"),
         rig=SimpleNamespace(on_disc=True),
     )
-    epsilon = SimpleNamespace(epsilon_gamma=SimpleNamespace(value=0.12) if measured else None)
-    said = explanations(config, files(), {"PECP1": 0.1}, epsilon)
-    assert said[-1].startswith("PECP1 = 0.1000") == measured
+    direct = SimpleNamespace(carried=SimpleNamespace(source="model") if measured else None)
+    said = explanations(config, files(), {"PECP1": 0.1}, direct)
+    assert said[-1].startswith("PECP1 = 0.1000 is eps_gamma by the joint estimate") == measured
     assert len(said) == 4 + measured
 
 

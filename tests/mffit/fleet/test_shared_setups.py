@@ -31,7 +31,8 @@ def specimen(name, rng=None, *, rig=None, setups=(), names=NAMES, epsilon=0.0):
     return Specimen(
         name=name, folder=Path(name), tyre=Tyre.from_values({}), file="a.tir", on_disc=True, rig=rig or {},
         information=Information(tuple(names), truth, matrix, vector, expected, spread),
-        epsilon_gamma=Quantity(epsilon, 0.04, "-"), misfit={}, warnings=(), setups=setups,
+        epsilon_gamma=Quantity(epsilon, 0.04, "-"), epsilon_direct=Quantity(epsilon, 0.04, "-"),
+        misfit={}, warnings=(), setups=setups,
     )  # fmt: skip
 
 

@@ -72,7 +72,7 @@ class Plain:
         )  # fmt: skip
 
 
-def settings(*, tyre=None, camber_stiffness=None, radius=True, **rig: Any) -> Config:
+def settings(*, tyre=None, camber_stiffness=None, spin=None, radius=True, **rig: Any) -> Config:
     """A configuration of the disc: hardly a doubt about the rig but what is given."""
     sure = {
         "u_loadcell_offset_N": 0.0, "u_camber_alignment_deg": 0.0, "u_slip_alignment_N": 1.0, "u_camber_skew_deg": 0.0,
@@ -83,6 +83,7 @@ def settings(*, tyre=None, camber_stiffness=None, radius=True, **rig: Any) -> Co
         "rig": {"path_radius": R, "u_path_radius": U_R} | sure | rig,
         "rolling_radius": [{"effective_radius": R_E, "u_effective_radius": U_R_E}] if radius else [],
         "camber_stiffness": camber_stiffness or {},
+        "spin": spin or {},
         "sweep": [{"file": "all.csv"}],
     }
     return config.load(content)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,18 +13,29 @@ from scipy.stats import t as student
 from mffit import as_json
 from mffit.errors import InputError
 from mffit.measured import Contribution, measure, wording
+from mffit.measured.result import FINITE_SPIN, NO_FIT, AfterFit
 from mffit.measured.uncertain import expanded
 from mffit.parts import split
 from mffit.points.points import concatenate
+from tir import Quantity
 
 LOADS = (1000.0, 1500.0, 2000.0)
 
 
-def measured(tyre: Plain, loads=(1500.0,), points=None, base=None, camber_stiffness=None, radius=True, **rig):
+def measured(
+    tyre: Plain,
+    loads=(1500.0,),
+    points=None,
+    base=None,
+    after=NO_FIT,
+    camber_stiffness=None,
+    radius=True,
+    **rig,
+):
     sides = {-1: "left", 1: "right"}
     points = points or tyre.campaign(loads)
     config = settings(path_centre=sides[tyre.side], camber_stiffness=camber_stiffness, radius=radius, **rig)
-    return measure(config, points, split(points), base)
+    return measure(config, points, split(points), base, after)
 
 
 def contributions(result) -> dict[str, float]:
@@ -244,6 +254,41 @@ def test_finite_spin_is_in_the_uncertainty_of_the_value_and_taken_off_the_debias
     )
     rest = math.hypot(*(v for k, v in contributions(result).items() if k != "finite spin of the disc"))
     assert result.epsilon_gamma_debiased.u == pytest.approx(math.hypot(rest, bias / 2.0), rel=0.01)
+
+
+def test_the_bias_of_the_model_takes_the_place_of_the_usual_one():
+    """0.2 m^2 with its own u instead of 0.03 +- 0.015 m^2, at every load alike; the measured value stays."""
+    tyre, spin = Plain(), Quantity(0.2, 0.06, "m^2")
+    before, after = (measured(tyre, LOADS, after=AfterFit(spin=known)) for known in (None, spin))
+    for row, usual in zip(after.per_load, before.per_load, strict=True):
+        assert row.epsilon_gamma.value == usual.epsilon_gamma.value
+        bias = 0.2 * (1.0 - row.epsilon_gamma.value) / R**2
+        assert row.epsilon_gamma.value - row.epsilon_debiased.value == pytest.approx(bias)
+        rest = math.hypot(*(line.contribution for line in row.budget if line.source != FINITE_SPIN))
+        assert row.epsilon_debiased.u == pytest.approx(math.hypot(rest, 0.3 * bias), rel=1e-3)
+        assert row.epsilon_gamma.u == pytest.approx(math.hypot(rest, bias, 0.3 * bias), rel=1e-3)
+
+
+@pytest.mark.parametrize("source", ["direct", "debiased", "model"])
+def test_the_file_carries_what_spin_pecp1_chooses(source):
+    """Before the fit of a model the direct value is the start; afterwards the file's own number counts."""
+    tyre = Plain()
+    config = settings(path_centre="left", spin={"pecp1": source})
+    points = tyre.campaign()
+    fitted = Quantity(-0.3, 0.02, "-")
+    before, after = (
+        measure(config, points, split(points), None, AfterFit(pecp1=known)) for known in (None, fitted)
+    )
+    row = before.nominal
+    expected = {"direct": row.epsilon_gamma, "debiased": row.epsilon_debiased, "model": row.epsilon_gamma}
+    assert before.carried.pecp1 == expected[source]
+    assert before.carried.is_free == (source == "model")
+    assert after.epsilon_of_file == (fitted if source == "model" else expected[source])
+    stated = as_json.document(after)
+    assert (stated["epsilon_gamma"], stated["u_epsilon_gamma"]) == after.epsilon_of_file[:2]
+    assert stated["pecp1"] == stated["epsilon_gamma"] == after.quantities()["epsilon_gamma"].value
+    assert stated["epsilon_gamma_direct"] == row.epsilon_gamma.value
+    assert stated["epsilon_gamma_source"] == source
 
 
 @pytest.mark.parametrize(("alpha_0", "misaligned"), [(0.05, False), (0.2, False), (0.5, True), (-0.5, True)])
@@ -483,15 +528,14 @@ def test_the_sweeps_are_as_long_as_the_tests_say():
 
 
 def test_the_property_file_names_what_was_measured_and_nothing_else():
-    result = measured(Plain())
-    found = replace(result, epsilon_gamma_model=-0.14).debiased(0.02).quantities()
-    row = result.nominal
+    result = measured(Plain(), after=AfterFit(epsilon_gamma=-0.14))
+    found, row = result.quantities(), result.nominal
     assert found["C_phit_Nm"] == row.C_phit
     assert found["C_gamma_N_per_rad"] == row.C_gamma
     assert found["C_alpha_N_per_rad"] == row.C_alpha
     assert (found["r_e_m"], found["R_m"], found["F_phit_N"]) == (row.r_e, row.R, row.F_phit)
     assert found["epsilon_gamma"].value == row.epsilon_gamma.value
-    assert found["epsilon_gamma_debiased"].value == pytest.approx(row.epsilon_gamma.value - 0.02)
+    assert found["epsilon_gamma_debiased"] == row.epsilon_debiased
     assert (found["epsilon_gamma_model"].value, found["epsilon_gamma_model"].unit) == (-0.14, "-")
     assert (found["load_N"].value, found["load_N"].unit) == (1500.0, "N")
     assert len(found) == 10
@@ -507,6 +551,6 @@ def test_the_property_file_names_what_was_measured_and_nothing_else():
 
 
 def test_the_comment_of_a_file_gives_no_uncertainty_to_what_has_none():
-    found = replace(measured(Plain()), epsilon_gamma_model=-0.1).quantities()
+    found = measured(Plain(), after=AfterFit(epsilon_gamma=-0.1)).quantities()
     assert (found["load_N"].value, found["load_N"].u) == (pytest.approx(1500.0, rel=0.01), 0.0)
     assert (found["epsilon_gamma_model"].value, found["epsilon_gamma_model"].u) == (-0.1, 0.0)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, replace
 
 import pytest
 
 from mffit.measured import Contribution, LoadResult, Measured, wording
-from mffit.measured.result import FINITE_SPIN
+from mffit.measured.result import CarriedEpsilon
 from tir import Quantity
 
 ANGLE, AXIS, TYRE = (
@@ -99,7 +99,7 @@ def test_a_warning_is_a_sentence_with_its_numbers(warning, words):
     assert words in warning
 
 
-OF_RESULTS = {"epsilon_values", "expanded", "advice"}
+OF_RESULTS = {"OtherEstimate", "beside_the_file", "expanded", "advice"}
 OF_SETUPS = {
     "setup_without_zeros", "sweeps_without_setup", "last_is_aligned", "setup_misaligned", "setup_scatter",
 }  # fmt: skip
@@ -122,17 +122,30 @@ def at_one_load(budget=(), **more):
     empty = dict.fromkeys((f.name for f in fields(LoadResult) if f.default is MISSING), None)
     known = {"load": 1400.0, "epsilon_gamma": Quantity(-0.1, 0.05, "-"), "budget": budget}
     row = LoadResult(**empty | known, **more)
-    return Measured((row,), row, -0.1, 0.0, 0.4, {}, False, (), ())
+    return Measured((row,), row, None, {}, False, (), ())
 
 
-def test_the_bias_of_the_model_takes_the_place_of_the_usual_one():
-    usual = Contribution(FINITE_SPIN, 0.03, "m^2", 0.03), Contribution("load-cell offset", 10.0, "N", 0.04)
-    before = at_one_load(usual)
-    after = before.debiased(0.02)
-    assert after.epsilon_gamma.u == pytest.approx(math.hypot(0.04, 0.02, 0.006))
-    assert after.epsilon_gamma_debiased.value == pytest.approx(-0.12)
-    assert after.epsilon_gamma_debiased.u == pytest.approx(math.hypot(0.04, 0.006))
-    assert math.hypot(*(line.contribution for line in after.budget)) == pytest.approx(after.epsilon_gamma.u)
+def carrying(source, value):
+    """A tyre with eps_gamma -0.1 +- 0.05, of which the finite spin adds 0.02, and a file that carries another value."""
+    file = CarriedEpsilon(source, Quantity(value, 0.03, "-"), 0.0, None)
+    debiased = Quantity(-0.12, 0.045, "-")
+    return replace(at_one_load(epsilon_debiased=debiased), carried=file)
+
+
+@pytest.mark.parametrize(
+    ("source", "value", "others"),
+    [
+        ("direct", -0.1, {"debiased": "adds +0.020 to what is measured"}),
+        ("debiased", -0.12, {"measured": "adds +0.020"}),
+        ("model", -0.2, {"measured": "2.0 u apart", "debiased": "adds +0.020 to what is measured"}),
+    ],
+)
+def test_every_other_estimate_stands_beside_that_of_the_file_with_a_reason(source, value, others):
+    found = wording.beside_the_file(carrying(source, value))
+    assert {one.name: one.value.value for one in found} == {
+        name: {"measured": -0.1, "debiased": -0.12}[name] for name in others
+    }
+    assert all(one.why.endswith(others[one.name]) for one in found)
 
 
 def test_the_expanded_uncertainty_is_told_with_its_factor():
