@@ -31,12 +31,13 @@ ANGLE = re.compile(r"deg|rad|°")
 
 
 def is_of_kind(unit: str, channel: Channel) -> bool:
-    """Whether readings in a unit can be converted to that of a channel; a share is no angle."""
+    """Whether readings in a unit can be converted to that of a channel; a share is no angle, and no angle a share."""
     try:
         converted(np.zeros(1), unit, channel.unit)
     except UnknownUnitError:
         return False
-    return channel.unit != "deg" or ANGLE.search(spelt(unit)) is not None
+    is_angle = ANGLE.search(spelt(unit)) is not None
+    return is_angle if channel.unit == "deg" else channel.unit != "" or not is_angle
 
 
 def in_unit_of(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[str]:

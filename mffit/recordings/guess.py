@@ -21,11 +21,11 @@ from mffit.sweeps.columns import numbers
 from mffit.sweeps.frames import FORCES, MOMENTS, letter_of
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.standstill import standing
-from mffit.sweeps.units import converted
+from mffit.sweeps.units import converted, is_unit, spelt
 from mffit.sweeps.wide import FROM_NAMES
 
-CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
-"""A time of day, with or without its date."""
+WITH_UNIT = re.compile(r"(.+?)(?:\s*[/,_]\s*|\s+in\s+)([^_,\s]+)")
+"""A heading that ends with its unit: ``Fz / N``, ``Fz, N``, ``Fz in N``, ``Fz_N``."""
 
 
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
@@ -86,9 +86,10 @@ def guesses(
         columns["V_mps"] = speed._replace(values=-speed.values)
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
-    remarks = [*of_rest, *of_axes, *left_out.values(), *of_units]
     columns = {name: column for name, column in columns.items() if name not in left_out}
-    found = {name: column.guess(chosen.get(name)) for name, column in columns.items()} | _labels(raw, named)
+    found = {name: column.guess(chosen.get(name)) for name, column in columns.items()}
+    remarks = [*of_rest, *of_axes, *left_out.values(), *of_units, *_unknown_units(raw, found)]
+    found |= _labels(raw, named)
     by_unit = {name: column for name, column in by_unit.items() if name in found}
     found |= {name: found[name]._replace(why="taken by its unit, see above") for name in by_unit}
     remarks += map(taken_for, by_unit.values())
@@ -192,17 +193,42 @@ def candidates(
 
 
 def _known_headings(raw: RawTable, channel: Channel, others: Collection[str]) -> list[str]:
-    """The headings with a known name of a channel that are none of the ``others``, in the order of the names."""
-    headings = _headings(raw)
-    names = map(simplified, (channel.name, *channel.aliases))
-    found = dict.fromkeys(headings[name] for name in names if name in headings)
-    return [heading for heading in found if heading not in others]
+    """The headings with a known name of a channel that are none of the ``others``, in the order of the names.
+
+    A name with its unit, such as ``Camber / deg``, is known, too.
+    """
+    with_unit = {heading: WITH_UNIT.fullmatch(heading) for heading in reversed(raw.headings)}
+    plain = {simplified(m[1]): heading for heading, m in with_unit.items() if m}
+    names = [simplified(name) for name in (channel.name, *channel.aliases)]
+    full = _headings(raw)
+    found = [full[name] for name in names if name in full]
+    found += [plain[name] for name in names if name in plain and _unit_within(plain[name], channel)]
+    return [heading for heading in dict.fromkeys(found) if heading not in others]
+
+
+def _unit_within(heading: str, channel: Channel) -> str:
+    """The unit that a heading states after a name; "" if it states none of the channel's kind, or is the contract's."""
+    found = WITH_UNIT.fullmatch(heading)
+    unit = found[2] if found and heading != channel.name else ""
+    return unit if spelt(unit) and is_unit(unit) and is_of_kind(unit, channel) else ""
 
 
 def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
     """The column of a heading as this channel; None without readings or with a unit of another dimension."""
     stated = raw.unit(heading)
-    return None if stated and not is_of_kind(stated, channel) else FoundChannel.of(raw, channel, heading)
+    if stated and is_unit(stated):
+        return FoundChannel.of(raw, channel, heading) if is_of_kind(stated, channel) else None
+    return FoundChannel.of(raw, channel, heading, _unit_within(heading, channel))
+
+
+def _unknown_units(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
+    """Remarks on columns whose stated unit is unknown."""
+    return [
+        f'the unit "{stated}" of {guess.heading} is not known, so it is taken as {guess.unit_of_readings}; if it is another one, '
+        f"correct it under [columns]"
+        for guess in found.values()
+        if (stated := raw.unit(guess.heading)) and not is_unit(stated)
+    ]
 
 
 def _labels(raw: RawTable, named: Mapping[str, str]) -> dict[str, Guess]:
@@ -241,9 +267,8 @@ def _load_of_names(names: str, load: Guess) -> str:
 
 
 def _without_time(raw: RawTable) -> str:
-    """The remark for a file without time: every row is a point; it names a column of clock times, if any."""
-    sentence = f"no time: each of {len(raw)} rows is treated as a finished point"
-    for heading, cells in zip(raw.headings, raw.cells, strict=True):
-        if not isinstance(cells, np.ndarray) and len(cells) and CLOCK.match(str(cells[0])):
-            return f'{sentence}; column "{heading}" holds clock times ("{cells[0]}"): write seconds in a column time_s'
-    return f'{sentence}; if they are samples of a recording, name its time under [columns], for example time_s = "..."'
+    """The remark for a file without time: every row is a point."""
+    return (
+        f"no time: each of {len(raw)} rows is treated as a finished point; if they are samples of a recording, name its time "
+        'under [columns], for example time_s = "..."'
+    )

@@ -20,7 +20,7 @@ from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible, numbers
 from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.units import converted, spelt
+from mffit.sweeps.units import converted, is_unit, spelt
 
 
 class Choice(NamedTuple):
@@ -73,12 +73,16 @@ class FoundChannel(NamedTuple):
     stated: str  #: unit as the file states it, "" if it does not
     values: np.ndarray  #: (n,), NaN where there is no reading
     given: bool = False  #: whether a user gave the value, which then says nothing of the file's units
+    of_heading: bool = False  #: whether the unit is stated within the heading
 
     @classmethod
-    def of(cls, raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
-        """The column of a heading as this channel; None without readings."""
+    def of(cls, raw: RawTable, channel: Channel, heading: str, of_heading: str = "") -> FoundChannel | None:
+        """The column of a heading, which may state the unit itself, as this channel; None without readings."""
         values = numbers(raw.column(heading))
-        return cls(channel, heading, raw.unit(heading), values) if np.any(np.isfinite(values)) else None
+        stated = of_heading or raw.unit(heading)
+        if not np.any(np.isfinite(values)):
+            return None
+        return cls(channel, heading, stated if is_unit(stated) else "", values, of_heading=of_heading != "")
 
     @property
     def unit(self) -> str:
@@ -87,7 +91,7 @@ class FoundChannel(NamedTuple):
 
     def guess(self, choice: Choice | None) -> Guess:
         """The guess for this column, with the chosen unit if the file states none."""
-        unit, why = choice or ("", "")
+        unit, why = choice or ((self.stated, "as the heading says") if self.of_heading else ("", ""))
         seen = self.values[np.isfinite(self.values)]
         lower, upper = (float(seen.min()), float(seen.max())) if len(seen) else (np.nan, np.nan)
         return Guess(self.channel, self.heading, self.stated, unit, choice is not None, lower, upper, why)

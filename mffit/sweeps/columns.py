@@ -16,6 +16,7 @@ from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import constants
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
 from mffit.sweeps.raw_table import (
+    NO_READING,
     Cells,
     RawTable,
     has_decimal_comma,
@@ -31,8 +32,6 @@ DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
 MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
-NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
-"""Texts, in lower case, that recorders write in place of a missing reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,7 +282,7 @@ def numbers(cells: Cells) -> np.ndarray:
 def _bad_cell(cell: str, channel: Channel) -> str:
     """Why a cell is not a finite number, and what to do."""
     if cell == "":
-        return "this cell is empty; complete it or remove the row"
+        return "this cell is empty; complete it (merged cells hold their value only in the first one) or remove the row"
     quoted = f'"{shortened(cell)}"'
     if _is_gap(cell):
         return f"{quoted} is not a measurement; complete it or remove the row"
@@ -296,7 +295,7 @@ def _bad_cell(cell: str, channel: Channel) -> str:
             f'unit = "{shortened(unit[1])}" for this column under [sweep.columns]'
         )
     expected = f"a number in {channel.unit}" if channel.unit else "a plain number"
-    return f"{quoted} is a text where {expected} is expected; correct it"
+    return f"{quoted} is a text where {expected} is expected; correct it or remove the row"
 
 
 def _all_blank(cells: Cells) -> bool:

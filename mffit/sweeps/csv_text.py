@@ -56,7 +56,9 @@ class Dialect(NamedTuple):
 def read_csv(path: Path) -> RawTable:
     """Read a text table, also ``.gz``; blank lines and lines that begin with ``#`` are skipped.
 
-    Raises InputError if the file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
+    A column without a heading is left out if it is empty, else named by its number.
+
+    Raises InputError if the file is missing, empty, not text, ragged, without data, or a heading appears twice.
     """
     return _table_of_text(_utf8(path), path)
 
@@ -84,14 +86,16 @@ def _table_of_text(content: bytes, path: Path) -> RawTable:
     above = first[head.rows][0] - 1
     body = content.split(b"\n", above)[above]
     widest = max(len(head.headings), *(len(row) for _, row in first[head.rows :]))
-    table = _table(body, (*head.headings, *range(widest - len(head.headings))), dialect, path, above)
+    names = [heading or f"column {k}" for k, heading in enumerate(head.headings, 1)]
+    table = _table(body, (*names, *range(widest - len(names))), dialect, path, above)
     filled = np.flatnonzero(table.notna().any(axis=1).to_numpy())
     _check_widths(body, table, filled, len(head.headings), dialect, path, above)
     table = table.iloc[filled] if len(filled) < len(table) else table
+    kept = [k for k, name in enumerate(names) if head.headings[k] or table[name].notna().any()]
     return RawTable(
-        headings=head.headings,
-        units=head.units,
-        cells=tuple(_cells(table.pop(name), dialect) for name in head.headings),
+        headings=tuple(names[k] for k in kept),
+        units=tuple(head.units[k] for k in kept),
+        cells=tuple(_cells(table.pop(names[k]), dialect) for k in kept),
         lines=filled + above + 1,
         path=path,
         heading_line=heading_line,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from mffit.errors import check_readable
 from mffit.sheets import WORKBOOKS, file_of, sheet_of
+from mffit.sweeps.clock_times import with_clock_times
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
@@ -54,7 +55,7 @@ def read(path: Path) -> RawTable:
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
     check_readable(file_of(path))
-    found = with_load_of_names(format_of(path).read(path))
+    found = with_load_of_names(with_clock_times(format_of(path).read(path)))
     if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found

@@ -42,53 +42,112 @@ def ragged(count: int, width: int, path: Path, line: int) -> InputError:
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
-    """Headings and units in the first rows of a table, none of them empty, whose cells are stripped of blanks."""
+    """Headings and units in the first rows of a table, none of them empty, whose cells are stripped of blanks.
+
+    Headings may stand in two rows, where cells were merged: an upper cell names a column by itself, or the group of those below.
+    A column without a heading has an empty one here.
+    """
     if not rows:
         raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)
     usual = max(widths, key=lambda width: (widths[width], width))
     # The headings are the first row with most cells filled, because a title fills few.
     at = next((k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual), 0)
-    found = _trimmed(rows[at])
-    headings = tuple(str(cell) for cell in found)
-    if all(is_number(cell) for cell in found):
-        above = [_width(row) for row in rows[:at] if not any(is_number(cell) for cell in row if cell != "")]
-        if above and max(above) > 1:  # headings, and rows with more cells than headings
-            raise ragged(len(found), max(above), path, lines[at])
-        sentence = "has numbers instead of headings; add a first line of headings"
-        raise InputError(sentence, file=path, line=lines[at])
-    units, used = _units(rows, at, len(headings))
-    split = [
-        WITH_UNIT.match(heading) if not unit else None for heading, unit in zip(headings, units, strict=True)
-    ]
-    split = [found if found and is_unit(found[2]) else None for found in split]
-    headings = tuple(found[1] if found else heading for heading, found in zip(headings, split, strict=True))
-    units = tuple(found[2].strip() if found else unit for unit, found in zip(units, split, strict=True))
-    _check_headings(path, lines[at], headings)
+    _check_texts(rows, at, lines, path)
+    upper, lower, used = _rows_of_headings(rows, at)
+    headings, units = _headings_of(upper, lower)
+    stated, used = _units(rows, used, len(headings))
+    twice = [heading for number, heading in enumerate(headings) if heading and heading in headings[:number]]
+    if twice:
+        raise InputError("appears twice; rename or remove one", file=path, line=lines[at], column=twice[0])
+    units = tuple(below or own for below, own in zip(stated, units, strict=True))
     title = " ".join(str(cell) for row in rows[:at] for cell in row if cell != "")
     return Head(headings, units, at, used, title)
 
 
+def _check_texts(rows: Sequence[Row], at: int, lines: Sequence[int], path: Path) -> None:
+    """Refuse numbers in place of headings."""
+    found = _trimmed(rows[at])
+    if all(is_number(cell) for cell in found):
+        above = [_width(row) for row in rows[:at] if _without_numbers(row)]
+        if above and max(above) > 1:  # headings, and rows with more cells than headings
+            raise ragged(len(found), max(above), path, lines[at])
+        sentence = "has numbers instead of headings; add a first line of headings"
+        raise InputError(sentence, file=path, line=lines[at])
+    if len(found) > 2 and not is_number(found[0]) and all(is_number(cell) for cell in found[1:]):
+        sentence = (
+            f'has numbers beside "{found[0]}" where headings are expected: if every row is a channel, transpose the '
+            "table, so that every column is one; else write a heading above every column"
+        )
+        raise InputError(sentence, file=path, line=lines[at])
+
+
+def _without_numbers(row: Row) -> bool:
+    return not any(is_number(cell) for cell in row if cell != "")
+
+
+def _rows_of_headings(rows: Sequence[Row], at: int) -> tuple[Row, Row, int]:
+    """The row of groups, empty without one, and that of headings, of which ``at`` is one; and the number of rows up to them."""
+    below = rows[at + 1] if at + 1 < len(rows) else ()
+    if _without_numbers(below) and not _is_of_units(below) and _fills_gaps(below, rows[at]):
+        return rows[at], below, at + 2
+    above = rows[at - 1] if at else ()
+    return above if _fills_gaps(above, rows[at]) else (), rows[at], at + 1
+
+
+def _fills_gaps(row: Row, other: Row) -> bool:
+    """Whether a row has texts where the other one has none."""
+    return any(cell != "" and (k >= len(other) or other[k] == "") for k, cell in enumerate(row))
+
+
+def _headings_of(groups: Row, row: Row) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Headings and units: those of the row, or of its groups where it has none; groups of equal headings tell them apart."""
+    width = max(_width(groups), _width(row))
+    group, of_group = ("", ""), sum(cell != "" for cell in groups) > 1  # a title is no group
+    found = []
+    for above, own in zip(_with_units(groups, width), _with_units(row, width), strict=True):
+        group = above if above[0] else group
+        name, unit = own if own[0] else above
+        found.append((name, unit or group[1] if of_group else unit, group[0]))
+    names = [name for name, _, _ in found]
+    alike = {group for name, _, group in found if name and names.count(name) > 1} - {""}
+    headings = tuple(
+        f"{group} {name}" if name and group in alike - {name} else name for name, _, group in found
+    )
+    return headings, tuple(unit for _, unit, _ in found)
+
+
+def _with_units(row: Row, width: int) -> list[tuple[str, str]]:
+    """The cells of a row with the unit that some have in brackets, such as ``FY [N]``."""
+    cells = [str(cell) for cell in row[:width]] + [""] * (width - len(row))
+    split = [(cell, WITH_UNIT.match(cell)) for cell in cells]
+    return [(m[1], m[2].strip()) if m and is_unit(m[2]) else (cell, "") for cell, m in split]
+
+
 def _units(rows: Sequence[Row], at: int, width: int) -> tuple[tuple[str, ...], int]:
-    """Units from the row below the headings, all "" without a row of units; and the number of rows above the data."""
-    nothing = ("",) * width, at + 1
-    if at + 1 >= len(rows):
-        return nothing
-    row = _trimmed(rows[at + 1])
-    texts = [str(cell).strip("[]() ") for cell in row]
-    stated = [text for text in texts if text]
-    if any(is_number(cell) for cell in row) or len(row) > width or not all(is_unit(text) for text in stated):
-        return nothing
-    return (*texts, *("",) * (width - len(texts))), at + 2
+    """Units from the first row below the headings, or from the next if that one describes the columns, and the row of the data.
+
+    Most cells of a row of units are units; all are "" without such a row.
+    """
+    for k in range(at, min(at + 2, len(rows))):
+        row = _trimmed(rows[k])
+        if not _without_numbers(row) or len(row) > width:
+            break
+        if _is_of_units(row):
+            return (*map(_unit, row), *("",) * (width - len(row))), k + 1
+    return ("",) * width, at
 
 
-def _check_headings(path: Path, line: int, headings: tuple[str, ...]) -> None:
-    if "" in headings:
-        number = headings.index("") + 1
-        raise InputError(f"heading {number} is empty; name or remove that column", file=path, line=line)
-    twice = [heading for number, heading in enumerate(headings) if heading in headings[:number]]
-    if twice:
-        raise InputError("appears twice; rename or remove one", file=path, line=line, column=twice[0])
+def _is_of_units(row: Row) -> bool:
+    """Whether most texts of a row are units."""
+    stated = [text for text in map(_unit, row) if text]
+    return 2 * sum(map(is_unit, stated)) > len(stated)
+
+
+def _unit(cell: str | float) -> str:
+    """A unit without the brackets around it."""
+    text = str(cell)
+    return text.strip("[]() ") if text[:1] in ("[", "(") else text
 
 
 def _trimmed(row: Row) -> Row:

@@ -93,6 +93,8 @@ SPREADSHEET_ERRORS = frozenset({
 })  # fmt: skip
 
 
+NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
+"""Texts, in lower case, that recorders write in place of a missing reading."""
 SUMMARIES = frozenset({
     "mittelwert", "mittel", "mean", "average", "avg", "median", "standardabweichung", "stdabw", "std", "stddev", "std.dev",
     "min", "minimum", "max", "maximum", "summe", "sum", "total", "gesamt",

@@ -147,7 +147,7 @@ WHOLE = {
         b'alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,"15\n00",-300\n', 3, "quotation mark is not closed in its line",
     ),
     "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
-    "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
+    "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "alpha_deg, column 2, Fz_N"),
     "decimal commas between commas": (
         b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,0,0,1500,0,-300,0\n1,0,0,0,1500,0,-500,0\n",
         2,

@@ -46,6 +46,29 @@ def write_dat(path):
     path.write_text("\r\n".join(lines))
 
 
+def write_merged(path):
+    """Two rows of headings with merged cells, a title, a column of remarks without a heading, and a blank column."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    first, *rest = TABLE
+    sheet.append(["Test 4711"])
+    sheet.append([first, "", "", "conditions", *(len(rest) - 1) * [""]])
+    sheet.append(["", "", "", *rest])
+    sheet.append(["", "", "", *(UNITS[name] for name in rest)])
+    for time, *row in TABLE.to_numpy().tolist():
+        sheet.append([time, None, "checked", *row])
+    sheet.merge_cells(start_row=2, end_row=3, start_column=1, end_column=1)
+    sheet.merge_cells(start_row=2, end_row=2, start_column=4, end_column=len(rest) + 3)
+    book.save(path)
+
+
+def in_lines(*head: list[str], blank: int = 0) -> str:
+    """The table between tabs under these rows, with a number of empty columns after each."""
+    rows = [*head, *([repr(float(value)) for value in row] for row in TABLE.to_numpy())]
+    return "\n".join(("\t" * (blank + 1)).join(row) for row in rows)
+
+
 def tydex(
     *, factor: float = 1.0, offset: float = 0.0, shift: float = 0.0, fixed: bool = True, end: str = "\n"
 ) -> str:
@@ -92,6 +115,14 @@ WRITERS = {
     "thousands.csv": lambda path: path.write_text(
         "\n".join([";".join(TABLE), *(";".join(map(german, row)) for row in TABLE.to_numpy())])
     ),
+    "merged.xlsx": write_merged,
+    "index.csv": lambda path: TABLE.to_csv(path),
+    "blank.txt": lambda path: path.write_text(
+        in_lines(list(TABLE), [UNITS[name] for name in TABLE], blank=2)
+    ),
+    "described.txt": lambda path: path.write_text(
+        in_lines(list(TABLE), [f"channel {name}" for name in TABLE], [UNITS[name] for name in TABLE])
+    ),
     "texts.xlsx": lambda path: TABLE.map(german).to_excel(path, index=False),
     "german.tdx": lambda path: path.write_text(re.sub(r"(?<=\d)\.(?=\d+[ \n])", ",", tydex(factor=0.5))),
 }
@@ -126,6 +157,53 @@ def test_constants_of_a_tydex_file_become_columns(tmp_path):
     k = raw.headings.index("RIMWIDTH")
     assert raw.units[k] == "in"
     np.testing.assert_array_equal(raw.cells[k], 7.0)
+
+
+def test_groups_tell_equal_headings_apart_and_state_units(tmp_path):
+    (tmp_path / "a.csv").write_text("t [s];Force [kN];;Moment [Nm]\n;y;z;z\n0;1;2;3\n1;4;5;6\n")
+    raw = formats.read(tmp_path / "a.csv")
+    assert raw.headings == ("t", "Force y", "Force z", "Moment z")
+    assert raw.units == ("s", "kN", "kN", "Nm")
+    assert [cells[1] for cells in raw.cells] == [1.0, 4.0, 5.0, 6.0]
+
+
+def test_an_unknown_unit_among_known_ones_does_not_make_the_row_one_of_data(tmp_path):
+    (tmp_path / "a.csv").write_text("SA,FZ,P\n[deg],[N],[kPa abs]\n1,1500,250\n")
+    assert formats.read(tmp_path / "a.csv").units == ("deg", "N", "kPa abs")
+
+
+def test_a_table_on_its_side_is_to_be_transposed(tmp_path):
+    (tmp_path / "a.csv").write_text("alpha_deg,-2,0,2\nFy_N,300,0,-300\n")
+    with pytest.raises(InputError, match=r'a\.csv:1: has numbers beside "alpha_deg".*transpose the table'):
+        formats.read(tmp_path / "a.csv")
+
+
+CLOCKS = {
+    "a time of day": ["12:03:04.5", "12:03:05", "12:04:04,75"],
+    "over midnight": ["23:59:59.5", "00:00:00", "00:00:59.75"],
+    "the date in the ISO form": ["2026-02-28T23:59:59.5Z", "2026-03-01T00:00:00Z", "2026-03-01T00:00:59.75Z"],
+    "an American date": ["2/28/2026 11:59:59.5 PM", "3/1/2026 12:00:00 AM", "3/1/2026 12:00:59.75 AM"],
+    "a German date": ["28.02.2026 13:59:59,5", "28.02.2026 14:00:00,0", "28.02.2026 14:00:59,75"],
+    "minutes and seconds": ["59:59.5", "00:00.0", "00:59.75"],
+    "a duration": ["0:00:04.500000", "0:00:05", "0:01:04.750000"],
+}
+
+
+@pytest.mark.parametrize("kind", CLOCKS)
+def test_clock_times_are_seconds(tmp_path, kind):
+    rows = [f"{time};{k}" for k, time in enumerate(CLOCKS[kind])]
+    (tmp_path / "a.csv").write_text("\n".join(["Zeitstempel;SA", *rows]))
+    raw = formats.read(tmp_path / "a.csv")
+    assert raw.units[0] == "s"
+    np.testing.assert_allclose(raw.cells[0] - raw.cells[0][0], [0.0, 0.5, 60.25])
+
+
+@pytest.mark.parametrize(
+    "cells", [["12:03:04"] * 3, ["1.csv", "2.csv", "3.csv"], ["12:03:04", "late", "12:03:05"]]
+)
+def test_labels_and_the_time_of_a_test_are_no_clock(tmp_path, cells):
+    (tmp_path / "a.csv").write_text("\n".join(["label;SA", *(f"{cell};{k}" for k, cell in enumerate(cells))]))
+    assert formats.read(tmp_path / "a.csv").cells[0] == cells
 
 
 BROKEN = {
