@@ -68,7 +68,7 @@ def apart(files: Sequence[Path]) -> tuple[list[Path], tuple[SummaryRow, ...]]:
     known = {file_of(file.absolute()) for file in files}
     inside = [file for folder in folders for file in sorted(folder.iterdir())]
     beside = [file for file in inside if file.absolute() not in known and _may_be_summary(file)]
-    rows = [row for file in (*given, *beside) for row in _rows(file, recordings)]
+    rows = [row for file in (*given, *beside) for table in _tables(file) for row in _rows(table, recordings)]
     return recordings, tuple(row for row in rows if row.bad or row.specimen)
 
 
@@ -106,6 +106,14 @@ def _may_be_summary(file: Path) -> bool:
         and file.is_file()
         and file.stat().st_size < constants.LARGEST_SUMMARY
     )
+
+
+def _tables(file: Path) -> list[Path]:
+    """The tables of a file; none if it cannot be read."""
+    try:
+        return formats.tables_of(file)
+    except InputError:
+        return []
 
 
 def _raw_summary(file: Path) -> RawTable | None:

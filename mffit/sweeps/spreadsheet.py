@@ -1,4 +1,4 @@
-"""The reader of Excel workbooks: the first sheet with data, or the one that is named (``book.xlsx#Sheet``)."""
+"""The reader of Excel workbooks: the only visible sheet with data, or the one that is named (``book.xlsx#Sheet``)."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from mffit.sweeps.csv_text import table_of
 from mffit.sweeps.extras import BYTES_OF_A_NUMBER, check_size, needed, undamaged
 from mffit.sweeps.grid import is_number
 from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_comma, with_decimal_point
+from tir.errors import some
 
 KIND = "Excel workbook"
 Row = tuple[str | float, ...]
@@ -24,11 +25,12 @@ Row = tuple[str | float, ...]
 def read_xlsx(path: Path) -> RawTable:
     """Read a sheet: headings, optionally a row of units, then numbers; a formula counts as its last value.
 
-    Raises InputError if the file is not a workbook, the sheet is missing or has no table, or openpyxl is not installed.
+    Raises InputError if the file is not a workbook, the sheet is missing or has no table, several visible sheets have data and
+    none is named, or openpyxl is not installed.
     """
     with _opened(path) as book:
         data = _with_data(book, path)
-        sheet = _named(book, sheet_of(path), path) if sheet_of(path) else _first(book, data, path)
+        sheet = _named(book, sheet_of(path), path) if sheet_of(path) else _only(book, data, path)
         table = table_of(_with_points(list(_rows(sheet, path))), path)
     return replace(table, others=tuple(one.title for one in data if one.title != sheet.title))
 
@@ -84,13 +86,21 @@ def _named(book: Any, title: str, path: Path) -> Any:
     return titles[title.lower()]
 
 
-def _first(book: Any, data: Sequence[Any], path: Path) -> Any:
-    """The first visible sheet with data, else with a table, whose fault the reader then names."""
+def _only(book: Any, data: Sequence[Any], path: Path) -> Any:
+    """The visible sheet with data, else the first with a table, whose fault the reader then names."""
 
     def is_table(sheet: Any) -> bool:
         return any(sum(cell != "" for cell in row) > 1 for row in _rows(sheet, path))
 
-    found = next(filter(_is_visible, data), None) or next(filter(is_table, book.worksheets), None)
+    shown = [*filter(_is_visible, data)]
+    if len(shown) > 1:
+        quoted = some([f'"{sheet.title}"' for sheet in shown])
+        raise InputError(
+            f"has data in the sheets {quoted}: name the one to read, {sheet_in(path, shown[0].title).name}; a tyre.toml has a "
+            "[[sweep]] for every sheet, as `mffit init --from` writes them",
+            file=path,
+        )
+    found = next(iter(shown), None) or next(filter(is_table, book.worksheets), None)
     if found is None:
         raise InputError("has no sheet with a table; put headings above the columns", file=path)
     return found

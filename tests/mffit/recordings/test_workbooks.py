@@ -64,7 +64,7 @@ def test_init_takes_every_sheet_with_data_as_a_sweep_of_its_own(book):
 
 def test_a_build_names_the_sheets_that_it_does_not_read(book):
     _, config = project(book)
-    for sheets in ([""], ["#900N_0deg"], ["#900N_0deg", "#1400N_0deg", "#odd", "#raw"]):
+    for sheets in (["#900N_0deg"], ["#900N_0deg", "#1400N_0deg", "#odd", "#raw"]):
         entries = [{"file": f"book.xlsx{sheet}"} for sheet in sheets]
         for entry in entries:
             if entry["file"].endswith("odd"):
@@ -78,6 +78,22 @@ def test_a_build_names_the_sheets_that_it_does_not_read(book):
         else:
             assert 'sheets "1400N_0deg", "odd", "raw" have data' in said[0]
             assert 'file = "book.xlsx#1400N_0deg"' in said[0]
+
+
+def test_the_name_of_a_workbook_alone_is_refused_if_it_leaves_a_choice(book, tmp_path):
+    _, config = project(book)
+    content = config.model_dump(include={"tyre", "rig"}, exclude_none=True) | {
+        "sweep": [{"file": "book.xlsx"}]
+    }
+    with pytest.raises(
+        InputError, match=r'data in the sheets "900N_0deg", "1400N_0deg", "odd": .*book\.xlsx#900N_0deg'
+    ):
+        sweeps.load(configuration.load(content, folder=book.parent))
+    only = next(iter(TABLES.items()))
+    workbook(book, {"Cover": COVER, only[0]: only[1], "raw": TABLES["1400N_10deg"]}, hidden=("raw",))
+    found = sweeps.load(configuration.load(content, folder=book.parent))
+    assert found.sweeps[0].Fy == pytest.approx(only[1].Fy_N.to_numpy())
+    assert any('sheet "raw" has data and is left out' in said for said in found.warnings)
 
 
 def test_a_sheet_named_as_rolling_backwards_gets_its_direction(tmp_path):
