@@ -11,12 +11,15 @@ where it ended. A number that moves nothing is deleted, merged, or names what it
 from __future__ import annotations
 
 import ast
+import io
 import json
 import os
 import re
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import NamedTuple
 
@@ -83,24 +86,16 @@ def other(value: object, factor: float) -> object:
 
 def figures(projects: Sequence[Path], commands: Sequence[str]) -> dict[str, object]:
     """What the commands say of the projects, by command and key; the sentence of a failure in its place."""
-    import mffit
-    from mffit.as_json import plain
-    from mffit.pipeline.planning import plan_of
+    from mffit.cli import main as mffit
 
     found: dict[str, object] = {}
     for project in projects:
-        name = project.parent.name
-        try:
-            built = mffit.build(project, with_report=False) if {"build", "plan"} & {*commands} else None
-            answers = {
-                "build": lambda built=built: built,
-                "diagnose": lambda project=project: mffit.diagnose(project, project.with_name(MODEL)),
-                "plan": lambda built=built: plan_of(built),
-            }
-            for command in commands:
-                found |= flat(plain(answers[command]()), f"{command} {name}")
-        except Exception as error:  # any failure is a figure that moved
-            found[f"{name} fails"] = f"{type(error).__name__}: {error}"
+        given = {"build": ["--no-report"], "diagnose": [str(project.with_name(MODEL))], "plan": []}
+        for command in commands:
+            said, failed, name = io.StringIO(), io.StringIO(), f"{command} {project.parent.name}"
+            with tempfile.TemporaryDirectory() as out, redirect_stdout(said), redirect_stderr(failed):
+                code = mffit([command, str(project), *given[command], "--json", "--out", f"{out}/out"])
+            found |= flat(failed.getvalue() if code == 2 else json.loads(said.getvalue()), name)
     return {key: value for key, value in found.items() if not {"made", "seconds"} & {*key.split(".")}}
 
 

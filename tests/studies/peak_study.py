@@ -9,12 +9,16 @@ Nothing but the build is code of ``mffit``.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import harness
 import numpy as np
-import worlds
+
+import mffit
+from mffit.comparison.characteristics import characteristics
+from mffit.rounding import AtLeast
 
 LOADS = (0.5, 1.0, 1.5)
 """Over the nominal one."""
@@ -66,10 +70,8 @@ def brush(rng: np.random.Generator, nominal: float) -> Tyre:
 
     def parts(s: np.ndarray, share: float, K: float) -> tuple[np.ndarray, np.ndarray]:
         """Friction force, and the share of the contact that slides."""
-        return (
-            mu0 * (1.0 - falling * s) * (1.1 - 0.1 * share) * share * nominal,
-            np.minimum(K * share**-0.2 * s / (3.0 * mu0), 1.0),
-        )
+        limit = mu0 * (1.0 - falling * s) * (1.1 - 0.1 * share) * share * nominal
+        return limit, np.minimum(K * share**-0.2 * s / (3.0 * mu0), 1.0)
 
     def force(s: np.ndarray, share: float, K: float) -> np.ndarray:
         limit, sliding = parts(s, share, K)
@@ -104,14 +106,11 @@ class Number(NamedTuple):
         return abs(self.value - self.reached) <= 1.96 * self.u, below and above
 
 
-def drawn(given: tuple[int, str, Any]) -> list[Number]:
+def one(job: harness.Job) -> list[Number]:
     """The numbers of a drawn campaign."""
-    from mffit.rounding import AtLeast
-
-    seed, world, _ = given
-    rng = np.random.default_rng((seed, len(world)))
+    rng = np.random.default_rng((job.seed, len(job.world)))
     nominal = float(rng.choice([700.0, 1500.0, 4000.0]))
-    tyre = WORLDS[world](rng, nominal)
+    tyre = WORLDS[job.world](rng, nominal)
     at_peak = {name: WHOLE[np.argmax(getattr(tyre, name)(WHOLE, 1.0))] for name in ("Fy", "Fx")}
     ends = {
         name: min(x * rng.choice(ENDS) * rng.uniform(0.9, 1.2), 0.5 if name == "Fx" else 0.4)
@@ -121,11 +120,11 @@ def drawn(given: tuple[int, str, Any]) -> list[Number]:
         found = built(Path(folder), tyre, nominal, ends, rng)
     rows = []
     for key, name in CHANNELS.items():
-        one = found[key]
         force = getattr(tyre, name)(WHOLE, 1.0) / (1.0 if name == "Mz" else nominal)
         tested = ends["Fx" if name == "Fx" else "Fy"] * (1.0 + 1e-9)
         reached = force[: np.searchsorted(WHOLE, tested, side="right")].max()
-        rows.append(Number(key, isinstance(one, AtLeast), one.value, one.u, reached, force.max()))
+        q = found[key]
+        rows.append(Number(key, isinstance(q, AtLeast), q.value, q.u, reached, force.max()))
     return rows
 
 
@@ -133,55 +132,44 @@ def built(
     folder: Path, tyre: Tyre, nominal: float, ends: Mapping[str, float], rng: np.random.Generator
 ) -> Mapping[str, Any]:
     """The characteristics of a build of the tyre, run up to slips ``ends``."""
-    import mffit
-    from mffit.comparison import characteristics
-
     (*gains, of_load), sweeps = rng.normal(1.0, GAIN, 4), []
+    alpha, kappa = np.linspace(-1.0, 1.0, 33) * np.arctan(ends["Fy"]), np.linspace(-1.0, 0.0, 25) * ends["Fx"]
     for share in LOADS:
-        alpha, kappa = (
-            np.linspace(-1.0, 1.0, 33) * np.arctan(ends["Fy"]),
-            np.linspace(-1.0, 0.0, 25) * ends["Fx"],
-        )
         for kind, angle, slip in (("side", alpha, 0.0 * alpha), ("brake", 0.0 * kappa, kappa)):
             s, side = np.tan(np.abs(angle)), np.sign(angle)
-            forces = (
-                np.sign(slip) * tyre.Fx(np.abs(slip), share),
-                -side * tyre.Fy(s, share),
-                side * tyre.Mz(s, share),
-            )
+            Fx = np.sign(slip) * tyre.Fx(np.abs(slip), share)
+            forces = (Fx, -side * tyre.Fy(s, share), side * tyre.Mz(s, share))
             noise = 0.004 * nominal * np.sqrt(share) * np.array([1.0, 1.0, 0.03])
             read = [g * x + rng.normal(0.0, u, len(x)) for g, x, u in zip(gains, forces, noise, strict=True)]
             load = np.full(len(angle), share * nominal / of_load)
             table = np.column_stack([np.degrees(angle), 0.0 * angle, slip, load, *read])
-            file = f"{kind}_{share}.csv"
-            head = "alpha_deg,gamma_deg,kappa,Fz_N,Fx_N,Fy_N,Mz_Nm"
+            file, head = f"{kind}_{share}.csv", "alpha_deg,gamma_deg,kappa,Fz_N,Fx_N,Fy_N,Mz_Nm"
             np.savetxt(folder / file, table, fmt="%.6g", delimiter=",", header=head, comments="")
             sweeps.append(f'[[sweep]]\nfile = "{file}"\n')
     (folder / "tyre.toml").write_text(
         f'[tyre]\nname = "drawn"\nunloaded_radius = 0.3\nnominal_load = {nominal}\nnominal_pressure = 200\n'
         f'nominal_speed = 15\n[rig]\ntype = "flat-track"\naxes = "iso"\n{"".join(sweeps)}'
     )
-    result = mffit.build(folder / "tyre.toml")
+    result = mffit.build(folder / "tyre.toml", with_report=False)
     known, predictor = result.fit.posterior, result.prediction
     tyre_file = result.tyres[result.fitted]
     return characteristics(tyre_file, nominal, turn_slip=False, known=known, predictor=predictor)
 
 
-def lines(world: str, rows: list[list[Number]]) -> list[str]:
-    """Shares of intervals that hold, by number and by whether it is open."""
-    out = [f"{world}, {len(rows)} draws"]
-    for name in CHANNELS:
-        for opened in (False, True):
-            some = [one for row in rows for one in row if (one.name, one.open) == (name, opened)]
-            if some:
-                reached, peak = np.mean([one.holds for one in some], axis=0)
-                u = np.median([one.u / one.value for one in some])
-                word = "at least" if opened else "peak"
-                out.append(
-                    f"  {name:<11} {word:<8} {len(some):3d}: tested {reached:.0%}, peak {peak:.0%}, u {u:.1%}"
-                )
-    return out
+def page(world: str, rows: list[list[Number]]) -> Iterator[str]:
+    every = [one for row in rows for one in row]
+    groups = {
+        f"{name}, {word}": [one for one in every if (one.name, one.open) == (name, word == "at least")]
+        for name in CHANNELS
+        for word in ("peak", "at least")
+    }
+    columns = {
+        "tested slip": lambda of: harness.percent([one.holds[0] for one in of]),
+        "peak": lambda of: harness.percent([one.holds[1] for one in of]),
+        "u": lambda of: f"{np.median([one.u / one.value for one in of]):.1%}",
+    }
+    yield from harness.by_group(groups, columns, f"{world}, {len(rows)} draws", "number")
 
 
 if __name__ == "__main__":
-    worlds.run(drawn, lines, worlds.asked(60, WORLDS))
+    harness.study(one, page, worlds=WORLDS, draws=60)

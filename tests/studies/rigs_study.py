@@ -14,6 +14,7 @@ rear in turn, and prints the coverage of what is measured. `--worlds` takes patt
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -38,7 +39,6 @@ from drawn_rigs import (
 import mffit
 import tir
 from mffit.errors import InputError
-from mffit.results import as_json
 from mffit.rig import Simulation
 from mffit.rig_errors import CALIBRATED
 from mffit.scatter import rms
@@ -368,7 +368,9 @@ def one(job: harness.Job) -> Told:
         if world.spoil is not None:
             world.spoil(path.parent, rng)
         try:
-            result = mffit.spin(path) if direct else mffit.build(path, with_report=False)
+            out = path.with_name("out")
+            result = mffit.spin(path) if direct else mffit.build(path, out, with_report=False)
+            said = {} if direct else json.loads((out / "result.json").read_text(encoding="utf-8"))
         except InputError as error:
             return Told(refused=str(error))
     draw = Told(trusted=result.trusted)
@@ -378,20 +380,15 @@ def one(job: harness.Job) -> Told:
             draw.note(key, *row)
     if not direct:
         _note_build(draw, result, true, known, {**known.faults, **faults}, world.watched)
+        _note_words(draw, said)
     return draw
 
 
 def _note_build(
     draw: Told, result: Any, true: tir.Tyre, known: Any, faults: Mapping[str, Any], watched: Sequence[str]
 ) -> None:
-    written, fit, found = as_json.document(result), result.fit, result.fit.temperature
-    draw.seconds, draw.reasons, draw.warnings = fit.seconds, written["reasons"], written["warnings"]
-    residuals = written["residuals"]
-    named = [residuals["effect"]["id"]] if residuals["effect"] and residuals["effect"]["significant"] else []
-    named += ["one sweep"] if residuals["sweep"] else []
-    draw.suspected = ", ".join(
-        [*named, *(row["id"] for row in written["fit"]["modelled"] if row["modelled"])]
-    )
+    fit, found = result.fit, result.fit.temperature
+    draw.seconds = fit.seconds
     noise, points = float(np.sqrt(np.nanmean(result.points.u_Fy**2))), result.points
     draw.misfit["Fy"] = fit.channels["Fy"].rmse / noise
     loads = np.unique(np.round(points.Fz, -2))
@@ -415,6 +412,17 @@ def _note_build(
                 draw.note(name + word, coefficients[name].value, coefficients[name].stderr, true[name])
         if name in fit.rig:
             draw.note(f"rig.{name}", *fit.rig[name], faults.get(name, 0.0))
+
+
+def _note_words(draw: Told, written: Mapping[str, Any]) -> None:
+    """What ``result.json`` says: reasons, warnings, and an effect, a sweep or an influence that is suspected or modelled."""
+    draw.reasons, draw.warnings = written["reasons"], written["warnings"]
+    residuals = written["residuals"]
+    named = [residuals["effect"]["id"]] if residuals["effect"] and residuals["effect"]["significant"] else []
+    named += ["one sweep"] if residuals["sweep"] else []
+    draw.suspected = ", ".join(
+        [*named, *(row["id"] for row in written["fit"]["modelled"] if row["modelled"])]
+    )
 
 
 def numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
