@@ -122,7 +122,7 @@ def measure(
         )
         rows += [] if found is None else [found]
         warnings += troubles
-    rows += _of_model_alone(after, rows)
+    rows = sorted([*rows, *_of_model_alone(after, rows)], key=lambda found: found.row.load)
     row, law, notes, of_nominal = _at_nominal(evidence, rows, skew)
     stated, left = judge(MeasuredFacts(row, zeros, drift)), config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
@@ -242,12 +242,16 @@ def _at_load(
 
 
 def _of_model_alone(after: AfterFit, rows: Sequence[_AtLoad]) -> list[_AtLoad]:
-    """Results at loads at which only the fitted model has any."""
-    measured = {found.row.load for found in rows}
+    """Results at loads at which only the fitted model has any; a steering yields there as at the nearest other load."""
+    yields = {found.row.load: found.yields for found in rows}
     return [
-        _AtLoad(LoadResult(load, of_model=tuple(own), **dict[str, Any](own)), None, 0.0)
+        _AtLoad(
+            LoadResult(load, of_model=tuple(own), **dict[str, Any](own)),
+            None,
+            yields[min(yields, key=lambda other: abs(other - load))] if yields else 0.0,
+        )
         for load, own in after.stiffnesses.items()
-        if load not in measured
+        if load not in yields
     ]
 
 

@@ -54,16 +54,11 @@ def _after(
     config: Config, points: Points, before: Measured, fitted: FitResult, spin: Quantity | None
 ) -> AfterFit:
     """What a fit adds to the measurements ``before`` it."""
-    stiffnesses: dict[float, dict[str, Quantity]] = {}
-    if not config.rig.on_disc:
-        stiffnesses = at_rest(config, points, before, fitted)
-    if before.nominal is not None:
-        load = before.nominal.load
-        straight = stiffnesses.get(load, {}).get("C_alpha") or fitting.straight_cornering_stiffness(
-            fitted, points, before.nominal
-        )
+    stiffnesses = {} if config.rig.on_disc else at_rest(config, points, before, fitted)
+    if before.nominal is not None and not stiffnesses:
+        straight = fitting.straight_cornering_stiffness(fitted, points, before.nominal)
         if straight is not None:
-            stiffnesses[load] = {**stiffnesses.get(load, {}), "C_alpha_straight": straight}
+            stiffnesses = {before.nominal.load: {"C_alpha_straight": straight}}
     stderr = fitted.coefficients["PECP1"].stderr
     pecp1 = Quantity(float(fitted.written["PECP1"]), stderr or 0.0, "-")
     return AfterFit(spin, fitted.epsilon_gamma_model, pecp1, stiffnesses)
@@ -72,22 +67,22 @@ def _after(
 def at_rest(
     config: Config, points: Points, before: Measured, fitted: FitResult
 ) -> dict[float, dict[str, Quantity]]:
-    """By load [N], stiffnesses of the fitted model where sweeps moved; the nominal load where nothing was measured at rest.
+    """By load [N], stiffnesses of the fitted model on a straight path where sweeps moved; empty if none did.
 
     The force lags behind a moving angle, and the few readings at rest beside moving sweeps hardly show a slope. The fit separates
-    the lag from the tyre.
+    the lag from the tyre. They are stated at the nominal load, too, which is that of a build's headline.
     """
-    moving = points.select(points.continuous & points.free_rolling)
-    if not len(moving):
+    if not np.any(np.isfinite(points.time) & points.free_rolling):
         return {}
-    loads = [row.load for row in before.per_load] or [config.tyre.nominal_load]
     found = {}
-    for load in loads:
+    for load in (*(row.load for row in before.per_load), config.tyre.nominal_load):
         numbers = characteristics(
             fitted.tyre, load, turn_slip=False, known=fitted.posterior, predictor=fitted.prediction
         )
         named = {name: numbers[KEYS[name]] for name in ("C_alpha", "C_gamma")}
         found[load] = {name: number for name, number in named.items() if number.u}
+        if "C_alpha" in found[load]:
+            found[load]["C_alpha_straight"] = found[load]["C_alpha"]
     return found
 
 

@@ -13,15 +13,19 @@ from flat_belt import RATE, SPEED, recording, write_mat73
 
 import mffit
 import tir
+from mffit import as_json
 from mffit import config as configuration
-from mffit import fit as fitting
 from mffit.errors import InputError
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
+from mffit.quantities import DIRECT
+from mffit.report.verdict import headlines
 from mffit.rig import Simulation
+from mffit.rounding import stated as in_words
+from tir import Quantity
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
@@ -336,26 +340,50 @@ def test_a_change_over_the_distance_is_found_if_it_is_asked_for(warmed, key):
     assert verdict(silent, name).reason == f"[fit] {key} = false"
 
 
-def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
-    """The recording's lag is that of a filter of its own along the rolled distance, and its rate of sideslip changes sign."""
-    write_mat73(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), tmp_path / "run.mat")
+@pytest.fixture(scope="module")
+def moved(tmp_path_factory):
+    """A flat track's recording of moving sweeps, behind which the forces lag by a filter of its own."""
+    folder = tmp_path_factory.mktemp("moved")
+    write_mat73(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), folder / "run.mat")
     columns = {"alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P"}
-    config = configuration.load(
-        {
-            "tyre": {"name": "belt", "unloaded_radius": 0.2057, "nominal_load": 1500, "nominal_pressure": 90},
-            "rig": {"type": "flat-track", "axes": "calspan"},
-            "columns": columns | {"V_mps": "V", "time_s": "ET"},
-            "sweep": [{"file": "run.mat"}],
-        },
-        folder=tmp_path,
-    )
-    points = mffit.points.load(config)[0]
-    found = fitting.fit(config, points, *measure(config, points, None))
+    content = {
+        "tyre": {"name": "belt", "unloaded_radius": 0.2057, "nominal_load": 1500, "nominal_pressure": 90},
+        "rig": {"type": "flat-track", "axes": "calspan"},
+        "columns": columns | {"V_mps": "V", "time_s": "ET"},
+        "sweep": [{"file": "run.mat"}],
+    }
+    return mffit.build(configuration.load(content, folder=folder))
+
+
+def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(moved):
+    """The rate of sideslip of the recording changes sign."""
+    found = moved.fit
     assert verdict(found.choice, "lag").modelled
     assert not verdict(found.choice, "hysteresis").modelled
     value, u = found.rig["relaxation_m"]
     delayed = SPEED / RATE / np.expm1(SPEED / RATE / 0.5)  # the mean delay of that filter, which is sampled
     assert value == pytest.approx(delayed, abs=max(3.0 * u, 0.03))
+
+
+def test_stiffnesses_of_moving_sweeps_are_those_of_the_tyre_at_rest(moved):
+    """13 and 1.05 times the load per radian, in result.json as in the headline; the slope of the readings at rest is far off."""
+    load, stated = 1500.0, as_json.document(moved)["spin"]
+    shown = {line.name: line.value for line in headlines(moved)}
+    for name, slope in (("C_alpha", 13.0), ("C_gamma", 1.05)):
+        value, u = stated[f"{name}_N_per_rad"], stated[f"u_{name}_N_per_rad"]
+        assert value == pytest.approx(-slope * load, abs=0.05 * slope * load)
+        assert u < 0.05 * slope * load
+        word = DIRECT[name].word
+        assert shown[f"{word[0].upper()}{word[1:]} {DIRECT[name].ascii}"] == in_words(
+            Quantity(value, u, "N/rad"), DIRECT[name].unit_behind
+        )
+        assert not stated["budgets"]
+    assert stated["load_N"] == load
+    assert [row["load_N"] for row in stated["per_load"]] == sorted(
+        row["load_N"] for row in stated["per_load"]
+    )
+    before = measure(moved.config, moved.points, None)[1].nominal
+    assert before is None or before.C_gamma is None or before.C_gamma.u > 0.2 * 1.05 * load
 
 
 def test_every_influence_has_words_and_numbers_of_its_own():
