@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from itertools import chain
+from collections.abc import Collection, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95, SLIP_BEYOND_THE_PEAK, UPRIGHT
-from mffit.fit import Posterior
-from mffit.fit.posterior import spread_through
+from mffit.numbers import Numbers
+from mffit.points import make_points
 from mffit.prediction import Predictor
 from mffit.quantities import CHARACTERISTICS
 from mffit.rounding import AtLeast
@@ -87,7 +86,7 @@ def characteristics(
     *,
     turn_slip: bool,
     tested: Tested | None = None,
-    known: Posterior | None = None,
+    known: Numbers | None = None,
     predictor: Predictor | None = None,
 ) -> dict[str, Quantity]:
     """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs; at the file's pressure.
@@ -95,24 +94,17 @@ def characteristics(
     ``turn_slip``: whether the simulation computes spin; without it there is no turn-slip stiffness. ``tested``, by default the
     file's, are the ranges in which the largest forces are looked for. Such a force is a peak if the curve falls by more than its
     uncertainty up to the end of that range; otherwise it is :class:`AtLeast` what was reached. Without ``known``, or if a number
-    depends on none of its coefficients, the number's uncertainty is 0. The covariance of ``predictor`` is used for the numbers
-    of its channels, see :data:`DECIDED_BY`; it includes the exchange between coefficients and model error, which leaves the
-    force unchanged.
+    depends on none of its coefficients, the number's uncertainty is 0. With ``predictor``, the difference that the model error
+    makes to a number counts as well.
     """
-    every = {}
-    if predictor is not None:
-        every = {name: Posterior(predictor.names, one.covariance) for name, one in predictor.channels.items()}
-    posteriors = [one for one in (known, *every.values()) if one is not None]
-    names = [name for name in dict.fromkeys(chain(*(one.names for one in posteriors))) if name in tyre.values]
+    tested = Tested.of([tyre]) if tested is None else tested
+    names = () if known is None else [name for name in known.names if name in tyre.values]
     found, slopes = with_slopes(tyre, load, names, turn_slip=turn_slip, tested=tested)
-    of_name = dict(zip(names, slopes.T, strict=True))
-    u = dict.fromkeys(found, 0.0)
-    for i, key in enumerate(found):
-        by = DECIDED_BY.get(key.removeprefix(FALL))
-        one = known if by is None else every.get(by.channel, known)
-        if one is not None:
-            slope = [of_name[name][i] if name in of_name else 0.0 for name in one.names]
-            u[key] = float(spread_through(np.array([slope]), one.covariance)[0])
+    own = np.zeros(len(found)) if known is None else known.spread_of(slopes, names)
+    best = found
+    if predictor is not None:
+        best, _ = with_slopes(tyre, load, (), turn_slip=turn_slip, tested=tested, predictor=predictor)
+    u = {key: math.hypot(own[i], best[key] - x) for i, (key, x) in enumerate(found.items())}
     numbers: dict[str, Quantity] = {}
     for key, known_as in CHARACTERISTICS.items():
         if key not in found:
@@ -124,13 +116,19 @@ def characteristics(
 
 
 def with_slopes(
-    tyre: Tyre, load: float, names: Sequence[str], *, turn_slip: bool, tested: Tested | None
+    tyre: Tyre,
+    load: float,
+    names: Sequence[str],
+    *,
+    turn_slip: bool,
+    tested: Tested,
+    predictor: Predictor | None = None,
 ) -> tuple[dict[str, float], np.ndarray]:
     """The numbers of :func:`characteristics` (m,) without uncertainty, and their derivatives (m, k) by some coefficients.
 
     They include, as :data:`FALL` names it, by how much the curve of each largest force falls up to the end of the slip.
+    With ``predictor``, they are those of the file's forces plus the model error.
     """
-    tested = Tested.of([tyre]) if tested is None else tested
     uncertain = traced({name: float(tyre[name]) for name in names})
     values: dict[str, Any] = {**vars(tyre.p), **uncertain}
     p = SimpleNamespace(**values)
@@ -138,9 +136,12 @@ def with_slopes(
     still |= {"Fz": load, "pressure": float(tyre["INFLPRES"])}
 
     def at(over: str, x: Any) -> dict[str, Any]:
-        return dict(
-            zip(OUTPUTS, outputs_of(OUTPUTS, p, {**still, over: x}, turn_slip=turn_slip), strict=True)
-        )
+        where = {**still, over: x}
+        found = dict(zip(OUTPUTS, outputs_of(OUTPUTS, p, where, turn_slip=turn_slip), strict=True))
+        if predictor is not None:
+            missed = _missed(predictor, where, float(tyre["LONGVL"]), found.keys())
+            found |= {name: found[name] + own for name, own in missed.items()}
+        return found
 
     def slopes(over: str) -> dict[str, Any]:
         below, above = at(over, -STEP), at(over, STEP)
@@ -172,3 +173,16 @@ def with_slopes(
         found[key], found[FALL + key] = (x / of_load for x in largest(DECIDED_BY[key]))
     jacobian = np.array([gradient(x, list(uncertain.values())) for x in found.values()], dtype=float)
     return {key: float(plain(x)) for key, x in found.items()}, jacobian.reshape(len(found), -1)
+
+
+def _missed(
+    predictor: Predictor, where: Mapping[str, Any], V: float, names: Collection[str]
+) -> dict[str, np.ndarray]:
+    """The model error of some channels at conditions of a number or of a curve (n,)."""
+    settings = ("alpha", "gamma", "Fz", "kappa", "phi_t", "pressure")
+    alpha, gamma, Fz, kappa, phi_t, p = (
+        np.atleast_1d(x) for x in np.broadcast_arrays(*(where[name] for name in settings))
+    )
+    points = make_points(alpha, gamma, Fz, kappa=kappa, p=p, V=V, phi_t=phi_t)
+    shape = np.broadcast_shapes(*(np.shape(where[name]) for name in settings))
+    return {n: predictor.missed(n, points).reshape(shape) for n in predictor.channels if n in names}

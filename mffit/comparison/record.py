@@ -10,8 +10,8 @@ import numpy as np
 
 from mffit.as_json import keys
 from mffit.brief import Brief
-from mffit.fit import Posterior
 from mffit.fleet import Specimen
+from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.prediction import Predictor
 from mffit.rig import Simulation
@@ -32,7 +32,7 @@ class ComparedSubject:
     name: str
     tyre: Tyre
     turn_slip: bool  #: whether the simulation that uses the file computes turn slip
-    known: Posterior | None = None  #: covariance of its coefficients; None if it is unknown
+    known: Numbers | None = None  #: covariance of its coefficients; None if it is unknown
     build: Specimen | None = None  #: the build that wrote the file with this covariance
     #: Predictor of its build, and the fitted model of the build; None if unknown.
     foretold: tuple[Predictor, Tyre] | None = None

@@ -56,7 +56,7 @@ class Description:
         return (*[_half_cauchy] * (1 + self.growth + self.offsets), *memory)
 
 
-class Numbers(NamedTuple):
+class ScatterNumbers(NamedTuple):
     """The parameters of a description."""
 
     log_scale: float
@@ -113,7 +113,7 @@ class ScatterOfChannel:
     weight: np.ndarray
     runs: np.ndarray  #: (m, k) offsets of runs at their usual size, if a description has them
 
-    def numbers(self, x: np.ndarray, by: Description) -> Numbers:
+    def numbers(self, x: np.ndarray, by: Description) -> ScatterNumbers:
         """The parameters from coordinates, which are logarithms of sizes and log odds of shares."""
         log_scale, *rest = x.tolist()
         left = iter(rest)
@@ -121,21 +121,21 @@ class ScatterOfChannel:
         growth = math.exp(next(left)) if by.growth else 0.0
         offsets = math.exp(next(left)) if by.offsets else 0.0
         memory = _share(next(left)) if by.span else 0.0
-        return Numbers(
+        return ScatterNumbers(
             log_scale, smooth, growth, offsets, Memory(memory, _share(next(left)) if by.independent else 0.0)
         )
 
-    def uncertainty(self, at: Numbers) -> np.ndarray:
+    def uncertainty(self, at: ScatterNumbers) -> np.ndarray:
         """Standard uncertainty (m,) of every reading."""
         return np.sqrt(self._squares(at).sum(axis=0) / self.weight)
 
-    def _squares(self, at: Numbers) -> np.ndarray:
+    def _squares(self, at: ScatterNumbers) -> np.ndarray:
         """Components of the variances (3, m) at weight 1: scaled stated one, growing one, constant one."""
         stated = math.exp(at.log_scale) * self.stated
         growing = at.growth * constants.USUAL_GROWTH * self.size
         return np.array([stated**2, growing**2, np.full(len(stated), self.least**2)])
 
-    def _sizes(self, at: Numbers) -> np.ndarray:
+    def _sizes(self, at: ScatterNumbers) -> np.ndarray:
         counts = [self.named.shape[1], self.smooth.shape[1], self.runs.shape[1]]
         return np.repeat([1.0, at.smooth, at.offsets], counts)
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from mffit.fit.drawn import ensemble
     from mffit.fit.fitted import with_free_epsilon
     from mffit.fit.fitting import fit
-    from mffit.fit.posterior import Posterior
     from mffit.fit.result import FitResult
     from mffit.fit.straight import straight_cornering_stiffness
     from mffit.fit.wording import zeros_listed
@@ -21,7 +20,6 @@ __all__ = [
     "Agreement",
     "Coefficient",
     "FitResult",
-    "Posterior",
     "begin",
     "ensemble",
     "file_names",

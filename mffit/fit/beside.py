@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mffit.numbers import Numbers
 from tir import Quantity
 from tir.parameters import BY_NAME
 
@@ -26,3 +27,8 @@ class BesideNumbers:
         """The coefficients with the standard uncertainties of ``covariance``."""
         u = np.sqrt(np.diag(self.covariance)).tolist()
         return {n: Quantity(x, s, BY_NAME[n].unit) for (n, x), s in zip(self.values.items(), u, strict=True)}
+
+
+def with_beside(known: Numbers, found: BesideNumbers) -> Numbers:
+    """The numbers with separately determined coefficients; those that are known already are unchanged."""
+    return known.beside(found.values, found.covariance, found.leans_on, found.slope)

@@ -11,16 +11,16 @@ import numpy as np
 
 from mffit.config import Config, Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
-from mffit.fit.beside import BesideNumbers
+from mffit.fit.beside import BesideNumbers, with_beside
 from mffit.fit.coefficients import Coefficient, coefficient_records
 from mffit.fit.comments import file_comments
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit
-from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation, relaxation
 from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files, make_files
+from mffit.numbers import Numbers
 from mffit.points import Points
 from tir import Tyre
 
@@ -43,7 +43,7 @@ class Delivered:
     coefficients: dict[str, Coefficient]
     files: Files
     relaxation: tuple[Relaxation, ...]  #: one per direction
-    posterior: Posterior  #: of all coefficients and rig errors
+    posterior: Numbers  #: of all coefficients and rig errors
     zeros: Mapping[str, tuple[float, float]]  #: zeros of My, with standard errors
 
 
@@ -70,7 +70,7 @@ def deliver(
         rolling.beside,
         *(direction.beside for direction in lag),
     )
-    posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
+    posterior = reduce(with_beside, own, fitted.posterior)
     found = {**rolling.found, **beside.radii.found, **lags}
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, only=only)

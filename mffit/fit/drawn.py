@@ -23,9 +23,8 @@ def ensemble(found: FitResult, count: int, *, seed: int = 0) -> list[dict[str, f
     """
     assert found.search is not None
     random, posterior, best = np.random.default_rng(seed), found.posterior, found.tyre.values
-    rows = [i for i, name in enumerate(posterior.names) if name in best]
-    names = [posterior.names[i] for i in rows]
-    mean, spread = np.array([float(best[n]) for n in names]), root(posterior.covariance[np.ix_(rows, rows)])
+    names = [name for name in posterior.names if name in best]
+    mean, spread = np.array([float(best[n]) for n in names]), root(posterior.covariance_of(names))
     envelope = found.search.problem.envelope
     hand, out = found.search.hand, []
     for _ in range(count):

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.posterior import Posterior, beside_held
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber, inverse, solve
+from mffit.fit.told import Priors, numbers_told, told_by_sweeps
+from mffit.least_squares import FreeNumber, solve
 from mffit.linearised import LinearisedFit, Uncertain, linearised
+from mffit.numbers import Numbers
 from mffit.rig import Simulation
 from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
+
+SPIN = ("PECP1", "PECP2")
+"""Coefficients that the readings on a disc inform although the fit holds them at the result of the direct method."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +28,7 @@ class Fitted:
     values: Mapping[str, float]  #: fitted coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
-    posterior: Posterior  #: of tyre and rig, held values included
+    posterior: Numbers  #: of tyre and rig, held values included
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: numbers that were free in the last search
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
@@ -34,6 +38,8 @@ class Fitted:
     regularised: frozenset[str]  #: coefficients that depend on their priors as much as on the points
     left: float  #: predicted decrease of the sum of squares by one more step: 0 at the minimum
     hand: Hand = NO_HAND  #: entries of [coefficients]
+    u_at_bound: Mapping[str, float] = field(default_factory=dict)
+    """Standard uncertainty that numbers at their own bound would have beside it; the others are uncertain with these fixed."""
 
     @property
     def simulation(self) -> Simulation:
@@ -50,7 +56,12 @@ class Fitted:
     @property
     def stderr(self) -> dict[str, float]:
         """Standard uncertainty of every number."""
-        return self.posterior.stderr
+        return {**self.posterior.stderr, **self.u_at_bound}
+
+    @property
+    def at_own_bound(self) -> frozenset[str]:
+        """Numbers at their own bound."""
+        return self.at_bound - self.at_limit
 
     @property
     def inner(self) -> list[FreeNumber]:
@@ -63,12 +74,18 @@ class Fitted:
         return {name: u for name, u in {**self.held, **self.held_rig}.items() if u > 0.0}
 
 
-def uncertain(number: FreeNumber) -> Uncertain:
-    """The number's prior relative to its starting value; without a prior, its spread is half the usual width among tyres."""
+def with_prior(number: FreeNumber) -> FreeNumber:
+    """The number; one without a prior gets one around its starting value, half the usual width among tyres wide."""
     if np.isfinite(number.spread):
-        return Uncertain(number.name, number.expected - number.start, number.spread)
+        return number
     width = BY_NAME[number.name].width if number.name in BY_NAME else number.upper - number.lower
-    return Uncertain(number.name, 0.0, 0.5 * width)
+    return replace(number, expected=number.start, spread=0.5 * width)
+
+
+def uncertain(number: FreeNumber) -> Uncertain:
+    """The number's prior relative to its starting value."""
+    known = with_prior(number)
+    return Uncertain(known.name, known.expected - known.start, known.spread)
 
 
 def left_by(
@@ -89,60 +106,24 @@ def left_by(
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 
-def told_by_readings(
-    fitted: Fitted, left: LinearisedFit, names: Sequence[str]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Information matrix (k, k) of all readings about the named numbers, and the score (k,) at their values; without priors.
-
-    Errors of the readings follow the linear model of the residuals ``left``: a model error common to all runs, and one per run.
-    Repeating readings within a run therefore adds little information.
-    """
-    problem = fitted.problem
-    residual, by_radii = problem.radii_rows(names)
-    information, pull = by_radii.T @ by_radii, -by_radii.T @ residual
-    for name, channel in left.channels.items():
-        part = problem.points.select(channel.rows, with_table=False)
-        told = channel.told_of(fitted.simulation.sensitivities(part, names, [name])[1][name])
-        information, pull = information + told.information, pull + told.pull
-    return information, pull
+def priors_of(fitted: Fitted, free: Sequence[FreeNumber] = ()) -> Priors:
+    """The fitted numbers and ``free`` further ones, those held with an uncertainty, and on a disc PECP1 and PECP2."""
+    held = fitted.taken_as_exact
+    if fitted.problem.simulation.turn_slip:
+        held = dict.fromkeys((name for name in SPIN if name not in fitted.hand.held), 0.0) | held
+    return Priors.of(fitted.problem, [*map(with_prior, fitted.numbers), *free], held)
 
 
 def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
-    """The fit with a posterior for correlated errors of the readings, as the linear model of its residuals describes them.
-
-    The fit itself weighs readings as independent, so its solution differs from the most probable one of that model. The
-    difference is added to the covariance.
-    """
-    held = {**fitted.held, **fitted.held_rig}
-    numbers = [uncertain(number) for number in fitted.problem.starting_here(fitted.numbers)]
-    free, k = [number.name for number in numbers], len(numbers)
-    information, pull = told_by_readings(fitted, left, [*free, *held])
-    precision = np.array([number.spread**-2.0 for number in numbers])
-    covariance = inverse(information[:k, :k] + np.diag(precision))
-    moved = covariance @ (pull[:k] + precision * [number.expected for number in numbers])
-    posterior = beside_held(free, covariance, held, information[:k, k:]).without(
-        fitted.held_rig.keys() - fitted.rig.keys()
-    )
-    posterior.covariance[:k, :k] += np.outer(moved, moved)
-    return _with_posterior(fitted, posterior)
-
-
-def with_errors_around(fitted: Fitted, best: Fitted) -> Fitted:
-    """The fit with the covariance of ``best`` plus the squared distance between the two solutions.
-
-    For a fit that does not model influences which ``best`` models, so that its coefficients absorb them.
-    """
-    names = fitted.posterior.names
-    rows = [best.posterior.names.index(name) for name in names]
-    moved = [fitted.problem.value(name) - best.problem.value(name) for name in names]
-    covariance = best.posterior.covariance[np.ix_(rows, rows)] + np.outer(moved, moved)
-    return _with_posterior(fitted, Posterior(names, covariance))
-
-
-def _with_posterior(fitted: Fitted, posterior: Posterior) -> Fitted:
-    stderr = posterior.stderr
+    """The fit with the uncertainty that repeated campaigns would show, from the linear model ``left`` of its residuals."""
+    priors = priors_of(fitted)
+    told = told_by_sweeps(fitted.problem, left, priors.names)
+    free = numbers_told(told, priors)
+    fixed = {name: free.stderr[name] for name in fitted.at_own_bound}
+    posterior = free.given(fixed)
+    stderr = {**posterior.stderr, **fixed}
     rig = {name: (value, stderr[name]) for name, (value, _) in fitted.rig.items()}
-    return replace(fitted, posterior=posterior, rig=rig)
+    return replace(fitted, posterior=posterior, u_at_bound=fixed, rig=rig)
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:

@@ -17,7 +17,7 @@ from mffit.fit.bands import bands
 from mffit.fit.beginning import begin
 from mffit.fit.coefficients import of_file
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.fitted import left_by, with_errors_around, with_errors_of
+from mffit.fit.fitted import left_by, with_errors_of
 from mffit.fit.influences.confounding import confounding_sentence, confoundings
 from mffit.fit.influences.modelled import at_temperature, between_runs
 from mffit.fit.influences.nuisance_choice import at_reference
@@ -74,7 +74,8 @@ def fit(
     fitted, full = found.plain, found.full
     full = with_errors_of(full, left_by_formula)
     if found.at_temperature:
-        left_by_file, fitted = left_by(fitted, near=left_by_formula), with_errors_around(fitted, full)
+        left_by_file = left_by(fitted, near=left_by_formula)
+        fitted = with_errors_of(fitted, left_by_file)
     else:
         left_by_file, fitted = left_by_formula, full
     found = replace(found, plain=fitted, full=full)
@@ -144,6 +145,7 @@ def fit(
         search=fitted,
         full=full,
         left_by_formula=left_by_formula,
+        left_by_file=left_by_file,
         files=files,
         temperature=temperature,
         choice=found.choice,

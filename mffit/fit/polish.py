@@ -13,11 +13,11 @@ from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted, left_by
 from mffit.fit.plan import FitPlan
-from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.same_curve import with_expected_signs
 from mffit.fit.stages import OF_CAMBER_OR_SPIN
 from mffit.fit.start import SHAPES_OF_FX
+from mffit.fit.told import told_by_weights
 from mffit.least_squares import POLISH_TOLERANCE, FreeNumber, solve
 from mffit.linearised import LinearisedFit
 from mffit.points import Points
@@ -103,10 +103,9 @@ def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan |
     numbers = problem.starting_here(numbers)
     solution = solve(problem.free([n.name for n in numbers]), numbers)
     problem = problem.with_values(solution.values)
-    posterior = joint(problem, solution, {**given.held, **given.held_rig})
+    posterior = told_by_weights(problem, numbers, {**given.held, **given.held_rig})
     known = {name: problem.value(name) for name in given.held_rig}
     absent = [name for name, value in known.items() if value == BY_ERROR[name].undisturbed]
-    posterior = posterior.without(absent)
     stderr, share = posterior.stderr, constants.FITTED_SHARE_OF_PRIOR
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
@@ -115,7 +114,7 @@ def _fitted(problem: FitProblem, numbers: Sequence[FreeNumber], given: FitPlan |
             for name, value in {**solution.values, **known}.items()
             if error_of(name) and name not in absent
         },
-        correlation=strongest_correlations(posterior, solution.names),
+        correlation=posterior.strongest_correlations(solution.names, constants.STRONG_CORRELATION),
         posterior=posterior,
         problem=problem,
         numbers=tuple(problem.starting_here(numbers)),

@@ -17,11 +17,11 @@ import numpy as np
 
 from mffit.as_json import keys, with_u
 from mffit.fit import constants
-from mffit.fit.beside import BesideNumbers
+from mffit.fit.beside import BesideNumbers, with_beside
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.posterior import Posterior
 from mffit.fit.upright import upright
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, of_model, solve
+from mffit.numbers import Numbers
 from mffit.points import Points, levels
 from mffit.points.clock import rolled_distance
 from mffit.points.constants import LONGEST_STEP
@@ -157,7 +157,7 @@ keys(
 
 
 def relaxation(
-    steps: Mapping[str, Points], simulation: Simulation, posterior: Posterior, held: Collection[str] = ()
+    steps: Mapping[str, Points], simulation: Simulation, posterior: Numbers, held: Collection[str] = ()
 ) -> tuple[Relaxation, ...]:
     """Carcass stiffnesses over load and pressure, with standard uncertainties, in the order of ``DIRECTIONS``.
 
@@ -172,7 +172,7 @@ def _of_direction(
     direction: Direction,
     steps: Points | None,
     simulation: Simulation,
-    posterior: Posterior,
+    posterior: Numbers,
     held: Collection[str],
 ) -> Relaxation:
     if steps is None:
@@ -197,7 +197,7 @@ def _of_direction(
         StepLength(run.file, run.load, run.pressure, run.length, run.stiffness, _length(direction, run, at))
         for run in clear
     )
-    u = posterior.with_numbers(beside).stderr
+    u = with_beside(posterior, beside).stderr
     found = {name: Quantity(x, u[name], BY_NAME[name].unit) for name, x in beside.values.items()}
     return Relaxation(direction, written, found, beside, "; ".join(lacking))
 
@@ -351,7 +351,7 @@ def _fitted(
     held: Collection[str],
     values: Mapping[str, Any],
     runs: Sequence[StepLength],
-    posterior: Posterior,
+    posterior: Numbers,
 ) -> BesideNumbers:
     """The coefficients that fit the carcass stiffnesses of the runs, with derivatives by the coefficients of the fit.
 

@@ -17,11 +17,11 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.influences.confounding import Confounding
 from mffit.fit.influences.modelled import AtTemperature, BetweenRuns
 from mffit.fit.influences.nuisance_choice import NuisanceChoice
-from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
 from mffit.fit.wheel.vertical import Vertical
 from mffit.fit.written.files import Files
 from mffit.linearised import LinearisedFit
+from mffit.numbers import Numbers
 from mffit.prediction import Predictor
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
@@ -42,7 +42,7 @@ class FitResult(Brief):
     simulation: Simulation  #: ``tyre`` on the rig as fitted
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
     model: Readings  #: of ``simulation`` at the points, in the channels of the fit
-    posterior: Posterior  #: joint uncertainty of tyre and rig
+    posterior: Numbers  #: joint uncertainty of tyre and rig
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
     warnings: tuple[str, ...]
@@ -51,6 +51,8 @@ class FitResult(Brief):
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
     left_by_formula: LinearisedFit | None = field(default=None, repr=False)
     """Linear model of the full fit's residuals."""
+    left_by_file: LinearisedFit | None = field(default=None, repr=False)
+    """Linear model of the residuals of the plain file's fit."""
     prediction: Predictor | None = field(default=None, repr=False)  #: of forces at any conditions
     outliers: tuple[Outlier, ...] = ()  #: single readings with zero weight
     at_turns: Mapping[str, np.ndarray] = field(default_factory=dict, repr=False)
@@ -91,6 +93,3 @@ keys(
     ),
     files=lambda found: found.files or {},
 )
-
-
-keys(Posterior, "names covariance")

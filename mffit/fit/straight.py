@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.posterior import spread_through
 from mffit.fit.result import FitResult
 from mffit.fit.rig.rig_numbers import COMPLIANCE
 from mffit.measured import LoadResult
@@ -32,11 +31,9 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
     if row.C_alpha is None or phi_t == 0.0:
         return row.C_alpha
     tyre, posterior = fitted.simulation.faultless, fitted.posterior
-    rows = [i for i, name in enumerate(posterior.names) if name in tyre.values]
-    names = [posterior.names[i] for i in rows]
-    covariance = posterior.covariance[np.ix_(rows, rows)]
+    names = [name for name in posterior.names if name in tyre.values]
     straight, curved = (_slope(tyre, points, row.load, path, names) for path in (0.0, phi_t))
-    u, u_curved = (float(spread_through(x.by_coefficient[None], covariance)[0]) for x in (straight, curved))
+    u, u_curved = (float(posterior.spread_of(x.by_coefficient[None], names)[0]) for x in (straight, curved))
     # The measured slope is over the angle as read, which the compliance of the steering changes.
     yielding = tyre.with_numbers({COMPLIANCE: fitted.simulation.faults[COMPLIANCE]})
     as_read = _slope(yielding, points, row.load, phi_t, names).slope

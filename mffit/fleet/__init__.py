@@ -1,7 +1,6 @@
 """Joint estimate of many tyres of one rig from their builds. See docs/fleet.md."""
 
 from mffit.fleet.hierarchy import Hierarchy, TyreEstimate, estimate
-from mffit.fleet.information import Information, information, to_json
 from mffit.fleet.record import EPSILON, Fleet, Row
 from mffit.fleet.specimen import INFORMATION, Specimen, read
 
@@ -10,12 +9,9 @@ __all__ = [
     "INFORMATION",
     "Fleet",
     "Hierarchy",
-    "Information",
     "Row",
     "Specimen",
     "TyreEstimate",
     "estimate",
-    "information",
     "read",
-    "to_json",
 ]

@@ -15,9 +15,9 @@ import numpy as np
 from mffit.as_json import keys
 from mffit.fit.priors import scatter
 from mffit.fleet import constants
-from mffit.fleet.information import Information
 from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
-from mffit.rig_errors import rig_estimates
+from mffit.numbers import Numbers
+from mffit.rig_errors import error_of, rig_estimates
 from tir.parameters import BY_NAME
 
 
@@ -70,7 +70,7 @@ class Hierarchy:
 keys(Hierarchy, "errors population", errors=lambda rig: rig_estimates(rig.rig))
 
 
-def estimate(found: Sequence[Information]) -> Hierarchy:
+def estimate(found: Sequence[Numbers]) -> Hierarchy:
     """The joint estimate of all tyres of one rig; for one tyre, its own build's estimate with PECP1 and PECP2 free."""
     tyres = _Tyres(found)
     tau = tyres.general.copy()
@@ -93,10 +93,10 @@ class _Tyres:
     Common numbers are rig errors and population means; the random effects of a tyre are its differences from these means.
     """
 
-    def __init__(self, found: Sequence[Information]) -> None:
+    def __init__(self, found: Sequence[Numbers]) -> None:
         self.found = found
-        self.own = tuple(dict.fromkeys(i.names[k] for i in found for k in i.rows(rig=False)))
-        self.shared = tuple(dict.fromkeys(i.names[k] for i in found for k in i.rows(rig=True)))
+        self.own = tuple(dict.fromkeys(i.names[k] for i in found for k in _rows(i, rig=False)))
+        self.shared = tuple(dict.fromkeys(i.names[k] for i in found for k in _rows(i, rig=True)))
         self.count = np.array([sum(name in i.names for i in found) for name in self.own])
         self.centre, spread = _prior(found, self.own)
         self.rig_centre, self.rig_spread = _prior(found, self.shared)
@@ -116,7 +116,7 @@ class _Tyres:
         )
         if len(found) == 1:  # one tyre keeps the prior of its build
             self.general, self.known = self.known, 1e-6 * self.known
-        self.mine = [[self.own.index(i.names[k]) for k in i.rows(rig=False)] for i in found]
+        self.mine = [[self.own.index(i.names[k]) for k in _rows(i, rig=False)] for i in found]
         self.model = self._model()
 
     def _model(self) -> Mixed:
@@ -129,13 +129,15 @@ class _Tyres:
         for one in self.found:
             place = [names.index(name) for name in one.names]
             size = sizes[place]
-            information, axes = np.linalg.eigh(size[:, None] * one.matrix * size)
+            information, axes = np.linalg.eigh(size[:, None] * one.information * size)
             seen = information > np.finfo(float).eps * np.max(information, initial=0.0)
             root, axes = np.sqrt(information[seen]), axes[:, seen]
             slope = np.zeros((len(root), len(names)))
             slope[:, place] = root[:, None] * axes.T / size
             common.append(slope)
-            residual.append(axes.T @ (size * one.vector) / root - slope @ centres)
+            residual.append(
+                axes.T @ (size * (one.information @ one.values + one.score)) / root - slope @ centres
+            )
             groups.append(np.arange(len(root)) + sum(len(rows) for rows in groups))
         columns = np.concatenate(common)
         return Mixed(np.concatenate(residual), columns, columns[:, len(self.shared) :], groups)
@@ -218,15 +220,20 @@ class _Tyres:
         }
 
 
-def _informs(one: Information, name: str, known: float) -> bool:
+def _rows(one: Numbers, *, rig: bool) -> list[int]:
+    """Indices of the rig errors, or of the tyre's own numbers."""
+    return [i for i, name in enumerate(one.names) if (error_of(name) is not None) == rig]
+
+
+def _informs(one: Numbers, name: str, known: float) -> bool:
     """Whether a tyre's points narrow the prior of a number, with all other numbers known."""
     if name not in one.names:
         return False
     k = one.names.index(name)
-    return bool(1.0 / (1.0 + one.matrix[k, k] * known**2) < constants.INFORMED_VARIANCE_SHARE)
+    return bool(1.0 / (1.0 + one.information[k, k] * known**2) < constants.INFORMED_VARIANCE_SHARE)
 
 
-def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+def _prior(found: Sequence[Numbers], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard deviation of the builds' priors: the mean of the means, and the largest standard deviation."""
     centre, spread = np.zeros(len(names)), np.full(len(names), np.inf)
     for k, name in enumerate(names):

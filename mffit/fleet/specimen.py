@@ -6,13 +6,14 @@ import json
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import tir
 from mffit.errors import InputError
-from mffit.fleet.information import MEASURED, Information, from_json
+from mffit.fleet.information import MEASURED, freed
+from mffit.numbers import Numbers, from_json
 from mffit.rig_errors import DECLARED, OF_RUN, error_of, number_of
 from tir import Quantity, Tyre
 
@@ -29,7 +30,7 @@ class Specimen:
     file: str  #: the property file with the plain name
     on_disc: bool
     rig: Mapping[str, Any]  #: the table [rig] of the build
-    information: Information | None  #: None if nothing was free
+    numbers: Numbers | None  #: of tyre and rig; None if nothing was free
     epsilon_gamma: Quantity | None  #: as the property file carries it
     epsilon_direct: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
@@ -41,15 +42,13 @@ class Specimen:
     """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
 
     @property
-    def information_of_setups(self) -> Information | None:
-        """The information with every zero named after its set-up, so that builds can share it.
+    def numbers_of_setups(self) -> Numbers | None:
+        """The numbers for a joint estimate, with every zero named after its set-up, so that builds can share it.
 
         Builds share a set-up if they give it the same name, on a rig of the same name. Other set-ups belong to this build only.
         """
-        known = self.information
-        if known is None:
-            return None
-        return replace(known, names=tuple(self._shared_name(name) for name in known.names))
+        known = None if self.numbers is None else freed(self.numbers)
+        return None if known is None else known.renamed([self._shared_name(name) for name in known.names])
 
     @property
     def moved_by(self) -> dict[tuple[str, str], dict[str, float]]:
@@ -58,11 +57,13 @@ class Specimen:
         Keys are the shared name of the error, and the measured coefficient through which it acts (by the coefficient's budget) or
         "" if it acts through the readings.
         """
-        known = self.information
+        known = self.numbers
         if known is None:
             return {}
         moves = {
-            name: dict(zip(known.names, move.tolist(), strict=True)) for name, move in known.moved_by.items()
+            name: dict(zip(known.names, move.tolist(), strict=True))
+            for name, move in known.moved_by().items()
+            if error_of(name) or (name in known.held and name in MEASURED)
         }
         found = {(self._shared_name(name), ""): move for name, move in moves.items() if error_of(name)}
         for name in moves.keys() & set(MEASURED):
@@ -115,7 +116,7 @@ def read(folder: str | Path) -> Specimen:
             file=str(result["tir"]),
             on_disc=on_disc,
             rig=resolved["rig"],
-            information=read_information(folder / INFORMATION),
+            numbers=read_numbers(folder / INFORMATION),
             epsilon_gamma=_stated(spin, "epsilon_gamma"),
             epsilon_direct=_stated(spin, "epsilon_gamma_direct"),
             misfit={name: row["rmse"] for name, row in result["fit"]["channels"].items() if row["n"]},
@@ -139,7 +140,7 @@ def _stated(spin: Mapping[str, Any], key: str) -> Quantity | None:
     return None if value is None else Quantity(float(value), float(spin[f"u_{key}"]), "-")
 
 
-def read_information(path: Path) -> Information | None:
+def read_numbers(path: Path) -> Numbers | None:
     """The content of an ``information.json``; None if nothing was free in its build.
 
     Raises InputError if the file is missing, or was not written by ``mffit build``.

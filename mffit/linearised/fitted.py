@@ -13,7 +13,7 @@ from mffit.least_squares import inverse, root
 from mffit.linearised import constants
 from mffit.linearised.components import Components, most_probable, own_columns, variances, with_further
 from mffit.linearised.inputs import along, inputs_of, settings_of
-from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, MixedPosterior, Variances
+from mffit.linearised.mixed import LeftOutReadings, Mixed, MixedPosterior, Variances
 from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.points.noise import stating
@@ -69,17 +69,21 @@ class LinearisedChannel:
         """Root mean square of the residuals in units of their stated uncertainty."""
         return rms(self.model.residual)
 
-    def told_of(self, slopes: np.ndarray) -> FurtherColumns:
-        """Information matrix and score of all readings for some numbers, with model error and random effects marginalised.
+    @property
+    def own_effects(self) -> np.ndarray:
+        """Changes (n, q) of the readings by one standard deviation of each random effect of their run."""
+        return np.asarray(self.model.own * self.unit[:, None] * np.exp(0.5 * self.variances.own))
 
-        ``slopes`` (n, k) are derivatives of the readings at :attr:`rows` by the numbers.
-        """
-        functions, given = len(self.missed), self.variances
-        plain = replace(self.model, common=self.model.common[:, :functions])
-        of_all = given._replace(
-            common=given.common[:functions], noise=given.noise - float(np.log(self.stride))
+    def foreseen(self, points: Points, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Model error (n,) and ``own_effects`` (n, q) of a further run at its set-points; ``force`` (n,) is that of the model."""
+        inputs = self.smooth.inputs
+        settings = settings_of(points, inputs)
+        settings = np.where(
+            np.isfinite(settings), settings, [0.5 * (one.lower + one.upper) for one in inputs]
         )
-        return plain.further(of_all, slopes / self.unit[:, None])
+        likeness = self.smooth.likeness(settings, np.array(self.components.lengths))
+        own = own_columns(force, along(points, inputs)) * np.exp(0.5 * self.variances.own)
+        return likeness * (self.smooth.columns(settings) @ self.missed), own * float(np.any(self.model.own))
 
     def left_out(self, rows: Sequence[np.ndarray] | None = None) -> list[LeftOutReadings]:
         """Prediction of each sweep from all others, or of each set of ``rows`` (positions in :attr:`rows`)."""

@@ -15,8 +15,8 @@ from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.config.toml_file import toml_text
 from mffit.csv_tables import write_csv
-from mffit.fit import Posterior, name_at_temperature
-from mffit.fleet import information, to_json
+from mffit.fit import name_at_temperature
+from mffit.numbers import Numbers, to_json
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.provenance import TEMPERATURE
@@ -76,7 +76,7 @@ def write_build(
 def _write_information(path: Path, result: BuildResult) -> None:
     """Write ``information.json``, one line per key, because it is mainly read by programs."""
     assert result.fit.search is not None
-    content = as_json.document(to_json(information(result.fit.search)))
+    content = as_json.document(to_json(result.fit.posterior))
     lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items())
     path.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
 
@@ -157,7 +157,7 @@ def write_members(result: BuildResult, out: Path) -> None:
     write_csv(pd.DataFrame(rows), folder / INDEX)
 
 
-def numbers(tyre: Tyre, *, turn_slip: bool, known: Posterior | None = None) -> dict[str, Quantity]:
+def numbers(tyre: Tyre, *, turn_slip: bool, known: Numbers | None = None) -> dict[str, Quantity]:
     """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
     found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip, known=known)
     return {key: found[key] for key in NUMBERS if key in found}

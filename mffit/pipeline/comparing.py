@@ -14,7 +14,6 @@ from mffit import config as configuration
 from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
-from mffit.fit import Posterior
 from mffit.fleet import Specimen
 from mffit.measured import LoadResult
 from mffit.output import output_folder
@@ -106,7 +105,7 @@ def _subject(path: Path, given: Mapping[str, float]) -> ComparedSubject:
     posterior = posterior_of(tyre, path)
     if posterior is None:
         return subject
-    known = Posterior(posterior.names, posterior.root @ posterior.root.T)
+    known = None if build is None else build.numbers
     subject = replace(subject, known=known, build=build)
     try:
         foretold, _, fitted = prediction.load(path.parent)

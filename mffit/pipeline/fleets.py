@@ -16,9 +16,10 @@ from mffit import fleet as combining
 from mffit.comparison import PEAKS
 from mffit.csv_tables import write_csv
 from mffit.errors import InputError
-from mffit.fit import Posterior, priors
+from mffit.fit import priors
 from mffit.fit.influences.nuisances import of_run
-from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
+from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
+from mffit.numbers import Numbers
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.build_output import numbers
 from mffit.pipeline.fleet_notes import fleet_notes, nominal_conditions, note_on_sharing
@@ -66,7 +67,7 @@ def fleet(
         rows = []
         for specimen, rig in zip(specimens, rig_of, strict=True):
             progress(f"comparing {specimen.name}")
-            tyre = None if specimen.information is None else next(together[rig])
+            tyre = None if specimen.numbers is None else next(together[rig])
             rows.append(_row(specimen, rig, tyre))
     found = Fleet(tuple(rows), rigs, (*fleet_notes(rows, rigs), *note_on_sharing(specimens, rig_of)))
     if out is not None:
@@ -98,41 +99,35 @@ def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
 
 def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
     """The joint estimate of specimens, zeros shared as far as set-ups are; None if none has its information."""
-    known = [found for s in specimens if (found := s.information_of_setups) is not None]
+    known = [found for s in specimens if (found := s.numbers_of_setups) is not None]
     return combining.estimate(_plainly_named(known)) if known else None
 
 
-def _plainly_named(found: Sequence[Information]) -> list[Information]:
+def _plainly_named(found: Sequence[Numbers]) -> list[Numbers]:
     """The same, with plain names for zeros that all tyres share: one set-up, declared as such."""
     zeros = {name for one in found for name in one.names if OF_RUN in name and not of_run(name)}
     setups = {name.partition(OF_RUN)[2] for name in zeros}
     if len(setups) != 1:
         return list(found)
     return [
-        replace(one, names=tuple(name if of_run(name) else name.partition(OF_RUN)[0] for name in one.names))
+        one.renamed([name if of_run(name) else name.partition(OF_RUN)[0] for name in one.names])
         for one in found
     ]
 
 
 def _row(specimen: Specimen, rig: int, together: TyreEstimate | None) -> Row:
     """A build with its own estimate, and that ``together`` with the other tyres of its rig."""
+    own_numbers = numbers(specimen.tyre, turn_slip=specimen.on_disc, known=specimen.numbers)
     own = _estimated([specimen])
     alone = None if own is None else own.tyres[0]
     return Row(
         specimen,
         rig,
-        numbers=_compared(specimen.tyre, alone, turn_slip=specimen.on_disc),
+        numbers={key: own_numbers[key] for key in COMPARED if key in own_numbers},
         alone=_epsilon(alone),
         together=_epsilon(together),
         strain={} if together is None else together.strain,
     )
-
-
-def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
-    """Stiffnesses and peaks with the first-order uncertainty that the coefficients give them."""
-    joint = None if known is None else Posterior(known.names, known.covariance)
-    found = numbers(tyre, turn_slip=turn_slip, known=joint)
-    return {key: found[key] for key in COMPARED if key in found}
 
 
 def _epsilon(found: TyreEstimate | None) -> Quantity | None:

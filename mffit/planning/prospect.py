@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config import Config
 from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
-from mffit.fit import FitResult, Posterior
+from mffit.fit import FitResult
 from mffit.fit.coverage import coverage
-from mffit.fit.posterior import beside_held, spread_through
+from mffit.fit.fitted import priors_of
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import rig_numbers
-from mffit.least_squares import inverse
+from mffit.fit.told import Priors, Told, numbers_told, told_by_run, told_by_sweeps
 from mffit.measured import Measured
+from mffit.numbers import Numbers
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, Goal
 from mffit.planning.runs import PlannedRun, candidates, largest_slip, new_setups, swept
 from mffit.points import Points, levels, main_pressure, make_points
@@ -95,20 +95,19 @@ class Prospect:
         self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
-        self._fitted = [n.name for n in search.numbers]
+        self._fitted = priors_of(search)
         self._shown_now = self._shown([])
-        known = {n.name: n.spread for n in search.numbers} | {**search.held, **search.held_rig}
-        unseen = self._spread_of_unseen(known)
-        self.spread = unseen | known
+        self._unseen = self._spread_of_unseen()
         self._new_zeros = self._zeros_of_new_setups()
-        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self._new_zeros]))
+        self.names = tuple(dict.fromkeys([*self._fitted.names, *self._unseen, PECP1, *self._new_zeros]))
         self._row = {name: k for k, name in enumerate(self.names)}
-        self._at = np.array([self.simulation.number(n, points) for n in self.names])
         self._sigma = {channel: _usual(s) for channel, s in search.problem.sigma.items()}
-        if unseen:  # the noise of Fx is unknown and assumed equal to that of Fy
+        if self._unseen:  # the noise of Fx is unknown and assumed equal to that of Fy
             self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
-        self._base = _information(self.problem.free(self.names).linear(self._at).slope)
-        self._of_run: dict[str, np.ndarray] = {}
+        assert found.left_by_file is not None
+        self._left, self._at_bound = found.left_by_file, search.at_own_bound
+        self._told = told_by_sweeps(self.problem, self._left, self.names)
+        self._of_run: dict[str, Told] = {}
         self._direct = DirectProspect(
             points,
             nominal_load(config, measured),
@@ -122,22 +121,35 @@ class Prospect:
         runs: Sequence[PlannedRun],
         free: Mapping[str, float] | None = None,
         held: Mapping[str, float] | None = None,
-    ) -> Posterior:
-        """The posterior of a build with these runs.
+    ) -> Numbers:
+        """The numbers of a build with these runs.
 
         ``free`` and ``held`` give prior standard deviations of numbers that the longer build, unlike this one, would fit or would
         hold without learning from the points.
         """
-        free, held = free or {}, held or {}
+        free, held, own = free or {}, held or {}, self._fitted
         new = {name: self._new_zeros[name] for name in self._new_of(runs)}
-        spread = {**self.spread, **new, **free, **held}
-        names = [n for n in dict.fromkeys([*self._free(runs), *free]) if n not in held]
-        beside = {n: u for n, u in spread.items() if n not in names and math.isfinite(u)}
-        information = self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
-        f, h = ([self._row[n] for n in own] for own in (names, beside))
-        prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in names])
-        covariance = inverse(information[np.ix_(f, f)] + prior)
-        return beside_held(names, covariance, beside, information[np.ix_(f, h)])
+        spread = {
+            **dict(zip(own.names, own.spread.tolist(), strict=True)),
+            **self._unseen,
+            **new,
+            **free,
+            **held,
+        }
+        beyond = self._shown(runs).keys() - self._shown_now.keys()
+        unmoved = (own.held | self._unseen.keys()) - beyond - free.keys() | held.keys()
+        expected = dict(zip(own.names, own.expected.tolist(), strict=True))
+        values = np.array([self.simulation.number(name, self.points) for name in spread])
+        priors = Priors(
+            names=tuple(spread),
+            values=values,
+            expected=np.array([expected.get(n, x) for n, x in zip(spread, values.tolist(), strict=True)]),
+            spread=np.array([*spread.values()]),
+            held=frozenset(unmoved),
+        )
+        rows = [self._row[name] for name in spread]
+        told = [one.only(rows) for one in (*self._told, *(self._told_by(run) for run in runs))]
+        return numbers_told(told, priors).given(self._at_bound)
 
     def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
         """A function that returns the uncertainty of a goal, in its unit, after given runs; infinite if it is not measured."""
@@ -171,15 +183,15 @@ class Prospect:
         found = self._direct(runs) if self.config.rig.on_disc else None
         return None if found is None else found.stated
 
-    def as_built(self, runs: Sequence[PlannedRun]) -> Posterior:
-        """The posterior with PECP1 from the source that the file uses: held by hand, direct method, or joint fit."""
+    def as_built(self, runs: Sequence[PlannedRun]) -> Numbers:
+        """The numbers with PECP1 from the source that the file uses: held by hand, direct method, or joint fit."""
         by_hand = PECP1 in self.hand.held
         if self.config.spin.pecp1 == "model" and self.config.rig.on_disc and not by_hand:
             return self._with_free_epsilon(runs)
         direct = None if by_hand or not self.config.rig.on_disc else self._direct(runs)
         return self.posterior(runs, held={PECP1: 0.0 if direct is None else direct.held})
 
-    def _with_free_epsilon(self, runs: Sequence[PlannedRun]) -> Posterior:
+    def _with_free_epsilon(self, runs: Sequence[PlannedRun]) -> Numbers:
         prior = self.hand.priors.get(PECP1)
         return self.posterior(runs, free={PECP1: math.inf if prior is None else prior.spread})
 
@@ -191,7 +203,7 @@ class Prospect:
         """The set-points of a run with readings simulated by the fitted tyre and rig."""
         return run.points.replace(**self.simulation.readings(run.points, self._channels_of(run)))
 
-    def _spread_of_unseen(self, known: Mapping[str, float]) -> dict[str, float]:
+    def _spread_of_unseen(self) -> dict[str, float]:
         """Prior standard deviation of the coefficients that only longitudinal slip would free; empty if slip was run already."""
         if self.config.rig.on_disc or "Fx" in self.problem.channels:
             return {}
@@ -200,7 +212,7 @@ class Prospect:
             name: row.stderr
             or scatter(name, float(values[name]), from_base=row.status == "base", curved=False)
             for name, row in self.found.coefficients.items()
-            if name in shown and name not in known
+            if name in shown and name not in self._fitted.names
         }
 
     def _shown(self, runs: Sequence[PlannedRun]) -> dict[str, None]:
@@ -209,11 +221,6 @@ class Prospect:
         new = [run.points.replace(**dict.fromkeys(run.addition.measures, 0.0)) for run in runs]
         cover = coverage(concatenate([self.points, *new]), self.config.tyre.side, self.hand.held)
         return dict.fromkeys(name for row in cover for name in row.free)
-
-    def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
-        """Names of the numbers that this build fitted, of those that further runs free, and of the runs' new zeros."""
-        beyond = [name for name in self._shown(runs) if name not in self._shown_now]
-        return list(dict.fromkeys([*self._fitted, *beyond, *self._new_of(runs)]))
 
     def _zeros_of_new_setups(self) -> dict[str, float]:
         """By number, prior standard deviation of the zeros of set-ups that runs may add."""
@@ -228,16 +235,13 @@ class Prospect:
         used = {name for run in runs for name in run.points.used_setups}
         return [name for name in self._new_zeros if name.partition(OF_RUN)[2] in used]
 
-    def _added(self, run: PlannedRun) -> np.ndarray:
-        """Information matrix of one run."""
+    def _told_by(self, run: PlannedRun) -> Told:
+        """What a run is expected to tell; one of a new set-up has its own zeros instead of the common ones."""
         if run.name not in self._of_run:
-            sigma = {c: np.full(run.cost, self._sigma[c]) for c in self._channels_of(run)}
+            sigma = {channel: self._sigma[channel] for channel in self._channels_of(run)}
+            still = [e.name for e in ZEROS if e.name in self.rig] if self._new_of([run]) else []
             points = self._with_readings(run)
-            seen = replace(self.problem, points=points, sigma=sigma, envelope=None, radii=())
-            slope = seen.free(self.names).linear(self._at).slope
-            if self._new_of([run]):  # the run has its own zeros instead of the common ones
-                slope[:, [self._row[e.name] for e in ZEROS if e.name in self.rig]] = 0.0
-            self._of_run[run.name] = _information(slope)
+            self._of_run[run.name] = told_by_run(self.problem, self._left, self.names, points, sigma, still)
         return self._of_run[run.name]
 
     def _curves_of(self, goal: Goal) -> _Curves:
@@ -276,12 +280,9 @@ class _Curves(NamedTuple):
     names: Sequence[str]  #: (k,) coefficients
     slopes: Sequence[np.ndarray]  #: per channel, derivatives (n, k); for FILE, over the largest force
 
-    def band(self, posterior: Posterior) -> float:
+    def band(self, known: Numbers) -> float:
         """Rms half width of the 95 % band."""
-        rows = [posterior.names.index(n) for n in self.names if n in posterior.names]
-        columns = [k for k, n in enumerate(self.names) if n in posterior.names]
-        covariance = posterior.covariance[np.ix_(rows, rows)]
-        spread = [rms(spread_through(slopes[:, columns], covariance)) for slopes in self.slopes]
+        spread = [rms(known.spread_of(slopes, self.names)) for slopes in self.slopes]
         return COVERAGE_FACTOR_95 * rms(np.array(spread))
 
 
@@ -292,12 +293,6 @@ def nominal_load(config: Config, measured: Measured) -> float:
 
 def _key(runs: Sequence[PlannedRun]) -> tuple[str, ...]:
     return tuple(sorted(run.name for run in runs))
-
-
-def _information(slope: np.ndarray) -> np.ndarray:
-    slope = np.nan_to_num(slope)
-    information: np.ndarray = slope.T @ slope
-    return information
 
 
 def _usual(sigma: np.ndarray) -> float:

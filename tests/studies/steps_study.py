@@ -19,13 +19,13 @@ from slip_study import RIGHT, SPEED, UNSETTLED, VEHICLES, Kind, SlipDraw, Vehicl
 import mffit
 import tir
 from mffit import config as configuration
-from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import DIRECTIONS, relaxation
+from mffit.numbers import Numbers
 from mffit.points.loading import read
 from mffit.rig import Simulation
 from mffit.scatter import rms
 
-NONE_KNOWN = Posterior((), np.zeros((0, 0)))
+NONE_KNOWN = Numbers.of((), (), np.zeros((0, 0)))
 STEPPED = {"alpha": ("alpha_deg", (0, 1, 0, -1, 0)), "kappa": ("kappa", (0, 0.025, 0, -0.025, 0))}
 KINDS = {
     f"{word}, {size}": Kind(vehicle, thin=size == "thin")

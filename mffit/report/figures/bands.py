@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.constants import STEPS_OF_LINE
+from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
 from mffit.fit.written.files import Files
 from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
@@ -93,7 +93,10 @@ def model_curve(
     if known is not None and channel in known.channels:
         half = known.band(tyre, tyre, where, (channel,))[channel]
     else:  # not measured: nothing but its coefficients is known
-        half = view.build.fit.posterior.band(tyre, where, (channel,))[channel]
+        posterior = view.build.fit.posterior
+        names = [name for name in posterior.names if name in tyre.values]
+        slopes = tyre.sensitivities(where, names, (channel,))[1][channel]
+        half = COVERAGE_FACTOR_95 * posterior.spread_of(slopes, names)
     look = Look(colour=colour, line="-", width=1.0)
     return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)
 

@@ -7,7 +7,6 @@ import math
 import re
 import shutil
 from dataclasses import replace
-from itertools import chain
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,17 +16,16 @@ from small_rigs import SAMPLE, built, disc, simulated, truth
 
 import mffit
 import tir
-from mffit import fleet
+from mffit import as_json, fleet
 from mffit.cli import main
 from mffit.comparison import ComparedSubject, Difference, between, wording
 from mffit.comparison.characteristics import characteristics
 from mffit.comparison.record import ranked
 from mffit.constants import TERMINAL_LINES
 from mffit.errors import InputError
-from mffit.fit import Posterior
-from mffit.fleet import Information, Specimen
+from mffit.fleet import Specimen
+from mffit.numbers import Numbers
 from mffit.pipeline.build_output import write_build
-from mffit.results import as_json
 from mffit.rounding import AtLeast, stated
 from mffit.tested import words_on_tested
 from tests.browser import assert_readable
@@ -71,6 +69,10 @@ def test_the_peak_of_a_file_of_braking_is_that_of_braking():
     assert values_of(tyre, 1400.0, turn_slip=False)["mu_x"] == pytest.approx(peak / 1400.0, rel=1e-3)
 
 
+def known_to(names, covariance):
+    return Numbers.of(names, np.zeros(len(names)), covariance)
+
+
 def reaching(tyre, degrees):
     """The file of a build whose sweeps reached a sideslip."""
     return tyre.annotate(status={"ALPMAX": f"estimate, {words_on_tested(math.radians(degrees), 'rad')}"})
@@ -92,7 +94,7 @@ def test_a_force_that_still_rises_where_the_readings_end_is_no_peak(degrees):
 def test_a_fall_within_its_uncertainty_shows_no_peak():
     """At 14 deg the side force has fallen by 0.3 %: what a curvature known to 0.05 shows, and one known to 1 does not."""
     for u, no_peak in ((0.05, False), (1.0, True)):
-        known = Posterior(("PEY1",), np.array([[u**2]]))
+        known = known_to(("PEY1",), np.array([[u**2]]))
         found = characteristics(reaching(truth(), 14.0), 1400.0, turn_slip=False, known=known)
         assert isinstance(found["mu_y"], AtLeast) is no_peak
 
@@ -129,7 +131,7 @@ def test_numbers_hold_at_the_pressure_of_the_file():
 
 
 def test_a_number_that_depends_on_no_uncertain_coefficient_has_no_uncertainty():
-    tiny = Posterior(("PKY1", "PDX1", "LOADED"), np.diag([1e-6, 1e-26, 1.0]))
+    tiny = known_to(("PKY1", "PDX1", "LOADED"), np.diag([1e-6, 1e-26, 1.0]))
     found = characteristics(truth(), 1400.0, turn_slip=True, known=tiny)
     assert found["epsilon_gamma"].u == found["r_e_m"].u == 0.0
     assert found["C_alpha_N_per_rad"].u == pytest.approx(
@@ -141,7 +143,7 @@ def test_uncertainties_of_numbers_are_those_of_small_changes():
     """By differences, of every number that a few coefficients move."""
     tyre, u = truth(), {"PKY1": 0.3, "PDY1": 0.02, "PDX1": 0.03, "QDZ1": 0.002, "PECP1": 0.05}
     for name, size in u.items():
-        found = characteristics(tyre, 1200.0, turn_slip=True, known=Posterior((name,), np.array([[size**2]])))
+        found = characteristics(tyre, 1200.0, turn_slip=True, known=known_to((name,), np.array([[size**2]])))
         low, high = (
             characteristics(tyre.replace(**{name: tyre[name] + side * 0.01 * size}), 1200.0, turn_slip=True)
             for side in (-1.0, 1.0)
@@ -151,15 +153,17 @@ def test_uncertainties_of_numbers_are_those_of_small_changes():
             assert number.u == pytest.approx(wanted, rel=0.02, abs=1e-6 * abs(number.value)), (name, key)
 
 
-def test_what_predictions_know_of_a_channel_counts_for_its_numbers():
-    """Coefficients that only share out what the formula misses are wide each, where the force is known."""
-    wide = Posterior(("PKY1", "QDZ1"), np.diag([9.0, 0.01]) ** 2)
-    of_force = SimpleNamespace(names=("PKY1",), channels={"Fy": SimpleNamespace(covariance=np.eye(1) * 0.09)})
-    alone, with_force = (
-        characteristics(truth(), 1400.0, turn_slip=False, known=wide, predictor=by) for by in (None, of_force)
+def test_the_model_error_counts_for_the_numbers_of_its_channel():
+    """A miss of the side force that is proportional to sideslip adds its slope to the cornering stiffness."""
+    known = known_to(("PKY1", "QDZ1"), np.diag([9.0, 0.01]) ** 2)
+    missed = SimpleNamespace(channels={"Fy": None}, missed=lambda _, points: 4000.0 * points.alpha)
+    alone, beside = (
+        characteristics(truth(), 1400.0, turn_slip=False, known=known, predictor=by) for by in (None, missed)
     )
-    assert alone["C_alpha_N_per_rad"].u / with_force["C_alpha_N_per_rad"].u == pytest.approx(30.0)
-    assert alone["Mz_peak_Nm"] == with_force["Mz_peak_Nm"]
+    u = math.hypot(alone["C_alpha_N_per_rad"].u, 4000.0)
+    assert beside["C_alpha_N_per_rad"].u == pytest.approx(u, rel=1e-6)
+    assert beside["C_alpha_N_per_rad"].value == alone["C_alpha_N_per_rad"].value
+    assert alone["Mz_peak_Nm"] == beside["Mz_peak_Nm"]
 
 
 def test_a_changed_coefficient_shows_where_it_acts(stiffer):
@@ -175,10 +179,10 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
 
 @pytest.mark.parametrize(
     ("second", "words"),
-    [(None, "is unknown"), (Posterior(("PKY1",), np.eye(1)), "if one rig measured both")],
+    [(None, "is unknown"), (known_to(("PKY1",), np.eye(1)), "if one rig measured both")],
 )
 def test_a_note_says_what_is_known_of_the_uncertainty(second, words):
-    known = ComparedSubject("a.tir", truth(), False, Posterior(("PKY1",), np.eye(1)))
+    known = ComparedSubject("a.tir", truth(), False, known_to(("PKY1",), np.eye(1)))
     note, *_ = between(known, ComparedSubject("b.tir", truth(), False, second)).notes
     assert words in note
 
@@ -207,7 +211,7 @@ def test_files_that_give_other_forces_are_not_called_equal():
 def test_uncertainties_propagate_to_the_numbers():
     """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
     u = 0.02 * abs(truth()["PKY1"])
-    known = ComparedSubject("a", truth(), True, Posterior(("PKY1",), np.array([[u**2]])))
+    known = ComparedSubject("a", truth(), True, known_to(("PKY1",), np.array([[u**2]])))
     row = by_key(between(known, ComparedSubject("b", truth(), True)))["C_alpha_N_per_rad"]
     assert row.u_first == pytest.approx(0.02 * abs(row.first), rel=0.02)
     assert row.u_second is None
@@ -336,15 +340,17 @@ def test_the_command_prints_the_differences(capsys):
 
 def moved(name, setup, moves):
     """A build of the rig "bench" with one set-up whose numbers its path radius and its load-cell zero move."""
-    names = tuple(dict.fromkeys(chain(*moves.values())))
-    k = len(names)
-    told = Information(
-        names, np.zeros(k), np.eye(k), np.zeros(k), np.zeros(k), np.ones(k),
-        {error: np.array([move.get(number, 0.0) for number in names]) for error, move in moves.items()},
+    names = ("PKY1", *moves)
+    u = {error: move.get(error, 1.0) for error, move in moves.items()}
+    information = np.eye(len(names))
+    information[0, 1:] = information[1:, 0] = [-move["PKY1"] / u[error] for error, move in moves.items()]
+    told = Numbers(
+        names, np.zeros(len(names)), information, np.zeros(len(names)), np.zeros(len(names)),
+        np.array([math.inf, *u.values()]), frozenset(moves),
     )  # fmt: skip
     return Specimen(
-        name=name, folder=Path(name), tyre=truth(), file="a.tir", on_disc=True, rig={"name": "bench"}, information=told,
-        epsilon_gamma=None, misfit={}, warnings=(), setups=(setup,), budget={"load-cell offset": -0.03},
+        name=name, folder=Path(name), tyre=truth(), file="a.tir", on_disc=True, rig={"name": "bench"}, numbers=told,
+        epsilon_gamma=None, epsilon_direct=None, misfit={}, warnings=(), setups=(setup,), budget={"load-cell offset": -0.03},
     )  # fmt: skip
 
 
@@ -371,7 +377,7 @@ def test_what_one_rig_does_to_both_sides_cancels_in_the_difference(setups):
             "PECP1": {"PECP1": u, "PKY1": by_epsilon},
         }
         tyre = truth().replace(PKY1=truth()["PKY1"] + k, PECP1=0.1 * k)
-        known = Posterior(names, np.cov(errors[k]))
+        known = known_to(names, np.cov(errors[k]))
         sides.append(ComparedSubject(f"{k}", tyre, True, known, moved(f"{k}", setups[k], moves)))
     found = between(*sides)
     rows = {row.key: row.u for row in found.coefficients}
@@ -400,10 +406,10 @@ def test_a_declared_path_radius_moves_a_build_as_stated(tmp_path):
         path.write_text(path.read_text().replace("path_radius = 1.323", f"path_radius = {radius}"))
         mffit.build(path, tmp_path / f"{k}" / "out")
         builds.append(fleet.read(tmp_path / f"{k}" / "out"))
-    first, second = (build.information for build in builds)
-    stated = dict(zip(first.names, first.moved_by["path_radius_m"], strict=True))
+    first, second = (build.numbers for build in builds)
+    stated = dict(zip(first.names, first.moved_by()["path_radius_m"], strict=True))
     found = dict(zip(second.names, second.values, strict=True))
     result = json.loads((tmp_path / "0" / "out" / "result.json").read_text())["fit"]
     u = {name: row["stderr"] for table in ("coefficients", "rig") for name, row in result[table].items()}
     for name, before in zip(first.names, first.values, strict=True):
-        assert found[name] - before == pytest.approx(stated[name], abs=0.1 * (u[name] or math.inf)), name
+        assert found[name] - before == pytest.approx(stated[name], abs=0.1 * (u.get(name) or math.inf)), name

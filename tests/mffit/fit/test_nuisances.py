@@ -131,17 +131,17 @@ def test_the_first_sentence_says_which_file_is_for_whom_and_what_each_leaves(war
     assert "small-at-temperature.tir" in (folder / "report.html").read_text(encoding="utf-8")
 
 
-def test_the_plain_coefficients_are_uncertain_by_the_warming_that_they_contain(warmed):
-    """Pressure was changed while the tyre was warm: PPY3 and PPY4 of the plain file contain some of it."""
+def test_the_file_at_temperature_names_the_coefficients_that_contain_the_warming(warmed):
+    """Pressure was changed while the tyre was warm: PPY3 and PPY4 of the plain file contain some of it in every campaign."""
     fit = warmed[0].fit
     true = small_rigs.truth()
     assert fit.temperature.moved
     for name, (there, here, u) in fit.temperature.moved.items():
         assert fit.coefficients[name].value == there
-        assert fit.coefficients[name].stderr > 0.99 * abs(there - here) > u
+        assert abs(there - here) > u
     for name in ("PPY4", "PDY2"):
-        for row in (fit.temperature.coefficients[name], fit.coefficients[name]):
-            assert abs(row.value - true[name]) < 3.5 * row.stderr
+        row = fit.temperature.coefficients[name]
+        assert abs(row.value - true[name]) < 3.5 * row.stderr
 
 
 @pytest.mark.parametrize(

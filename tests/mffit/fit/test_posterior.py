@@ -7,9 +7,6 @@ import pytest
 
 import mffit
 from mffit.fit import ensemble
-from mffit.points import make_points
-from mffit.rig import Simulation
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 
 @pytest.fixture(scope="module")
@@ -22,30 +19,6 @@ def fitted(tmp_path_factory):
     folder = tmp_path_factory.mktemp("thin")
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=3)
     return mffit.build(folder / "tyre.toml").fit
-
-
-def test_the_band_is_the_propagated_covariance(fitted):
-    posterior, tyre = fitted.posterior, fitted.tyre
-    alpha, gamma, Fz = (
-        np.radians([0.0, 3.0, -6.0]),
-        np.radians([20.0, 0.0, 5.0]),
-        np.array([1400.0, 900.0, 2000.0]),
-    )
-    where = make_points(alpha, gamma, Fz, p=250e3, V=10.0, phi_t=0.0)
-    half = posterior.band(Simulation.of(tyre), where)
-    names = [n for n in posterior.names if n not in RIG_ERRORS]
-    rows = [posterior.names.index(n) for n in names]
-
-    def forces(**changed):
-        out = tyre.replace(**changed)(Fz, alpha, gamma, Vx=10.0, p=250e3, turn_slip=True)
-        return np.array([out.Fy, out.Mz])
-
-    step = {n: 1e-5 * max(abs(tyre[n]), 0.1) for n in names}
-    slopes = np.array(
-        [(forces(**{n: tyre[n] + h}) - forces(**{n: tyre[n] - h})) / (2 * h) for n, h in step.items()]
-    )
-    variance = np.einsum("icn,ij,jcn->cn", slopes, posterior.covariance[np.ix_(rows, rows)], slopes)
-    assert np.array(list(half.values())) == pytest.approx(1.96 * np.sqrt(variance), rel=1e-3)
 
 
 def test_draws_scatter_by_the_standard_errors(fitted):

@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 import tir
 from mffit import as_json
 from mffit import config as configuration
-from mffit.fit.posterior import Posterior
+from mffit.fit.beside import with_beside
 from mffit.fit.relaxation import (
     DIRECTIONS,
     StepLength,
@@ -21,6 +21,7 @@ from mffit.fit.relaxation import (
     _Noise,
     relaxation,
 )
+from mffit.numbers import Numbers
 from mffit.points import Points
 from mffit.points.loading import read
 from mffit.points.points import make_points
@@ -30,7 +31,7 @@ from mffit.sweeps import load
 from tir import Quantity
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
-NONE_KNOWN = Posterior((), np.zeros((0, 0)))
+NONE_KNOWN = Numbers.of((), (), np.zeros((0, 0)))
 UNKNOWN = {
     "LATERAL_STIFFNESS": 300e3, "PCFY1": 0.0, "PCFY2": 0.0, "PCFY3": 0.0,
     "LONGITUDINAL_STIFFNESS": 800e3, "PCFX1": 0.0, "PCFX2": 0.0, "PCFX3": 0.0,
@@ -137,12 +138,12 @@ def test_the_stiffness_follows_the_cornering_stiffness_of_the_fit(one_run, truth
     """A relaxation length is cornering stiffness over carcass stiffness: 5 % in PKY1 are 5 % in LATERAL_STIFFNESS."""
     u = 0.05 * abs(truth["PKY1"])
     tyre = Simulation.of(truth, turn_slip=False)
-    found = relaxation(one_run, tyre, Posterior(("PKY1",), np.array([[u**2]])))[SIDEWAYS]
+    found = relaxation(one_run, tyre, Numbers.of(("PKY1",), [truth["PKY1"]], np.array([[u**2]])))[SIDEWAYS]
     alone = relaxation(one_run, tyre, NONE_KNOWN)[SIDEWAYS]
     q = found.found["LATERAL_STIFFNESS"]
     own = alone.found["LATERAL_STIFFNESS"].u
     assert q.u == pytest.approx(np.hypot(own, 0.05 * q.value), rel=1e-3)
-    joint = Posterior(("PKY1",), np.array([[u**2]])).with_numbers(found.beside)
+    joint = with_beside(Numbers.of(("PKY1",), [truth["PKY1"]], np.array([[u**2]])), found.beside)
     assert joint.stderr["LATERAL_STIFFNESS"] == pytest.approx(q.u)
     assert joint.given(["PKY1"]).stderr["LATERAL_STIFFNESS"] == pytest.approx(own)
     assert joint.covariance[0, 1] / u**2 == pytest.approx(q.value / truth["PKY1"], rel=1e-3)

@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.fleet import Information, estimate, to_json
-from mffit.fleet.information import from_json
+from mffit.fleet import estimate
 from mffit.fleet.record import Fleet, scatter_of
+from mffit.numbers import Numbers, from_json, to_json
 from tir import Quantity
 
 OWN = ("PDY1", "PKY6", "PECP1")
@@ -22,16 +22,24 @@ SPREAD = np.array([0.3, 0.4, math.inf, 10.0, 0.5])
 POINTS = 12
 
 
-def drawn(rng, x, theta, *, noise=1.0, slopes=None) -> Information:
-    """Information of points whose readings are linear in the numbers."""
+def drawn(rng, x, theta, *, noise=1.0, slopes=None) -> Numbers:
+    """Numbers of points whose readings are linear in the numbers."""
     J = rng.standard_normal((POINTS, 5)) / SLOPES if slopes is None else slopes
     truth = np.concatenate([x, theta])
     y = J @ truth + noise * rng.standard_normal(POINTS)
     at = truth + rng.standard_normal(5) * 0.1  # where a build happened to end says nothing
     residual = (J @ at - y) / noise
-    matrix = J.T @ J / noise**2
-    vector = matrix @ at - J.T @ residual / noise
-    return Information((*OWN, *RIG), at, matrix, vector, EXPECTED, SPREAD)
+    return Numbers((*OWN, *RIG), at, J.T @ J / noise**2, -J.T @ residual / noise, EXPECTED, SPREAD)
+
+
+def told(names, values, matrix, vector, expected, spread) -> Numbers:
+    """Numbers whose log-likelihood is ``vector x - x matrix x / 2``."""
+    return Numbers(names, values, matrix, vector - matrix @ values, expected, spread)
+
+
+def pull(one: Numbers) -> np.ndarray:
+    """The score of the readings at zero."""
+    return one.information @ one.values + one.score
 
 
 SLOPES = np.array([0.1, 0.1, 0.1, 5.0, 0.3])
@@ -62,8 +70,8 @@ def test_three_tyres_agree_with_the_explicit_normal_distribution():
     known = np.array([0.3, 0.4, 3.0])
     for i, one in enumerate(found):
         rows = [*range(3 * i, 3 * i + 3), *theta]
-        P[np.ix_(rows, rows)] += one.matrix
-        b[rows] += one.vector
+        P[np.ix_(rows, rows)] += one.information
+        b[rows] += pull(one)
         for j in range(k):
             pair = [3 * i + j, mu[j]]
             P[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / general[j] ** 2
@@ -89,8 +97,8 @@ def test_three_tyres_agree_with_the_explicit_normal_distribution():
 def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
     (one,), _, _ = fleet(2, 1)
     known = np.array([0.3, 0.4, 3.0, *SPREAD[3:]])  # eps_gamma has only the width of its bounds
-    covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
-    mean = covariance @ (one.vector + EXPECTED * known**-2.0)
+    covariance = np.linalg.inv(one.information + np.diag(known**-2.0))
+    mean = covariance @ (pull(one) + EXPECTED * known**-2.0)
     (tyre,) = estimate([one]).tyres
     np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
     np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
@@ -103,15 +111,15 @@ def test_without_some_numbers_the_others_are_as_well_known_as_beside_them(unknow
     """With and without a prior of their own, each by the whole covariance."""
     (one,), _, _ = fleet(2, 1)
     prior = SPREAD**-2.0
-    covariance = np.linalg.inv(one.matrix + np.diag(prior))
-    mean = covariance @ (one.vector + EXPECTED * prior)
+    covariance = np.linalg.inv(one.information + np.diag(prior))
+    mean = covariance @ (pull(one) + EXPECTED * prior)
     found = one.without(unknown)
     kept = [i for i, name in enumerate(one.names) if name in found.names]
     assert len(kept) == 5 - len(unknown)
-    own = np.linalg.inv(found.matrix + np.diag(found.spread**-2.0))
+    own = np.linalg.inv(found.information + np.diag(found.spread**-2.0))
     np.testing.assert_allclose(own, covariance[np.ix_(kept, kept)], rtol=1e-8)
     np.testing.assert_allclose(
-        own @ (found.vector + found.expected * found.spread**-2.0), mean[kept], rtol=1e-8
+        own @ (pull(found) + found.expected * found.spread**-2.0), mean[kept], rtol=1e-8
     )
 
 
@@ -123,8 +131,8 @@ def test_a_number_without_bounds_or_prior_is_known_to_its_own_size(expected, spr
         one, names=("PDY1", "PKY6", "Q_FCY2", *RIG), expected=np.r_[EXPECTED[:2], expected, EXPECTED[3:]]
     )
     known = np.array([0.3, 0.4, spread, *SPREAD[3:]])
-    covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
-    mean = covariance @ (one.vector + unbound.expected * known**-2.0)
+    covariance = np.linalg.inv(one.information + np.diag(known**-2.0))
+    mean = covariance @ (pull(one) + unbound.expected * known**-2.0)
     (tyre,) = estimate([unbound]).tyres
     np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
     np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
@@ -133,7 +141,7 @@ def test_a_number_without_bounds_or_prior_is_known_to_its_own_size(expected, spr
 @pytest.mark.parametrize(("share", "informed"), [(0.81, False), (0.79, True)])
 def test_points_inform_a_coefficient_if_they_take_a_fifth_off_its_prior_variance(share, informed):
     found = [
-        replace(i, matrix=np.diag([100.0, (1.0 / share - 1.0) / SPREAD[1] ** 2, 100.0, 1.0, 1.0]))
+        replace(i, information=np.diag([100.0, (1.0 / share - 1.0) / SPREAD[1] ** 2, 100.0, 1.0, 1.0]))
         for i in fleet(5, 2)[0]
     ]
     assert ("PKY6" in estimate(found).population) == informed
@@ -144,7 +152,9 @@ def test_a_population_needs_two_tyres_that_inform_a_coefficient():
     found, _, _ = fleet(5, 3)
     silent = np.eye(5)
     silent[1, 1] = 0.0
-    found[1:] = [replace(i, matrix=silent @ i.matrix @ silent, vector=silent @ i.vector) for i in found[1:]]
+    found[1:] = [
+        replace(i, information=silent @ i.information @ silent, score=silent @ i.score) for i in found[1:]
+    ]
     whole = estimate(found)
     assert set(whole.population) == {"PDY1", "PECP1"}
     assert all(p.tyres == 3 and p.assumed for p in whole.population.values())
@@ -180,7 +190,7 @@ def test_the_scatter_of_equally_well_measured_tyres_has_a_closed_form(tyres, u, 
     measured = np.linspace(-1.0, 1.0, tyres)
     measured *= sd / np.std(measured, ddof=1)
     found = [
-        Information(
+        told(
             ("PECP1",),
             np.array([y]),
             np.array([[u**-2.0]]),
@@ -198,7 +208,7 @@ def test_the_scatter_of_equally_well_measured_tyres_has_a_closed_form(tyres, u, 
 def test_many_tyres_determine_the_rig_better_and_the_declaration_counts_once():
     by_number = {n: estimate(fleet(3, n)[0]).rig["F0_N"][1] for n in (1, 4, 16)}
     assert by_number[16] < 0.6 * by_number[4] < 0.4 * by_number[1] < 0.4 * 10.0
-    nothing = [replace(one, matrix=0 * one.matrix, vector=0 * one.vector) for one in fleet(4, 6)[0]]
+    nothing = [replace(one, information=0 * one.information, score=0 * one.score) for one in fleet(4, 6)[0]]
     assert estimate(nothing).rig["F0_N"] == pytest.approx((0.0, 10.0))
 
 
@@ -217,7 +227,7 @@ def test_the_strain_is_the_surprise_at_a_tyre_that_is_left_out():
     """
     known, (u_one, u_other), (one, other) = 10.0, (5.0, 2.0), (14.0, -3.0)
     found = [
-        Information(
+        told(
             names=("PDY1", "F0_N"),
             values=np.array([1.2, F0]),
             matrix=np.diag([100.0, u**-2.0]),
@@ -240,7 +250,7 @@ def test_the_strain_is_the_surprise_at_a_tyre_that_is_left_out():
 @pytest.mark.parametrize(("u", "strained"), [(21.0, False), (19.0, True)])
 def test_a_tyre_whose_points_do_not_inform_an_error_of_the_rig_has_no_strain(u, strained):
     """They must take a fifth off the declared variance: a quarter of its information, u below twice the declared 10 N."""
-    one = Information(
+    one = told(
         ("PDY1", "F0_N"),
         np.ones(2),
         np.diag([100.0, u**-2.0]),
@@ -267,13 +277,13 @@ def test_one_tyre_has_no_scatter():
     assert Fleet(tuple(rows), (), ()).scatter("C_alpha").mean == 15e3
 
 
-def only(one: Information, keep: list[int]) -> Information:
+def only(one: Numbers, keep: list[int]) -> Numbers:
     """The information about some numbers, given the others."""
-    return Information(
+    return told(
         tuple(one.names[i] for i in keep),
         one.values[keep],
-        one.matrix[np.ix_(keep, keep)],
-        one.vector[keep],
+        one.information[np.ix_(keep, keep)],
+        pull(one)[keep],
         one.expected[keep],
         one.spread[keep],
     )
@@ -299,7 +309,7 @@ def test_information_is_read_back_as_it_was():
     one = fleet(8, 1)[0][0]
     again = from_json(json.loads(json.dumps(to_json(one))))
     assert again.names == one.names
-    for name in ("values", "matrix", "vector", "expected", "spread"):
+    for name in ("values", "information", "score", "expected", "spread"):
         np.testing.assert_array_equal(getattr(again, name), getattr(one, name))
     with pytest.raises(ValueError, match="one length"):
-        from_json({**to_json(one), "vector": [1.0]})
+        from_json({**to_json(one), "score": [1.0]})

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mffit.fleet import Information, Specimen, estimate
+from mffit.fleet import Specimen, estimate
+from mffit.numbers import Numbers
 from mffit.pipeline.fleet_notes import note_on_sharing
 from mffit.pipeline.fleets import _estimated
 from tir import Quantity, Tyre
@@ -24,13 +25,12 @@ def specimen(name, rng=None, *, rig=None, setups=(), names=NAMES, epsilon=0.0):
     rng = rng or np.random.default_rng(1)
     J = np.column_stack([rng.standard_normal((40, len(names)))])
     J[:, 2] = 0.01 * J[:, 1] + 0.003 * J[:, 2]
-    matrix = J.T @ J / 0.05**2
-    vector = matrix @ truth + J.T @ (0.05 * rng.standard_normal(40)) / 0.05**2
+    score = J.T @ (0.05 * rng.standard_normal(40)) / 0.05**2
     expected = np.array([-1.2, 0.0, 0.0, 1.323, *(0.0 for _ in names[4:])])
     spread = np.concatenate([SPREAD, np.full(len(names) - 4, 10.0)])
     return Specimen(
         name=name, folder=Path(name), tyre=Tyre.from_values({}), file="a.tir", on_disc=True, rig=rig or {},
-        information=Information(tuple(names), truth, matrix, vector, expected, spread),
+        numbers=Numbers(tuple(names), truth, J.T @ J / 0.05**2, score, expected, spread),
         epsilon_gamma=Quantity(epsilon, 0.04, "-"), epsilon_direct=Quantity(epsilon, 0.04, "-"),
         misfit={}, warnings=(), setups=setups,
     )  # fmt: skip
@@ -48,7 +48,7 @@ def test_tyres_of_a_declared_set_up_share_its_zeros():
     found = builds(rig=NAMED, setups=("may",))
     together = _estimated(found)
     assert set(together.rig) == {"F0_N", "path_radius_m"}
-    plain = estimate([one.information for one in found])
+    plain = estimate([one.numbers for one in found])
     assert together.rig["F0_N"] == pytest.approx(plain.rig["F0_N"])
     assert not note_on_sharing(found, [0] * 6)
 
@@ -72,8 +72,8 @@ def test_of_several_set_ups_only_the_named_ones_are_shared():
         specimen("a", rig=NAMED, setups=("may", "june"), names=names),
         specimen("b", rig=NAMED, setups=("june",)),
     ]
-    a, b = (row.information_of_setups.names for row in rows)
+    a, b = (row.numbers_of_setups.names for row in rows)
     assert a == names
     assert b[2] == "F0_N@june"
     bare = replace(rows[1], setups=())
-    assert bare.information_of_setups.names[2] == "F0_N@b"
+    assert bare.numbers_of_setups.names[2] == "F0_N@b"

@@ -78,9 +78,7 @@ def test_the_readme_says_what_a_plan_brings_the_sample():
 def test_without_runs_the_posterior_is_the_builds(result, knowledge):
     found = knowledge.posterior([], held={"PECP1": result.fit.search.held["PECP1"]}).stderr
     stated = result.fit.search.posterior.stderr
-    ratio = np.array([found[name] / u for name, u in stated.items()])
-    assert np.median(ratio) == pytest.approx(1.0, abs=0.02)  # the plan takes all readings as independent
-    assert np.all(np.abs(np.log(ratio)) < 0.3), dict(zip(stated, ratio, strict=True))
+    assert {name: found[name] for name in stated} == pytest.approx(stated, rel=1e-6)
 
 
 def test_more_points_never_raise_an_uncertainty(result, knowledge):
@@ -88,7 +86,7 @@ def test_more_points_never_raise_an_uncertainty(result, knowledge):
     after = knowledge.posterior([run_of(result, "small-camber")], FREE).stderr
     # The tolerance: a held coefficient contributes to the u of a fitted one.
     assert all(after[name] <= before[name] * 1.001 for name in before)
-    assert after["PKY6"] < 0.9 * before["PKY6"]
+    assert after["PKY6"] < 0.95 * before["PKY6"]
 
 
 def test_the_same_points_again_halve_the_variance_due_to_noise(result, knowledge):

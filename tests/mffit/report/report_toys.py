@@ -16,9 +16,9 @@ from mffit import config, measured, parts
 from mffit.fit.agreement import agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import coverage
-from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.made import made
+from mffit.numbers import Numbers
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
 from mffit.rig import Simulation
@@ -139,7 +139,9 @@ def made_result(**changes: Any) -> BuildResult:
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),
         seconds=1.5,
-        posterior=Posterior(("PKY1", "PDY1", "PKY6", "QDZ1"), np.diag([0.05, 0.01, 0.005, 0.002]) ** 2),
+        posterior=Numbers.of(
+            ("PKY1", "PDY1", "PKY6", "QDZ1"), np.zeros(4), np.diag([0.05, 0.01, 0.005, 0.002]) ** 2
+        ),
     )
     return BuildResult(
         config=settings,

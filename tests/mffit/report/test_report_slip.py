@@ -11,7 +11,7 @@ from report_toys import made_result
 from mffit import parts
 from mffit.fit.agreement import with_points
 from mffit.fit.coverage import coverage
-from mffit.fit.posterior import Posterior
+from mffit.numbers import Numbers
 from mffit.report import build, constants, page
 from mffit.report.build_view import view_of
 from mffit.report.figures import fit, residuals, slip
@@ -36,7 +36,7 @@ def view():
         model=readings,
         channels=with_points(readings, points),
         coverage=coverage(points, "left"),
-        posterior=Posterior(tuple(U), np.diag(np.square([*U.values()]))),
+        posterior=Numbers.of(tuple(U), np.zeros(len(U)), np.diag(np.square([*U.values()]))),
     )
     return view_of(dataclasses.replace(disc, points=points, parts=parts.split(points), fit=fit))
 

@@ -1,0 +1,206 @@
+"""What each sweep tells of the numbers of a fit, and the uncertainty that follows for a campaign that would be run again."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.fit.problem import FitProblem
+from mffit.least_squares import FreeNumber, inverse
+from mffit.linearised import LinearisedFit
+from mffit.numbers import Numbers
+from mffit.points import Points
+
+ROUNDING = 1e-12
+"""Rounding error of a scaled information matrix, which can become singular by it."""
+
+
+class Told(NamedTuple):
+    """What the readings of one sweep tell of numbers (k,), with the weights of the fit."""
+
+    information: np.ndarray  #: (k, k) derivative of the score
+    scatter: np.ndarray  #: (k, k) covariance of the score, from noise and from what the run has of its own
+    missed: np.ndarray  #: (k,) the score by the model error
+    pull: np.ndarray  #: (k,) the score by the residuals
+
+    def __add__(self, other: Told) -> Told:  # type: ignore[override]
+        return Told(*(mine + its for mine, its in zip(self, other, strict=True)))
+
+    def only(self, rows: Sequence[int]) -> Told:
+        """The same of some of the numbers."""
+        return Told(
+            self.information[np.ix_(rows, rows)],
+            self.scatter[np.ix_(rows, rows)],
+            self.missed[rows],
+            self.pull[rows],
+        )
+
+
+def told_by_sweeps(problem: FitProblem, left: LinearisedFit, names: Sequence[str]) -> list[Told]:
+    """What every sweep tells of the named numbers at the values of ``problem``, and at last what the measured radii tell.
+
+    ``left`` is the linear model of what the fit leaves.
+    """
+    found: dict[int, Told] = {}
+    for name, channel in left.channels.items():
+        part = problem.points.select(channel.rows, with_table=False)
+        weight = 1.0 / problem.sigma[name][channel.rows]  # 0 for a reading that the fit left out
+        seen = _Readings(
+            slopes=_slopes(problem, part, name, names) * weight[:, None],
+            noise=channel.components.noise * channel.unit * weight,
+            own=channel.own_effects * weight[:, None],
+            missed=channel.missed_at_readings * weight,
+            residual=channel.model.residual * channel.unit * weight,
+        )
+        for sweep in np.unique(part.sweep).tolist():
+            told = seen.told(part.sweep == sweep, channel.stride)
+            found[sweep] = found[sweep] + told if sweep in found else told
+    residual, by_radii = problem.radii_rows(names)
+    of_radii = by_radii.T @ by_radii
+    return [*found.values(), Told(of_radii, of_radii, np.zeros(len(names)), -by_radii.T @ residual)]
+
+
+def told_by_run(
+    problem: FitProblem,
+    left: LinearisedFit,
+    names: Sequence[str],
+    run: Points,
+    sigma: Mapping[str, float],
+    still: Collection[str] = (),
+) -> Told:
+    """What a further run, at set-points ``run`` (n,) and with weights by ``sigma``, is expected to tell of the named numbers.
+
+    The numbers ``still`` do not move its readings.
+    """
+    moving = np.array([name not in still for name in names])
+    out = Told(*(np.zeros(shape) for shape in 2 * ((len(names),) * 2,) + 2 * (len(names),)))
+    force = problem.simulation.readings(run, sigma)
+    for name, u in sigma.items():
+        n = len(run)
+        slopes = _slopes(problem, run, name, names) * moving / u
+        channel = left.channels.get(name)
+        if channel is None:  # not measured until now
+            seen = _Readings(slopes, np.ones(n), np.zeros((n, 0)), np.zeros(n), np.zeros(n))
+        else:
+            missed, own = channel.foreseen(run, force[name])
+            seen = _Readings(slopes, np.full(n, channel.noise / u), own / u, missed / u, np.zeros(n))
+        out = out + seen.told(np.arange(n), 1)
+    return out
+
+
+def told_by_weights(problem: FitProblem, numbers: Sequence[FreeNumber], held: Mapping[str, float]) -> Numbers:
+    """The numbers if all readings are independent and scatter by their weights; ``held`` ones keep their uncertainties."""
+    priors = Priors.of(problem, numbers, held)
+    slope = problem.free(priors.names).linear(priors.values).slope
+    return Numbers(
+        priors.names,
+        priors.values,
+        slope.T @ slope,
+        np.zeros(len(priors.names)),
+        priors.expected,
+        priors.spread,
+        priors.held,
+    )
+
+
+def _slopes(problem: FitProblem, points: Points, channel: str, names: Sequence[str]) -> np.ndarray:
+    """Derivatives (n, k) of a channel by the named numbers."""
+    return np.asarray(np.nan_to_num(problem.simulation.sensitivities(points, names, [channel])[1][channel]))
+
+
+class _Readings(NamedTuple):
+    """Readings (n,) of one channel over their uncertainties in the fit."""
+
+    slopes: np.ndarray  #: (n, k) derivatives by the numbers
+    noise: np.ndarray  #: (n,) standard deviation of the noise
+    own: np.ndarray  #: (n, q) changes by one standard deviation of each effect that a run has of its own
+    missed: np.ndarray  #: (n,) model error
+    residual: np.ndarray  #: (n,) measured less model
+
+    def told(self, rows: np.ndarray, stride: int) -> Told:
+        """What some of the readings tell, each of which stands for ``stride`` readings."""
+        slopes = self.slopes[rows]
+        noisy, own = slopes * self.noise[rows, None], stride * slopes.T @ self.own[rows]
+        return Told(
+            information=stride * slopes.T @ slopes,
+            scatter=stride * noisy.T @ noisy + own @ own.T,
+            missed=stride * slopes.T @ self.missed[rows],
+            pull=stride * slopes.T @ self.residual[rows],
+        )
+
+
+class Priors(NamedTuple):
+    """Numbers (k,) at their fitted values, with priors."""
+
+    names: tuple[str, ...]
+    values: np.ndarray
+    expected: np.ndarray  #: prior means
+    spread: np.ndarray  #: prior standard deviations, inf without a prior, 0 for a number taken as exact
+    held: frozenset[str]  #: numbers that the fit did not move
+
+    @classmethod
+    def of(cls, problem: FitProblem, free: Sequence[FreeNumber], held: Mapping[str, float]) -> Priors:
+        """The ``free`` numbers, and those ``held`` with a standard uncertainty, at the values of ``problem``."""
+        known = {n.name: (n.expected, n.spread) for n in free}
+        held = {name: u for name, u in held.items() if name not in known}
+        names = (*known, *held)
+        values = np.array([problem.value(name) for name in names])
+        return cls(
+            names=names,
+            values=values,
+            expected=np.array([*(mean for mean, _ in known.values()), *values[len(known) :]]),
+            spread=np.array([*(u for _, u in known.values()), *held.values()]),
+            held=frozenset(held),
+        )
+
+
+def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
+    """The numbers with the information of all sweeps, so that their covariance is that of repeated campaigns.
+
+    A fit gives every reading the weight of independent noise. Its estimate therefore moves, from campaign to campaign, by noise
+    and by what runs have of their own, as modelled, and by the model error: the conditions of other sweeps in the same ranges
+    would pull it elsewhere around the best that the formula can do. How far, the pulls of the present sweeps tell, each sweep
+    left out in turn (the jackknife over clusters, to first order). Together, with H the curvature of the fit and D the
+    covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. The information returned is C^-1 without the priors; where
+    C exceeds a prior, the readings tell nothing.
+    """
+    precision = np.where(priors.spread > 0.0, priors.spread, np.inf) ** -2.0
+    curvature = sum((one.information for one in told), np.diag(precision))
+    scatter = sum((one.scatter for one in told), np.diag(precision))
+    scatter = scatter + _by_model_error(told, curvature)
+    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-24))
+    unit = np.outer(scale, scale)
+    precise = curvature / unit @ inverse(scatter / unit) @ (curvature / unit) - np.diag(precision / scale**2)
+    size, axes = np.linalg.eigh(0.5 * (precise + precise.T))
+    information = (axes * np.maximum(size, 0.0)) @ axes.T * unit
+    pull = sum((one.pull for one in told), -precision * (priors.values - priors.expected))
+    held = np.array([name in priors.held for name in priors.names], dtype=bool)
+    score = precision * (priors.values - priors.expected)
+    moved = inverse(curvature)[np.ix_(held, held)] @ pull[held]
+    score[held] = inverse(inverse(information + np.diag(precision))[np.ix_(held, held)]) @ moved
+    return Numbers(
+        priors.names, priors.values, information, score, priors.expected, priors.spread, priors.held
+    )
+
+
+def _by_model_error(told: Sequence[Told], curvature: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of the score by the model error, from the change of the estimate without each sweep.
+
+    A sweep is left out but for one part in their number, so that what it alone tells stays told.
+    """
+    sweeps = [one for one in told if np.any(one.missed)]
+    if len(sweeps) < 2:
+        return np.zeros_like(curvature)
+    share = 1.0 - 1.0 / len(sweeps)
+    seen = np.diag(curvature) > 0.0
+    scale = np.sqrt(np.diag(curvature)[seen])
+    whole = curvature[np.ix_(seen, seen)] / np.outer(scale, scale)
+    informed = [one.information[np.ix_(seen, seen)] / np.outer(scale, scale) for one in sweeps]
+    without = whole + ROUNDING * np.eye(len(scale)) - share * np.array(informed)
+    missed = np.array([one.missed[seen] / scale for one in sweeps])
+    moves = np.linalg.solve(without, missed[:, :, None])[:, :, 0]
+    pulls = np.zeros((len(sweeps), len(curvature)))
+    pulls[:, seen] = (moves - moves.mean(axis=0)) @ whole * scale
+    return np.asarray(share * pulls.T @ pulls)
