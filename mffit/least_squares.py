@@ -13,6 +13,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from mffit import constants
 from tir.derivatives import gradient, plain, traced
+from tir.frozen import ReadOnlyArrays
 
 NEGLIGIBLE = 0.01
 """Changes of the sum of squares below this share of the stopping criterion are negligible: such steps are not tried."""
@@ -50,7 +51,7 @@ class FreeNumber:
 
 
 @dataclass(frozen=True, slots=True)
-class Linear:
+class Linear(ReadOnlyArrays):
     """Residuals and their derivatives at one set of values; those of the data may be :func:`condensed`."""
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
@@ -124,7 +125,7 @@ def of_model(
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(ReadOnlyArrays):
     """The end of a search; its derivatives are computed on first use."""
 
     objective: Objective

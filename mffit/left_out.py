@@ -13,10 +13,11 @@ import numpy as np
 from scipy.special import ndtri
 
 from mffit import constants
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
-class Predicted:
+class Predicted(ReadOnlyArrays):
     """Sum of squared prediction errors of every left-out group of points."""
 
     chi2: np.ndarray  #: (s, c) by group and channel

@@ -21,6 +21,7 @@ import numpy as np
 from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
 from tir.errors import TirError
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import TABLE
 
 AXES: Mapping[str, tuple[str, float]] = MappingProxyType(
@@ -54,7 +55,7 @@ def digest(values: Mapping[str, Any]) -> str:
 
 
 @dataclass(frozen=True)
-class Correction:
+class Correction(ReadOnlyArrays):
     """What the formula misses, over a grid of d inputs."""
 
     content: str  #: SHA-256 of the table, by which two are the same

@@ -16,6 +16,7 @@ from mffit.points import Points
 from mffit.prediction import Predictor
 from mffit.rig import Simulation
 from tir import Tyre
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
 
 OF_ORDER_ONE = frozenset({"epsilon_gamma"})
@@ -87,7 +88,7 @@ def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class CurveGap:
+class CurveGap(ReadOnlyArrays):
     """Two files' curves over an angle or over slip at a load, on their common range."""
 
     channel: str

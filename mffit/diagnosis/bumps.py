@@ -14,6 +14,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
+from tir.frozen import ReadOnlyArrays
 
 SWEPT = {
     "alpha_deg": constants.BUMP_WIDTHS_SIDESLIP,
@@ -40,7 +41,7 @@ class Bump:
 
 
 @dataclass(frozen=True)
-class BumpScan:
+class BumpScan(ReadOnlyArrays):
     """All bumps that the programme could reveal."""
 
     noise: Noise

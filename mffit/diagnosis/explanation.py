@@ -19,10 +19,11 @@ from mffit.diagnosis.selection import Contest, contest
 from mffit.diagnosis.smooth import Smooth
 from mffit.effects import Effect
 from mffit.rig import Simulation
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
-class Explanation:
+class Explanation(ReadOnlyArrays):
     """Effects, unnamed structure, and the noise assumed for them."""
 
     problem: DiagnosisProblem  #: readings, model, and covariance including inexact coefficients

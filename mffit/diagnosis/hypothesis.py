@@ -12,10 +12,11 @@ from scipy.special import ndtri
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth
 from mffit.effects import Effect
 from mffit.rig import Simulation
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
-class Hypothesis:
+class Hypothesis(ReadOnlyArrays):
     """A set of effects with fitted numbers."""
 
     effects: tuple[Effect, ...]

@@ -13,11 +13,12 @@ from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from tir import Tyre
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import TABLE
 
 
 @dataclass(frozen=True, slots=True)
-class Inexactness:
+class Inexactness(ReadOnlyArrays):
     """Prior of the given model's coefficients: normal around the values in the file."""
 
     names: tuple[str, ...]

@@ -14,6 +14,7 @@ from mffit.as_json import keys
 from mffit.linearised.chained import ChainedErrors, Memory, chains_of
 from mffit.quantities import SIDEWAYS, column
 from mffit.scatter import finite_median, rms
+from tir.frozen import ReadOnlyArrays
 
 
 class Origin(Enum):
@@ -86,7 +87,7 @@ class SharedDirections(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Noise:
+class Noise(ReadOnlyArrays):
     """Covariance of the readings, and the corresponding whitening.
 
     The readings (c n,) are those of n points in c channels, channel by channel. Their covariance is D M D + S S'. D are the

@@ -20,6 +20,7 @@ from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solutio
 from mffit.left_out import moved_without
 from mffit.points import Points
 from mffit.rig import Simulation
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME as COEFFICIENTS
 
 STEEPEST = 1e5
@@ -27,7 +28,7 @@ STEEPEST = 1e5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LinearisedNumbers:
+class LinearisedNumbers(ReadOnlyArrays):
     """Readings as linear functions of all free numbers of an explanation."""
 
     names: tuple[str, ...]  #: (k,)

@@ -25,11 +25,12 @@ from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.scatter import beyond, rms
 from mffit.suspicion import HeldNumber, LeftOutSweeps
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
-class OneStep:
+class OneStep(ReadOnlyArrays):
     """Score test of one effect, to first order, with all fitted numbers free."""
 
     effect: Effect

@@ -30,6 +30,7 @@ from mffit.rig_errors import Faults
 from mffit.scatter import rms
 from mffit.suspicion import Outlier
 from tir import Tyre
+from tir.frozen import ReadOnlyArrays
 
 WITH_TERMS = "-with-terms.tir"
 """Ending of the name of the given property file with its coefficients estimated anew, next to the errors found."""
@@ -97,7 +98,7 @@ class GapStep(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Diagnosis(Brief):
+class Diagnosis(ReadOnlyArrays, Brief):
     """Where simulation and measurement disagree, what explains it, and what remains."""
 
     headline: str = field()  #: the answer in one sentence; replaces the property of Brief

@@ -20,6 +20,7 @@ from mffit.diagnosis.noise import MemorySpan, Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import beyond_weights, heavy_tails, weights
 from mffit.linearised.chained import Chained, Memory, chains_of
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 LARGEST = math.log(1e4)
 """Bound of the coordinates, which are log odds or logarithms of sizes."""
@@ -30,7 +31,7 @@ LARGEST_MEMORY = math.log(constants.LARGEST_MEMORY / (1.0 - constants.LARGEST_ME
 
 
 @dataclass(frozen=True, slots=True)
-class ExplainingColumns:
+class ExplainingColumns(ReadOnlyArrays):
     """Columns (c n, k) that could explain a residual, one prior standard deviation each."""
 
     named: np.ndarray  #: effects and coefficients
@@ -90,7 +91,7 @@ def _share(log_odds: float) -> float:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Described:
+class Described(ReadOnlyArrays):
     """A description at its most probable parameters."""
 
     by: Description
@@ -99,7 +100,7 @@ class Described:
 
 
 @dataclass(frozen=True, eq=False)
-class ScatterOfChannel:
+class ScatterOfChannel(ReadOnlyArrays):
     """The used readings (m,) of one channel, and the columns that could explain them."""
 
     stated: np.ndarray  #: stated standard uncertainty

@@ -18,6 +18,7 @@ from mffit.linearised.smooth import SmoothFunctions
 from mffit.points import Points
 from mffit.rig import Readings
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
 AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
@@ -88,7 +89,7 @@ def _functions(conditions: Mapping[str, np.ndarray], divisions: float, n: int) -
 
 
 @dataclass(frozen=True, eq=False)
-class SmoothStructure:
+class SmoothStructure(ReadOnlyArrays):
     """Smooth structure that may be added to any hypothesis; all rows (m,) are whitened readings."""
 
     channels: tuple[str, ...]  #: (c,)

@@ -9,11 +9,12 @@ import numpy as np
 
 from mffit.numbers import Numbers
 from tir import Quantity
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
-class BesideNumbers:
+class BesideNumbers(ReadOnlyArrays):
     """Coefficients determined separately from the main fit, from their own readings."""
 
     values: Mapping[str, float] = field(default_factory=dict)  #: (k,)

@@ -26,10 +26,11 @@ from mffit.rig import Readings, Simulation, reference_speed, successive
 from mffit.scatter import rms
 from mffit.suspicion.reversals import reversals_of
 from tir.derivatives import gradient, plain, traced
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
-class FitProblem:
+class FitProblem(ReadOnlyArrays):
     """Points with weights, and a simulation: gives the residuals for any choice of free numbers."""
 
     points: Points

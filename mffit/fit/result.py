@@ -28,10 +28,11 @@ from mffit.rig import Readings, Simulation
 from mffit.rig_errors import rig_estimates
 from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class FitResult(Brief):
+class FitResult(ReadOnlyArrays, Brief):
     """The fitted tyre and everything that the report needs."""
 
     tyre: Tyre  #: the fitted model: for turn slip on if the rig is a disc

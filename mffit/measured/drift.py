@@ -20,6 +20,7 @@ from mffit.measured.zeros import u_of
 from mffit.parts.constants import SAME_CAMBER
 from mffit.points import Points, levels
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 SOURCE = "drift between sweeps"
 """Name of the drift in the uncertainty budget."""
@@ -34,7 +35,7 @@ SAME = (
 
 
 @dataclass(frozen=True, slots=True)
-class SweepShares:
+class SweepShares(ReadOnlyArrays):
     """Relative deviation of every sweep's forces from the usual ones."""
 
     sweeps: np.ndarray  #: (k,) indices of the sweeps

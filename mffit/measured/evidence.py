@@ -26,10 +26,11 @@ from mffit.parts import Parts
 from mffit.points import Points
 from mffit.rig_errors import BY_NAME, DECLARED
 from tir import Quantity, Tyre
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DirectEvidence:
+class DirectEvidence(ReadOnlyArrays):
     """Points, declarations and errors common to all loads, from which the results at every load are computed."""
 
     config: Config

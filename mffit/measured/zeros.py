@@ -21,13 +21,14 @@ from mffit.measured import constants, wording
 from mffit.measured.axis import slope_at
 from mffit.measured.uncertain import combined, named, polynomial
 from mffit.points import Points, levels, main_pressure
+from tir.frozen import ReadOnlyArrays
 
 USUAL_U = {"Fy": USUAL_U_FORCE, "Mz": USUAL_U_MOMENT}
 WAYS = {1: "forward", -1: "backward"}
 
 
 @dataclass(frozen=True, slots=True)
-class LoadGroup:
+class LoadGroup(ReadOnlyArrays):
     """The freely rolling points of one load at the main pressure, normal mount."""
 
     load: float  #: mean load [N]

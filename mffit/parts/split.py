@@ -14,6 +14,7 @@ from mffit.brief import Brief
 from mffit.constants import NAMED_IN_SENTENCE, SAME_SIDESLIP
 from mffit.parts import constants
 from mffit.points import Points, levels
+from tir.frozen import ReadOnlyArrays
 
 READ = ("Fy", "Mz", "u_Fy", "u_Mz")
 
@@ -94,7 +95,7 @@ def _interpolated(points: Points, index: np.ndarray, angle: np.ndarray, at: floa
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Parts(Brief):
+class Parts(ReadOnlyArrays, Brief):
     """Odd and even part at every point; arrays (n,), NaN where a point has no mirror."""
 
     Fy_odd: np.ndarray  #: [F(a, g) - F(-a, -g)] / 2 [N]

@@ -112,8 +112,8 @@ class Points(MeasuredRows):
             which = np.asarray(which)
             which = np.flatnonzero(which) if which.dtype == bool else which
         taken: dict[str, Any] = {name: getattr(self, name)[which] for name in ARRAYS}
-        return _sealed(
-            taken,
+        return Points(
+            **taken,
             sweep_names=self.sweep_names,
             files=self.files,
             setups=self.setups,
@@ -127,7 +127,8 @@ class Points(MeasuredRows):
         _refuse_unknown(arrays)
         taken = {name: arrays.get(name, getattr(self, name)) for name in ARRAYS}
         shared = {name: arrays.get(name, getattr(self, name)) for name in SHARED}
-        return _sealed({name: _filled(name, taken[name], len(self)) for name in ARRAYS}, **shared)
+        filled: dict[str, Any] = {name: _filled(name, taken[name], len(self)) for name in ARRAYS}
+        return Points(**filled, **shared)
 
 
 FIELDS = tuple(field.name for field in fields(Points))
@@ -160,28 +161,34 @@ def make_points(
         raise TypeError(f"make_points needs {', '.join(missing)}")
     _refuse_unknown(given)
     (n,) = np.broadcast_shapes((1,), *(np.shape(values) for values in given.values()))
-    arrays = {name: _filled(name, given[name], n) for name in ARRAYS}
+    arrays: dict[str, Any] = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
         if not np.all(np.abs(arrays[name]) == 1):
             raise ValueError(f"{name} must be +1 or -1 at every point")
     table = _no_table(n) if table is None else table.reset_index(drop=True)
     if len(table) != n:
         raise ValueError(f"the table has {len(table)} rows for {n} points")
-    names = {"sweep_names": tuple(sweep_names), "files": tuple(files), "setups": tuple(setups)}
-    return _sealed(arrays, **names, table=table)
+    names: dict[str, Any] = {
+        "sweep_names": tuple(sweep_names),
+        "files": tuple(files),
+        "setups": tuple(setups),
+    }
+    return Points(**arrays, **names, table=table)
 
 
 def concatenate(parts: Sequence[Points]) -> Points:
     """All points in one record; sweeps, files and set-ups are renumbered, tables joined by column name."""
-    arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
-    names: dict[str, tuple[str, ...]] = {}
+    arrays: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS
+    }
+    names: dict[str, Any] = {}
     for field, of_field in COUNTED.items():
         names[of_field] = tuple(dict.fromkeys(name for part in parts for name in getattr(part, of_field)))
         arrays[field] = np.concatenate(
             [_renumbered(getattr(part, field), getattr(part, of_field), names[of_field]) for part in parts]
         )
     table = pd.concat([part.table for part in parts], ignore_index=True)
-    return _sealed(arrays, **names, table=table)
+    return Points(**arrays, **names, table=table)
 
 
 def _no_table(n: int) -> pd.DataFrame:
@@ -206,9 +213,3 @@ def _filled(name: str, values: Any, n: int) -> np.ndarray:
     if values.ndim > 1:
         raise ValueError(f"{name} must be a scalar or one-dimensional")
     return np.array(np.broadcast_to(values, (n,)), dtype=kind)
-
-
-def _sealed(arrays: dict[str, Any], **shared: Any) -> Points:
-    for values in arrays.values():
-        values.setflags(write=False)
-    return Points(**arrays, **shared)

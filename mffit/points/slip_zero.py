@@ -25,6 +25,7 @@ from mffit.sweeps.standstill import standing
 from mffit.sweeps.sweep import MeasuredRows
 from tir.constants import EFFECTIVE_RADIUS_RANGE
 from tir.errors import listed, some
+from tir.frozen import ReadOnlyArrays
 
 FREE, LOADED, UNLOADED = "free-rolling", "loaded-radius", "unloaded-radius"
 """Possible references of a slip column."""
@@ -63,7 +64,7 @@ class ZeroAtLoad(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class SlipZero:
+class SlipZero(ReadOnlyArrays):
     """The slip at which the longitudinal force is zero, over load, pressure, camber and sideslip."""
 
     slope: float  #: slope of force per load over slip, at zero force

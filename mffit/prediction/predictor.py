@@ -21,13 +21,14 @@ from mffit.quantities import column, u_column
 from mffit.rig import Readings, Simulation
 from mffit.rig_errors import BESIDE, ZEROS, error_of
 from tir import Tyre
+from tir.frozen import ReadOnlyArrays
 
 T_REF = "T_ref_degC"
 """Rig number with the temperature at which the fitted model holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MissedChannel:
+class MissedChannel(ReadOnlyArrays):
     """Model error of a channel, scatter of its runs, and uncertainty of its coefficients."""
 
     smooth: SmoothFunctions  #: m functions
@@ -73,7 +74,7 @@ class MissedChannel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PredictedForce:
+class PredictedForce(ReadOnlyArrays):
     """The force of a tyre at conditions (n,) and its variances, in the unit of the channel."""
 
     file: np.ndarray  #: force of the property file

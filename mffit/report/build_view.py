@@ -14,6 +14,7 @@ from mffit.quantities import CHANNELS, QuantityName
 from mffit.report.curves import Curve, CurveCondition, CurveLine, conditions, curves, model_lines
 from mffit.results import BuildResult
 from mffit.scatter import finite_median
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME, Parameter
 
 NOT_DECIDED = ("base", "converted", "default", "given", "range")
@@ -21,7 +22,7 @@ NOT_DECIDED = ("base", "converted", "default", "given", "range")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChannelRow:
+class ChannelRow(ReadOnlyArrays):
     """One measured channel and what is drawn with it; arrays (n,) in its unit, NaN where unknown."""
 
     name: str

@@ -12,6 +12,7 @@ from mffit.points import Points, levels
 from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.report import constants
 from mffit.rig import Simulation
+from tir.frozen import ReadOnlyArrays
 
 
 def condition(load: float, pressure: float) -> str:
@@ -20,7 +21,7 @@ def condition(load: float, pressure: float) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Curve:
+class Curve(ReadOnlyArrays):
     """Points of one sweep that differ in one angle, or in longitudinal slip, only."""
 
     over: str  #: what varies, "alpha", "gamma" or "kappa"
@@ -50,7 +51,7 @@ def shown_values(points: Points, over: str) -> np.ndarray:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CurveCondition:
+class CurveCondition(ReadOnlyArrays):
     """Points at one load and pressure."""
 
     load: float  #: [N]
@@ -156,7 +157,7 @@ VARIED = ("alpha", "gamma", "kappa", "Fz", "p", "V")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CurveLine:
+class CurveLine(ReadOnlyArrays):
     """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
     x: np.ndarray  #: what varies: an angle [deg] or longitudinal slip [-]

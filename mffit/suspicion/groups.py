@@ -9,10 +9,11 @@ import numpy as np
 
 from mffit.points import Points, levels
 from mffit.suspicion import constants
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group:
+class Group(ReadOnlyArrays):
     """Points that would share a mistake."""
 
     name: str  #: in sentences

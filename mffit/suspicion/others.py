@@ -25,6 +25,7 @@ from mffit.suspicion import constants
 from mffit.suspicion.groups import Group, groups
 from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
 from mffit.suspicion.rule import Finding, Outcome, When, rule
+from tir.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from mffit.linearised import LinearisedFit
@@ -65,7 +66,7 @@ class Error(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Doubt:
+class Doubt(ReadOnlyArrays):
     """A sweep, or one of its conditions, that the other sweeps do not predict."""
 
     sweep: str  #: name of the sweep, with the condition if only one condition is in doubt

@@ -41,6 +41,7 @@ from mffit.suspicion.others import Doubt
 from mffit.suspicion.rule import Outcome, Rule, When, rule
 from mffit.suspicion.unpublished import causes
 from tir.errors import listed
+from tir.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from mffit.linearised import LinearisedFit
@@ -84,7 +85,7 @@ class JudgedMeasurement:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FinishedFit(JudgedMeasurement):
+class FinishedFit(ReadOnlyArrays, JudgedMeasurement):
     """Inputs of the rules of trust after a fit."""
 
     model: Readings  #: readings of the fitted model

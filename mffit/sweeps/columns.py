@@ -27,6 +27,7 @@ from mffit.sweeps.raw_table import (
 )
 from mffit.sweeps.standstill import standing
 from mffit.sweeps.units import UnknownUnitError, converted
+from tir.frozen import ReadOnlyArrays
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
@@ -35,7 +36,7 @@ NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
 
 @dataclass(frozen=True, slots=True)
-class Columns:
+class Columns(ReadOnlyArrays):
     """A file's columns as reported; rows as in ``raw``."""
 
     raw: RawTable

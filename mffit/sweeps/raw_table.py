@@ -11,13 +11,14 @@ import numpy as np
 
 from mffit.errors import InputError
 from tir.errors import counted
+from tir.frozen import ReadOnlyArrays
 
 Cells = Sequence[str | float] | np.ndarray
 """One column (n,): an array of floats if the file holds only numbers in it, else the cells as written."""
 
 
 @dataclass(frozen=True, slots=True)
-class RawTable:
+class RawTable(ReadOnlyArrays):
     """The content of one file; ``lines`` and every column of ``cells`` have the same length (n,).
 
     Raises
@@ -36,6 +37,7 @@ class RawTable:
     others: tuple[str, ...] = ()  #: other sheets of the workbook that have data
 
     def __post_init__(self) -> None:
+        ReadOnlyArrays.__post_init__(self)
         if not self.headings or not len(self.lines):
             raise InputError("has no rows; write one per point or sample", file=self.path)
         if "" in self.headings or len(set(self.headings)) < len(self.headings):

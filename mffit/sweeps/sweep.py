@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 
 from mffit.brief import Brief
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class MeasuredRows(Brief):
+class MeasuredRows(ReadOnlyArrays, Brief):
     """Rows in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel that was not measured."""
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
@@ -66,7 +67,7 @@ class Sweep(MeasuredRows):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class ExcludedRows(Brief):
+class ExcludedRows(ReadOnlyArrays, Brief):
     """Rows of a file that an entry of ``[fit] exclude`` leaves out."""
 
     file: str  #: name as in ``tyre.toml``
@@ -76,7 +77,7 @@ class ExcludedRows(Brief):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Sweeps(Brief):
+class Sweeps(ReadOnlyArrays, Brief):
     """All sweeps of a configuration, in its order, with warnings."""
 
     sweeps: tuple[Sweep, ...]  #: without the excluded rows

@@ -9,10 +9,11 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from mffit.virtual_rig.plan import RigPlan, SweepPlan
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class Settings(ReadOnlyArrays):
     """Set-points as read at every point of a sweep, in ISO-W axes and SI units; arrays (n,)."""
 
     alpha: np.ndarray  #: sideslip angle as read [rad]

@@ -24,6 +24,7 @@ from mffit.suspicion import parts_of_sweeps
 from tir import Quantity
 from tir.derivatives import plain
 from tir.equations import vertical
+from tir.frozen import ReadOnlyArrays
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
@@ -72,7 +73,7 @@ NEEDED = {
 
 
 @dataclass(frozen=True, slots=True)
-class Vertical:
+class Vertical(ReadOnlyArrays):
     """Coefficients from loaded radius and wheel speed."""
 
     numbers: Mapping[str, float] = field(default_factory=dict)
@@ -117,7 +118,7 @@ class Vertical:
 
 
 @dataclass(frozen=True, slots=True)
-class RadiusReadings:
+class RadiusReadings(ReadOnlyArrays):
     """Radii of a wheel (n,) and the conditions on which they depend, in ISO-W axes."""
 
     Fz: np.ndarray  #: [N]

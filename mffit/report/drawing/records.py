@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mffit.report import style
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +25,7 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trace:
+class Trace(ReadOnlyArrays):
     """Points (n,) with a line through them, markers on them, or both; how uncertain they are is a band or bars around them."""
 
     name: str
@@ -48,7 +49,7 @@ class Trace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bars:
+class Bars(ReadOnlyArrays):
     """Horizontal bars (n,) from zero, or from the left end of a logarithmic axis."""
 
     name: str

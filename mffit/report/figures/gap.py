@@ -34,6 +34,7 @@ from mffit.report.drawing.records import (
 from mffit.report.figures.residuals import ANGLES, SLIPS, Framed, driven, residual_map, rolling
 from mffit.rounding import number
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)
@@ -46,7 +47,7 @@ THRESHOLD = Look(colour=style.INK, line="--", width=1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GapChannel:
+class GapChannel(ReadOnlyArrays):
     """One channel before and after: measured minus simulated in units of the noise of each point, (n,)."""
 
     name: str
