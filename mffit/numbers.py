@@ -13,6 +13,7 @@ import numpy as np
 from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.least_squares import inverse
+from tir.frozen import ReadOnlyArrays
 
 ABOUT = (
     "What the readings alone tell of the numbers x, around their values v, to first order: "
@@ -21,7 +22,7 @@ ABOUT = (
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Numbers(Brief):
+class Numbers(ReadOnlyArrays, Brief):
     """Numbers with the information of the readings about them, and with priors; normal, to first order around the values.
 
     A ``held`` number keeps its prior: the readings do not move it, and its error moves the others.

@@ -18,6 +18,7 @@ from mffit.fleet import constants
 from mffit.linearised.mixed import Mixed, MixedPosterior, Variances
 from mffit.numbers import Numbers
 from mffit.rig_errors import error_of, rig_estimates
+from tir.frozen import ReadOnlyArrays
 from tir.parameters import BY_NAME
 
 
@@ -40,7 +41,7 @@ keys(Population, "* assumed")
 
 
 @dataclass(frozen=True, slots=True)
-class TyreEstimate:
+class TyreEstimate(ReadOnlyArrays):
     """One tyre in the joint estimate."""
 
     names: tuple[str, ...]

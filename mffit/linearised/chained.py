@@ -15,6 +15,7 @@ from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dpotri
 
 from mffit.linearised import constants
+from tir.frozen import ReadOnlyArrays
 
 
 class Memory(NamedTuple):
@@ -62,7 +63,7 @@ def chains_of(chain: np.ndarray, turn: np.ndarray | None = None) -> list[np.ndar
 
 
 @dataclass(frozen=True, eq=False)
-class ChainedErrors:
+class ChainedErrors(ReadOnlyArrays):
     """Errors of unit variance in chains, and their autocorrelation."""
 
     chains: Sequence[np.ndarray]
@@ -238,7 +239,7 @@ class Foretold(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Chained:
+class Chained(ReadOnlyArrays):
     """Readings (m,) = columns @ numbers of unit prior variance + errors that are autocorrelated along chains."""
 
     residual: np.ndarray  #: (m,)

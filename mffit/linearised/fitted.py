@@ -20,10 +20,11 @@ from mffit.points.noise import stating
 from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS, Place, error_of
 from mffit.scatter import rms, robust
+from tir.frozen import ReadOnlyArrays
 
 
 @dataclass(frozen=True, eq=False)
-class LinearisedChannel:
+class LinearisedChannel(ReadOnlyArrays):
     """Linear model of the residuals of one channel: model error, random effects of the runs, and noise."""
 
     name: str

@@ -15,6 +15,8 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.blas import dtrmm
 from scipy.linalg.lapack import dtrtri
 
+from tir.frozen import ReadOnlyArrays
+
 ROUNDING = 1e-13
 """Rounding error of a difference of sums of products relative to the sums; such a difference can become negative."""
 
@@ -37,7 +39,7 @@ class MixedEvidence(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Mixed:
+class Mixed(ReadOnlyArrays):
     """Residuals (n,) = common @ common numbers + own @ random effects of the group + noise, in units of the stated noise."""
 
     residual: np.ndarray  #: (n,)

@@ -14,6 +14,7 @@ import numpy as np
 
 from mffit.linearised import constants
 from mffit.linearised.inputs import Input
+from tir.frozen import ReadOnlyArrays
 
 LEAST = float(-np.log(constants.LEAST_SHARE))
 WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
@@ -21,7 +22,7 @@ WIDEST = float(np.sqrt(5.0 * np.expm1(LEAST / 3.0)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SmoothFunctions:
+class SmoothFunctions(ReadOnlyArrays):
     """The basis: m products of cosines over d conditions."""
 
     inputs: tuple[Input, ...]  #: (d,)

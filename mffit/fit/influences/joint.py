@@ -19,6 +19,7 @@ from mffit.linearised.constants import POINTS_EXAMINED
 from mffit.linearised.mixed import FurtherColumns, LeftOutReadings, Mixed, Variances
 from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
+from tir.frozen import ReadOnlyArrays
 
 NO_SCATTER = 0.005
 """Lower bound of the standard deviation among groups over the usual one: too small to show in the readings."""
@@ -70,7 +71,7 @@ class Explained(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class JointFit:
+class JointFit(ReadOnlyArrays):
     """Linear mixed model of the readings: shared numbers with priors, random effects of each group, and noise."""
 
     names: tuple[str, ...]  #: (k,) names of the shared numbers
