@@ -1,6 +1,7 @@
 """The reader of MATLAB files: v4 to v7 through scipy, v7.3 through h5py.
 
-A recording is a set of column vectors of one length, by themselves or in a structure. The layout of the tyre test consortium adds
+A recording is a set of column vectors of one length, by themselves or in structures (``nested``).
+The layout of the tyre test consortium adds
 a structure ``channel`` with the order of the vectors (``name``) and their ``units``, and the texts ``tireid``, ``testid`` and
 ``source``.
 Only numbers and texts are read, never objects, functions or anything else that could run as code.
@@ -22,8 +23,9 @@ import numpy as np
 from mffit.errors import InputError
 from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import TIME_TO_READ, check_size, damaged, largest, needed, undamaged
-from mffit.sweeps.matlab_apart import LARGEST_TEXT, SIZE, TEXTS, TROUBLE
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.matlab_apart import LARGEST_TEXT, MOST_LEAVES, SIZE, TEXTS, TROUBLE, Leaf
+from mffit.sweeps.nested import Content, content_of, without_columns
+from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.wide import stacked
 
 KIND = "MATLAB file"
@@ -38,18 +40,16 @@ def read_mat(path: Path) -> RawTable:
     Raises InputError if the file is not a MAT file, is damaged, or has no vectors of a common length, or if it is of v7.3 and
     h5py is not installed.
     """
-    content = _hdf5(path) if _is_hdf5(path) else _classic(path)
-    vectors = {name: values for name, values in content.items() if isinstance(values, np.ndarray)}
-    vectors, apart = _with_common_conditions(vectors)
+    found = content_of(_hdf5(path) if _is_hdf5(path) else _classic(path))
+    vectors, apart = _with_common_conditions(dict(found.vectors))
     if not vectors:
-        raise InputError("has no column of numbers; save every channel as a vector", file=path)
-    names, units = _channels(content)
-    about = {name: text for name, text in content.items() if isinstance(text, str)}
+        raise without_columns(found.others, path)
+    about = dict(found.about)
     if apart:
         about["left out"] = f"{', '.join(apart)}, at conditions of its own"
     sets = stacked(vectors)  # with vectors of one length for each load
-    columns: Mapping[str, Cells] = sets.columns if sets else _of_one_length(vectors, names, path)
-    stated = sets.units(units) if sets else units
+    columns = found.runs or (sets.columns if sets else _of_one_length(vectors, found, path))
+    stated = sets.units(found.units) if sets else found.units
     return RawTable(
         headings=tuple(columns),
         units=tuple(stated.get(name, "") for name in columns),
@@ -61,13 +61,14 @@ def read_mat(path: Path) -> RawTable:
     )
 
 
-def _of_one_length(
-    vectors: Mapping[str, np.ndarray], names: Sequence[str], path: Path
-) -> dict[str, np.ndarray]:
-    """The vectors of the most frequent length, those with ``names`` first, in this order."""
+def _of_one_length(vectors: Mapping[str, np.ndarray], content: Content, path: Path) -> dict[str, np.ndarray]:
+    """The vectors of the most frequent length, in the file's own order of channels, if it has one."""
     lengths = [len(values) for values in vectors.values()]
     n = max(set(lengths), key=lambda length: (lengths.count(length), length))
-    kept = [name for name in dict.fromkeys([*names, *vectors]) if name in vectors and len(vectors[name]) == n]
+    names = dict.fromkeys([*content.order, *vectors])
+    kept = [name for name in names if name in vectors and len(vectors[name]) == n]
+    if len(kept) < 2 and content.others:
+        raise without_columns(content.others, path)
     if len(kept) < 2:
         raise InputError(
             "has no two channels of the same length; save all channels as vectors of one length", file=path
@@ -101,16 +102,7 @@ def _with_common_conditions(vectors: dict[str, np.ndarray]) -> tuple[dict[str, n
     return {key: vectors[name] for key, name in own[first].items()} | kept, apart
 
 
-def _channels(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
-    """Names and units from the structure ``channel``, in its order; both empty without it."""
-    channel = content.get("channel")
-    if not isinstance(channel, dict):
-        return [], {}
-    names, units = channel["name"], channel["units"]
-    return names, dict(zip(names, units, strict=False))
-
-
-def _classic(path: Path) -> dict[str, Any]:
+def _classic(path: Path) -> list[Leaf]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         most = str(largest(path))
@@ -124,9 +116,11 @@ def _classic(path: Path) -> dict[str, Any]:
         trouble = folder / TROUBLE
         if trouble.exists():
             raise damaged(path, KIND, trouble.read_text(encoding="utf-8", errors="replace"))
-        content = json.loads((folder / TEXTS).read_text(encoding="utf-8"))
-        vectors = {n: np.load(folder / f"{k}.npy") for k, (n, v) in enumerate(content.items()) if v is None}
-    return {**content, **vectors}
+        texts = json.loads((folder / TEXTS).read_text(encoding="utf-8"))
+        return [
+            (tuple(names), np.load(folder / f"{k}.npy") if value is None else value)
+            for k, (names, value) in enumerate(texts)
+        ]
 
 
 def _is_hdf5(path: Path) -> bool:
@@ -136,29 +130,57 @@ def _is_hdf5(path: Path) -> bool:
     return head.startswith(HDF5_MARK) or head[512:] == HDF5_MARK
 
 
-def _hdf5(path: Path) -> dict[str, Any]:
+def _hdf5(path: Path) -> list[Leaf]:
     h5py = needed("h5py", "MATLAB files of version 7.3", path)
-    content: dict[str, Any] = {}
+    found: list[Leaf] = []
     with undamaged(path, KIND), h5py.File(path, "r") as file:
         sizes: list[int] = []
         file.visititems(lambda _, one: sizes.append(int(getattr(one, "nbytes", 0))))
         check_size(sum(sizes), path)
         _refuse_other_files(file, path, h5py)
-        variables = {name: item for name, item in file.items() if not name.startswith("#")}
-        for name, item in list(variables.items()):
-            if isinstance(item, h5py.Group):
-                if {"name", "units"} <= set(item):
-                    content[name] = {key: _referred(file, item[key]) for key in ("name", "units")}
-                else:
-                    variables |= {key: one for key, one in item.items() if isinstance(one, h5py.Dataset)}
-        for name, item in variables.items():
-            if isinstance(item, h5py.Group):
-                continue
-            if item.attrs.get("MATLAB_class", b"double") == b"char":
-                content[name] = _letters(item)
-            elif item.dtype.kind in "fiu" and item.size > 1 and item.size == max(item.shape):
-                content[name] = np.asarray(item, dtype=float).reshape(-1)
-    return content
+        for name, item in file.items():
+            if not name.startswith("#"):
+                _collect((name,), item, file, found)
+    return found
+
+
+def _collect(names: tuple[str, ...], item: Any, file: Any, found: list[Leaf]) -> None:
+    """Add the leaves of a variable of v7.3; the elements of an array of structures are references."""
+    if len(found) > MOST_LEAVES:
+        raise ValueError(f"it holds more than {MOST_LEAVES} arrays")
+    kind = item.attrs.get("MATLAB_class", b"")
+    kind = kind.decode() if isinstance(kind, bytes) else str(kind)
+    if "MATLAB_object_decode" in item.attrs:
+        if kind != "FileWrapper__":
+            found.append((names, {"object": kind}))
+    elif hasattr(item, "items"):
+        if {"name", "units"} <= set(item) and item["name"].dtype.kind == "O":
+            found.append((names, {key: _referred(file, item[key]) for key in ("name", "units")}))
+            return
+        for name, one in item.items():
+            _collect((*names, name), one, file, found)
+    elif kind == "char":
+        found.append((names, _letters(item)))
+    elif item.dtype.kind in "fiu" and item.size > 1:
+        is_vector = item.size == max(item.shape)
+        found.append(
+            (
+                names,
+                np.asarray(item, dtype=float).reshape(-1) if is_vector else {"shape": [*item.shape[::-1]]},
+            )
+        )
+    elif item.dtype.kind == "O" and kind != "cell":
+        _collect_elements(names, [file[one] for one in np.asarray(item).reshape(-1)], file, found)
+
+
+def _collect_elements(names: tuple[str, ...], elements: Sequence[Any], file: Any, found: list[Leaf]) -> None:
+    """Add the leaves of one field of an array of structures, whose single numbers make a vector."""
+    if all(getattr(one, "size", 0) == 1 and one.dtype.kind in "fiu" for one in elements):
+        found.append((names, np.array([float(np.asarray(one).reshape(-1)[0]) for one in elements])))
+        return
+    *above, parent, name = ("", *names)
+    for k, one in enumerate(elements, 1):
+        _collect((*above, f"{parent}({k})", name), one, file, found)
 
 
 def _refuse_other_files(file: Any, path: Path, h5py: Any) -> None:

@@ -23,37 +23,58 @@ PACKED = 15
 NESTED = (1, 2, 3)
 """Classes of arrays whose parts scipy's ``whosmat`` does not count: cells, structures, objects."""
 CHUNK = 1 << 20
+MOST_LEAVES = 10_000  # arrays of one file
+Leaf = tuple[tuple[str, ...], Any]
+"""The names that lead to it, and a vector (n,), a text, or a mapping: ``name`` and ``units`` of channels, the class of an
+``object`` that only MATLAB reads, or the ``shape`` of a matrix."""
 
 
-def load(path: Path) -> dict[str, Any]:
-    """Vectors (n,) and texts by name, including those in structures, and names and units of the structure ``channel``."""
+def load(path: Path) -> list[Leaf]:
+    """What the file holds: see :data:`Leaf`; names and units of the structure ``channel`` are one leaf."""
     import scipy.io
 
     loaded = scipy.io.loadmat(path, chars_as_strings=True)
-    content: dict[str, Any] = {}
+    found: list[Leaf] = []
     for name, value in loaded.items():
-        if name.startswith("__") or not isinstance(value, np.ndarray):
+        if not name.startswith("__") and isinstance(value, np.ndarray):
+            _collect((name,), value, found)
+    return found
+
+
+def _collect(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> None:
+    """Add the leaves of a variable."""
+    if len(found) > MOST_LEAVES:
+        raise ValueError(f"it holds more than {MOST_LEAVES} arrays")
+    names = value.dtype.names or ()
+    if {"s0", "s1", "s2"} <= set(names):  # an object, as scipy shows it: name, system and class
+        name, _, kind = (value.reshape(-1)[0][key] for key in ("s0", "s1", "s2"))
+        found.append(((_decoded(name),), {"object": _decoded(kind)}))
+    elif {"name", "units"} <= set(names) and value.size == 1 and value.reshape(-1)[0]["name"].dtype == object:
+        found.append((path, {key: _texts(value.reshape(-1)[0][key]) for key in ("name", "units")}))
+    elif names:
+        _collect_fields(path, value, found)
+    elif value.dtype.kind == "U" and value.size == 1:
+        found.append((path, str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()))
+    elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
+        found.append((path, value.reshape(-1).astype(float, copy=False)))
+    elif value.dtype.kind in "fiub" and value.size > 1:
+        found.append((path, {"shape": list(value.shape)}))
+
+
+def _collect_fields(path: tuple[str, ...], value: np.ndarray, found: list[Leaf]) -> None:
+    """Add the leaves of a structure, or of an array of them, whose single numbers make a vector."""
+    elements = value.reshape(-1)
+    for name in value.dtype.names or ():
+        parts = [np.asarray(element[name]) for element in elements]
+        if len(parts) > 1 and all(part.size == 1 and part.dtype.kind in "fiub" for part in parts):
+            found.append(((*path, name), np.array([float(part.reshape(-1)[0]) for part in parts])))
             continue
-        if value.dtype.names and value.size == 1:
-            entry = value.reshape(-1)[0]
-            if {"name", "units"} <= set(value.dtype.names):
-                content[name] = {key: _texts(entry[key]) for key in ("name", "units")}
-            else:
-                content |= _known({key: entry[key] for key in value.dtype.names})
-        else:
-            content |= _known({name: value})
-    return content
+        for k, part in enumerate(parts, 1):
+            _collect((*path[:-1], f"{path[-1]}({k})" if len(parts) > 1 else path[-1], name), part, found)
 
 
-def _known(variables: dict[str, Any]) -> dict[str, Any]:
-    """The variables that are vectors or texts."""
-    content: dict[str, Any] = {}
-    for name, value in variables.items():
-        if value.dtype.kind == "U" and value.size == 1:
-            content[name] = str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()
-        elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
-            content[name] = value.reshape(-1).astype(float, copy=False)
-    return content
+def _decoded(value: Any) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
 
 def _texts(cells: Any) -> list[str]:
@@ -69,9 +90,12 @@ def unpacked(path: Path, most: int) -> int:
     """Number of bytes that scipy would load; counting stops once it exceeds ``most``."""
     import scipy.io
 
-    size = 0
-    for _, shape, _ in scipy.io.whosmat(path):
-        size += 8 * int(math.prod(shape))  # the file may store numbers shorter
+    size, nested = 0, set(NESTED)
+    try:
+        for _, shape, _ in scipy.io.whosmat(path):
+            size += 8 * int(math.prod(shape))  # the file may store numbers shorter
+    except TypeError:  # an object, such as a table, has no shape
+        nested = set(range(32))
     with path.open("rb") as file:
         head = file.read(128)
         if 0 in head[:4]:  # v4, which is neither packed nor nested
@@ -80,7 +104,7 @@ def unpacked(path: Path, most: int) -> int:
         while max(size, held) <= most and len(tag := file.read(8)) == 8:
             kind, length = struct.unpack(f"{order}II", tag)
             packed, inflate = file.read(length), zlib.decompressobj()
-            each = 8 if kind == PACKED and _first(packed, order) in NESTED else 1
+            each = 8 if kind == PACKED and _first(packed, order) in nested else 1
             while kind == PACKED and packed and held <= most:
                 held += each * len(inflate.decompress(packed, CHUNK))
                 packed = inflate.unconsumed_tail
@@ -94,7 +118,7 @@ def _first(packed: bytes, order: str) -> int:
 
 
 def main(source: str, out: str, most: str) -> None:
-    """Load the file and write its vectors as ``k.npy``, where k is the index of the name in ``texts.json``.
+    """Load the file and write its vectors as ``k.npy``, where k is the index of the leaf in ``texts.json``.
 
     If the file holds more than ``most`` bytes, only the number of bytes counted so far is written, to ``size.txt``.
     """
@@ -105,10 +129,10 @@ def main(source: str, out: str, most: str) -> None:
             (folder / SIZE).write_text(str(size), encoding="utf-8")
             return
         content = load(Path(source))
-        for k, value in enumerate(content.values()):
+        for k, (_, value) in enumerate(content):
             if isinstance(value, np.ndarray):
                 np.save(folder / f"{k}.npy", value, allow_pickle=False)
-        texts = {n: None if isinstance(v, np.ndarray) else v for n, v in content.items()}
+        texts = [[path, None if isinstance(value, np.ndarray) else value] for path, value in content]
         (folder / TEXTS).write_text(json.dumps(texts), encoding="utf-8")
     except Exception as error:  # scipy fails on a damaged file in countless ways
         reason = str(error) or type(error).__name__

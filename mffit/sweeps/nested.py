@@ -1,0 +1,107 @@
+"""Names of the vectors in MATLAB's structures, one within another."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.errors import InputError
+from mffit.sweeps.matlab_apart import Leaf
+from mffit.sweeps.raw_table import Cells
+from mffit.sweeps.wide import RUN
+
+UNIT = ("unit", "units", "Unit", "Units")
+"""Names of the text beside a vector that is its unit."""
+
+
+class Content(NamedTuple):
+    """The content of a MATLAB file."""
+
+    vectors: Mapping[str, np.ndarray]  #: by name, each (n,)
+    runs: Mapping[
+        str, Cells
+    ]  #: channels of several structures, one below the other, with the structure of each row; else empty
+    units: Mapping[str, str]  #: as the file states them
+    order: Sequence[str]  #: names of channels, in the order that the file states
+    about: Mapping[str, str]  #: texts
+    others: Mapping[str, Mapping[str, Any]]  #: objects and matrices
+
+
+def content_of(leaves: Iterable[Leaf]) -> Content:
+    """The content, by the last name of each leaf.
+
+    Where vectors share it, they are called by the structure that each is alone in, as in ``SA.values``; channels that several
+    structures have in common are runs; else a vector is called by all its names.
+    """
+    found = list(leaves)
+    vectors = {path: value for path, value in found if isinstance(value, np.ndarray)}
+    texts = {path: value for path, value in found if isinstance(value, str)}
+    others: dict[str, Mapping[str, Any]] = {
+        path[-1]: value for path, value in found if isinstance(value, dict)
+    }
+    channels = next((value for value in others.values() if "name" in value), {})
+    order = channels.get("name", [])
+    repeated = Counter(path[-1] for path in vectors)
+    inside = Counter(path[:-1] for path in vectors)
+    names, units = {}, dict(zip(order, channels.get("units", []), strict=False))
+    for path in vectors:
+        alone = len(path) > 1 and inside[path[:-1]] == 1
+        names[path] = path[-1] if repeated[path[-1]] == 1 else path[-2] if alone else ".".join(path)
+        beside = [texts[(*path[:-1], name)] for name in UNIT if (*path[:-1], name) in texts]
+        if beside and alone:
+            units[names[path]] = beside[0]
+    return Content(
+        vectors={name: vectors[path] for path, name in names.items()},
+        runs=_runs(vectors),
+        units=units,
+        order=order,
+        about={path[-1]: text for path, text in texts.items() if path[-1] not in UNIT},
+        others={name: value for name, value in others.items() if "name" not in value},
+    )
+
+
+def _runs(vectors: Mapping[tuple[str, ...], np.ndarray]) -> dict[str, Cells]:
+    """The channels of structures that have the same ones, of one length each; empty unless all vectors are of such."""
+    of_parent: dict[tuple[str, ...], dict[str, np.ndarray]] = {}
+    for path, values in vectors.items():
+        of_parent.setdefault(path[:-1], {})[path[-1]] = values
+    first, *others = of_parent.values() or [{}]
+    lengths = [{len(values) for values in run.values()} for run in of_parent.values()]
+    alike = all(run.keys() == first.keys() for run in others) and all(len(length) == 1 for length in lengths)
+    if not others or len(first) < 2 or not alike:
+        return {}
+    joined: dict[str, Cells] = {
+        name: np.concatenate([run[name] for run in of_parent.values()]) for name in first
+    }
+    counts = [n.pop() for n in lengths]
+    return joined | {
+        RUN: [".".join(path) for path, n in zip(of_parent, counts, strict=True) for _ in range(n)]
+    }
+
+
+def without_columns(others: Mapping[str, Mapping[str, Any]], path: Path) -> InputError:
+    """The error about a file without vectors, by what it holds instead."""
+    objects = {name: one["object"] for name, one in others.items() if "object" in one}
+    tables = [name for name, kind in objects.items() if "table" in kind]
+    matrices = {name: " x ".join(map(str, one["shape"])) for name, one in others.items() if "shape" in one}
+    sentence = "has no column of numbers; save every channel as a vector"
+    if tables or objects:
+        name = next(iter(tables or objects))
+        table = f"timetable2table({name})" if objects[name] == "timetable" else name
+        remedy = (
+            f'write writetable({table}, "{path.stem}.csv") there'
+            if tables
+            else "save every channel as a vector there"
+        )
+        sentence = f"holds {name}, an object of MATLAB ({objects[name]}) that nothing else reads: {remedy}"
+    elif matrices:
+        name, size = next(iter(matrices.items()))
+        sentence = (
+            f"holds {name}, a matrix of {size}, and no names of its columns: save every channel as a vector, such as "
+            f"SA = {name}(:, 1)"
+        )
+    return InputError(sentence, file=path)
