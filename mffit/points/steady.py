@@ -109,7 +109,7 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     """The stretches of a part at constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
     creeping = _creeps(settings, ~np.any(list(moving.values()), axis=0))
     resting = ~np.any([*moving.values(), *creeping.values()], axis=0)
-    rests = [Stretch(begin, end) for begin, end in runs(resting)]
+    rests = _with_their_ends(settings, runs(resting))
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in rests]
     staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # the rig rests most of the time
     # Between plateaus a movement is a sweep only if it covers most of its setting's range; else it leads to the next plateau.
@@ -126,6 +126,38 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
         covered[rest.begin : rest.end] = True
     for begin, end in runs(~covered):
         found += _swept(settings, moving, creeping, begin, end, span)
+    return found
+
+
+def _with_their_ends(settings: SteadySettings, rests: Sequence[tuple[int, int]]) -> list[Stretch]:
+    """Plateaus from rests, each to where a setting leaves its level.
+
+    A movement was found between times apart, which takes from the rests beside it, and all of a short one.
+    """
+    short = samples_in(settings.time, constants.AVERAGED_TIME)
+    compared = samples_in(settings.time, constants.COMPARED_APART)
+    taken = compared + compared // 2  # and half of a mean over it
+    values = {name: uniform_filter1d(getattr(settings, name), short, mode="nearest") for name in STEP}
+    n = len(settings.time)
+    clear = beyond(FALSE_ALARM / n) * np.sqrt(2.0 / short)
+    tolerance = {
+        name: clear * _noise(getattr(settings, name)) + n * np.spacing(np.max(np.abs(smooth), initial=0.0))
+        for name, smooth in values.items()
+    }
+    found: list[Stretch] = []
+    for k, (begin, end) in enumerate(rests):
+        lowest = max(found[-1].end if found else 0, begin - taken)
+        highest = min(rests[k + 1][0] if k + 1 < len(rests) else n, end + taken)
+        away = np.zeros(highest - lowest, dtype=bool)
+        for name, smooth in values.items():
+            away |= np.abs(smooth[lowest:highest] - np.median(smooth[begin:end])) > tolerance[name]
+        left, right = np.flatnonzero(away[: begin - lowest]), np.flatnonzero(away[end - lowest :])
+        found.append(
+            Stretch(
+                lowest + int(left[-1]) + 1 if len(left) else lowest,
+                end + int(right[0]) if len(right) else highest,
+            )
+        )
     return found
 
 

@@ -136,6 +136,19 @@ def test_a_ramp_with_stops_keeps_all_its_readings(read, stop):
     ]
 
 
+@pytest.mark.parametrize(
+    "angles", [np.arange(-8.0, 9.0, 1.0), np.r_[0.0, -2.0, 2.0, -4.0, 4.0, -8.0, 8.0, 0.0]]
+)
+def test_a_staircase_of_short_holds_gives_a_plateau_for_each(read, angles):
+    """Three seconds each: comparisons over half a second leave less than half of it at rest."""
+    alpha = np.repeat(angles, 150).astype(float)
+    alpha[1:] = np.where(alpha[1:] != alpha[:-1], 0.5 * (alpha[1:] + alpha[:-1]), alpha[1:])
+    found = read(recording(50.0, alpha_deg=alpha))
+    plateaus = [note for note in of_kind(found, PLATEAU) if not note.dropped]
+    assert [round(note.alpha_to_deg) for note in plateaus] == angles.tolist()
+    assert not of_kind(found, SWEEP)
+
+
 def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
     """Steps of 2 deg from -8 to 8 deg, and all the way back in 8 s."""
     angles = np.arange(-8.0, 9.0, 2.0)
