@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from small_rigs import disc, simulated
 
 import mffit
+from mffit import config as configuration
 from mffit.fit import ensemble
+from mffit.fit.beside import BesideNumbers, with_beside
+from mffit.numbers import Numbers
 
 
 @pytest.fixture(scope="module")
@@ -36,3 +40,40 @@ def test_draws_scatter_by_the_standard_errors(fitted):
 def test_the_same_seed_draws_the_same_tyres(fitted):
     assert ensemble(fitted, 1, seed=4) == ensemble(fitted, 1, seed=4)
     assert ensemble(fitted, 1, seed=4) != ensemble(fitted, 1, seed=5)
+
+
+def test_fitted_numbers_move_with_a_held_one_as_their_covariance_says(tmp_path):
+    """PECP1 is held at the direct measurement: builds in which it is another one end where the covariance puts them."""
+    simulated(disc(), tmp_path / "held")
+    simulated(disc(spin={"pecp1": "model"}), tmp_path / "set")
+    held = mffit.build(tmp_path / "held" / "tyre.toml", with_report=False).fit
+    ends = [
+        mffit.build(
+            configuration.load(
+                tmp_path / "set" / "tyre.toml", coefficients=[f"PECP1={held.tyre['PECP1'] + step!r}"]
+            ),
+            with_report=False,
+        ).fit
+        for step in (0.03, -0.03)
+    ]
+    names, covariance = held.posterior.names, held.posterior.covariance
+    i = names.index("PECP1")
+    for name in ("PKY6", "PKY7", "PKYP1", "PEY3", "gamma_0_deg", "camber_skew_deg"):
+        high, low = (end.rig[name][0] if name in end.rig else end.tyre[name] for end in ends)
+        k = names.index(name)
+        assert covariance[i, k] / covariance[i, i] == pytest.approx((high - low) / 0.06, rel=0.2), name
+
+
+def test_numbers_from_readings_of_their_own_keep_what_they_share():
+    """With the fit exactly known they have their own covariance; otherwise what they take from the fit is added."""
+    fit = Numbers.of(("PKY1", "PKY2"), (-20.0, 1.5), np.array([[4.0, 1.0], [1.0, 9.0]]))
+    own, slope = np.array([[2.0, -0.7], [-0.7, 1.0]]), np.array([[0.5, 0.0], [-1.0, 2.0]])
+    beside = BesideNumbers({"LATERAL_STIFFNESS": 1.0, "PCFY1": 0.1}, own, fit.names, slope)
+    joint = with_beside(fit, beside)
+    assert joint.names == (*fit.names, "LATERAL_STIFFNESS", "PCFY1")
+    known = joint.given(fit.names)
+    assert known.covariance == pytest.approx(own)
+    random = np.random.default_rng(3)
+    drawn = random.multivariate_normal((0.0, 0.0), fit.covariance, 200_000)
+    more = drawn @ slope.T + random.multivariate_normal((0.0, 0.0), own, 200_000)
+    assert joint.covariance == pytest.approx(np.cov(np.column_stack([drawn, more]).T), abs=0.4)
