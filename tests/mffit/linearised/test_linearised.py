@@ -103,3 +103,29 @@ def test_a_zero_is_found_where_the_tyre_is_of_the_formula():
     zero, u = zero_of_Fy(points.replace(Fy=points.Fy + 15.0), 0.0)
     assert u == pytest.approx(OFFSET / np.sqrt(RUNS), rel=0.4)
     assert zero == pytest.approx(15.0, abs=3.0 * u)
+
+
+def test_a_miss_that_changes_from_setting_to_setting_has_no_shorter_length_than_their_distance():
+    """Loads 800 to 2200 N in three steps, alternately 60 N too high and too low; sideslip is swept over 0.24 rad."""
+    points = drawn(missed=0.0)
+    signs = np.where(np.isin(points.Fz, (800.0, 1600.0)), 1.0, -1.0)
+    found = left(points.replace(Fy=points.Fy + MISSED * signs))
+    lengths = dict(zip((one.name for one in found.smooth.inputs), found.components.lengths, strict=True))
+    assert lengths["Fz"] == pytest.approx(1400.0 / 3.0, rel=1e-6)
+    assert lengths["alpha"] > 0.24 / 12.0
+
+
+@pytest.mark.parametrize("at_largest", [1.0, 0.0, -1.0])
+def test_a_run_at_a_load_of_its_own_may_miss_otherwise_than_the_others(at_largest):
+    """Three smaller loads miss alike; they cannot tell what is missed at another one, which may be the reverse."""
+    points = drawn(missed=0.0)
+    largest = points.Fz > 2000.0
+    shape = MISSED * np.sqrt(2.0) * np.sin(40.0 * points.alpha) * np.where(largest, at_largest, 1.0)
+    one = points.sweep == points.sweep[largest][0]
+    points = points.replace(Fy=points.Fy + shape).select(np.flatnonzero(~largest | one))
+    rows = np.flatnonzero(points.Fz > 2000.0)
+    sigma = {"Fy": np.full(len(points), NOISE)}
+    channel = linearised(points, simulation(), sigma, NUMBERS, without=rows).channels["Fy"]
+    found = channel.by_others(np.flatnonzero(np.isin(channel.rows, rows)))
+    assert found.error @ np.linalg.solve(found.covariance, found.error) / EACH < 2.5
+    assert np.sqrt(np.mean(np.diag(found.covariance))) > MISSED
