@@ -2,10 +2,10 @@
 
 `python tests/studies/mutation_study.py 150 --seed 1` draws 150 changes, runs the tests of the changed room on each in a copy
 of the tree, and prints the survivors and their share. `--rooms mffit/planning mffit/results --each` draws that many from each
-of these rooms; `--modules fit/drift` keeps to modules whose path contains it; `--out` keeps the survivors of an interrupted run.
-Needs cosmic-ray, which makes the changes: swapped operators and comparisons, numbers one larger or smaller, dropped signs and
-``not``, swapped ``and``/``or``, True/False, loops that never run. Left out because they make no difference: ``<`` for ``<=`` of
-measured numbers, and ``strict`` of ``zip``.
+of these rooms; `--modules fit/drift` keeps to modules whose path contains it, `--quick` to the tests of their room; `--out` keeps
+the survivors of an interrupted run. Needs cosmic-ray, which makes the changes: swapped operators and comparisons, numbers one
+larger or smaller, dropped signs and ``not``, swapped ``and``/``or``, True/False, loops that never run. Left out because they make
+no difference: ``<`` for ``<=`` of measured numbers, and ``strict`` of ``zip``.
 """
 
 from __future__ import annotations
@@ -88,8 +88,11 @@ def modules(room: str) -> list[Path]:
     return sorted(module for module in found if module.name != "constants.py")
 
 
-def tests_of(room: str) -> list[str]:
-    """The files of tests that should detect a change: those of the room, those that name it, and those of whole commands."""
+def tests_of(room: str, quick: bool) -> list[str]:
+    """The files of tests that should detect a change: those of the room, those that name it, and those of whole commands.
+
+    ``quick``: those of the room only.
+    """
     package, _, name = room.partition("/")
     files = sorted(path.relative_to(ROOT) for path in (ROOT / "tests").rglob("test_*.py"))
     own = [f for f in files if f.parts[1:-1] == tuple(part for part in (package, name) if part)]
@@ -97,7 +100,8 @@ def tests_of(room: str) -> list[str]:
     named = [
         f for f in files if name and any(word in (ROOT / f).read_text(encoding="utf-8") for word in words)
     ]
-    return list(dict.fromkeys([*map(str, [*own, *named]), *(GENERAL if package == "mffit" else ())]))
+    beyond = [*map(str, named), *(GENERAL if package == "mffit" else ())]
+    return list(dict.fromkeys([*map(str, own), *(() if quick and own else beyond)]))
 
 
 def places(room: str, part: str) -> Iterator[tuple[str, Path, str, int]]:
@@ -165,7 +169,7 @@ def copy_of_the_tree(at: Path) -> Path:
     return at
 
 
-def judged(tree: Path, one: Mutant, limit: float) -> Outcome:
+def judged(tree: Path, one: Mutant, limit: float, tests: list[str]) -> Outcome:
     """The verdict of the tests of a room in a copy of the tree."""
     if one.module:
         _write(tree / one.module, one.code)
@@ -173,7 +177,7 @@ def judged(tree: Path, one: Mutant, limit: float) -> Outcome:
     environment = os.environ | {"PYTHONPATH": str(tree)}
     try:
         done = subprocess.run(
-            [*command, "-p", "no:cacheprovider", *tests_of(one.room)],
+            [*command, "-p", "no:cacheprovider", *tests],
             cwd=tree, env=environment, capture_output=True, text=True, timeout=limit, check=False,
         )  # fmt: skip
         failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
@@ -193,7 +197,9 @@ def _write(module: Path, code: str) -> None:
 
 def main() -> None:
     among = rooms()
-    ask = harness.arguments(__doc__, 150, seed=1, rooms=among, each=False, modules="", out=Path, workers=2)
+    ask = harness.arguments(
+        __doc__, 150, seed=1, rooms=among, each=False, modules="", quick=False, out=Path, workers=2
+    )
     given = ask.parse_args()
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     try:
@@ -211,7 +217,7 @@ def main() -> None:
         def run(one: Mutant, limit: float) -> Outcome:
             tree = trees.get()
             try:
-                return judged(tree, one, limit)
+                return judged(tree, one, limit, tests_of(one.room, given.quick))
             finally:
                 trees.put(tree)
 
