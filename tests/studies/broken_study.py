@@ -11,14 +11,13 @@ import tempfile
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import harness
 import numpy as np
 import pandas as pd
-import tomli_w
+from disc_project import Project
 
 from mffit import virtual_rig
 
@@ -27,26 +26,14 @@ SOUND = "no mistake"
 FIRST_SOUND = 10_000
 
 
-@dataclass
-class Campaign:
+class Campaign(Project):
     """A simulated campaign whose files can be changed before it is built."""
-
-    folder: Path
-    config: dict[str, Any]
-    tables: dict[str, pd.DataFrame]
 
     def drawn(self, rng: np.random.Generator, *swept: str) -> str:
         """One of the files, or of those that sweep one of some angles; "" if there is none."""
         names = [n for column in swept for n, table in self.tables.items() if table[column].nunique() > 5]
         names = names if swept else list(self.tables)
         return str(rng.choice(names)) if names else ""
-
-    def write(self) -> Path:
-        for name, table in self.tables.items():
-            table.to_csv(self.folder / name, index=False)
-        path = self.folder / "tyre.toml"
-        path.write_text(tomli_w.dumps(self.config), encoding="utf-8")
-        return path
 
 
 Spoil = Callable[[Campaign, np.random.Generator], list[str]]
@@ -82,13 +69,7 @@ def reading(column: str, value: float) -> Spoil:
 
 def everywhere(column: str, factor: float) -> Spoil:
     """A mistake that multiplies a column of every file."""
-
-    def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-        for table in campaign.tables.values():
-            table[column] *= factor
-        return list(campaign.tables)
-
-    return spoil
+    return lambda campaign, rng: campaign.each(**{column: factor}) or list(campaign.tables)
 
 
 def swapped(table: pd.DataFrame, rng: np.random.Generator) -> None:

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 import harness
 import numpy as np
 import pandas as pd
-import tomli_w
 from brush import SHORT, SLIP, Brush
+from disc_project import Project
 from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, Draw, scaled
 from harness import shares
 
@@ -106,9 +106,7 @@ def drawn(world: str, rng: np.random.Generator) -> tuple[Any, float]:
     ), load  # fmt: skip
 
 
-def programme(
-    load: float, disc: bool, loads: tuple[float, ...]
-) -> dict[str, tuple[np.ndarray, np.ndarray, float, float]]:
+def programme(load: float, disc: bool, loads: tuple[float, ...]) -> dict[str, tuple[Any, ...]]:
     """Sideslip [deg], camber [deg], load [N] and direction of every sweep."""
     lean = np.array([0, 5, 10, 15, 20, 30, 40, 50] if disc else [0, 2, 4, 6, 8, 10], dtype=float)
     lean, rows = np.concatenate([-lean[:0:-1], lean]), {}
@@ -117,9 +115,8 @@ def programme(
         rows[f"camber_{Fz:.0f}"] = (0.0, lean, Fz, 1.0)
         for way, sign in (("forward", 1.0), ("backward", -1.0)):
             rows[f"align_{Fz:.0f}_{way}"] = (np.linspace(-1.0, 1.0, 5), 0.0, Fz, sign)
-    for gamma, Fz in zip(
-        (10, 20, 35, 20) if disc else (2, 4, 7, 4), (load, load, load, 1.5 * load), strict=True
-    ):
+    leans = (10, 20, 35, 20) if disc else (2, 4, 7, 4)
+    for gamma, Fz in zip(leans, (load, load, load, 1.5 * load), strict=True):
         both = np.concatenate([np.full(len(SHORT), side * gamma) for side in (1.0, -1.0)])
         rows[f"coupled_{Fz:.0f}_{gamma}"] = (np.tile(np.array(SHORT, dtype=float), 2), both, Fz, 1.0)
     return {n: (*np.broadcast_arrays(a, g), Fz, way) for n, (a, g, Fz, way) in rows.items()}
@@ -157,7 +154,7 @@ def project(tyre, load: float, rig: dict[str, float], disc: bool, names) -> dict
     out = {
         "tyre": {"name": "foreign", "nominal_pressure": 250.0, "nominal_speed": 10, **base},
         "rig": {"type": "flat-track", "axes": "iso", "u_camber_skew_deg": 0.0, **declared},
-        "sweep": [{"file": f"{name}.csv"} for name in names],
+        "sweep": [{"file": name} for name in names],
     }
     if disc:
         path = {"path_centre": "left", "path_radius": RADIUS, "u_path_radius": 0.0018, "backlash_deg": 0.0}
@@ -191,18 +188,14 @@ def one(job: harness.Job) -> Foreign:
     tables = {name: read(tyre, rows, rig, disc, rng) for name, rows in programme(load, disc, loads).items()}
     spoilt = SPOILT[fault](tables, load) if fault in SPOILT else ""
     with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        for name, table in tables.items():
-            table.to_csv(folder / f"{name}.csv", index=False)
-        content = tomli_w.dumps(project(tyre, load, rig, disc, tables))
-        (folder / "tyre.toml").write_text(content, encoding="utf-8")
-        result = harness.built(folder / "tyre.toml", out=folder / "out")
+        folder, files = Path(made), {f"{name}.csv": table for name, table in tables.items()}
+        path = Project(folder, project(tyre, load, rig, disc, files), files).write()
+        result = harness.built(path, out=folder / "out")
         if isinstance(result, str):
             return Foreign(refused=result, found=spoilt in result)
         said = [*result.trust.reasons, *(d.sentence for d in result.fit.doubts), *result.warnings]
-        out = Foreign(
-            trusted=result.trusted, reasons=list(result.trust.reasons), doubted=len(result.fit.doubts)
-        )
+        out = Foreign(trusted=result.trusted, reasons=list(result.trust.reasons))
+        out.doubted = len(result.fit.doubts)
         out.found = bool(spoilt) and any(spoilt in text for text in said)
         for key in PLANTED.get(fault, {}):
             value, u = result.fit.rig.get(NAMES[key], (0.0, 1.0))

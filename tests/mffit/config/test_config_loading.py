@@ -471,7 +471,7 @@ def test_a_rig_toml_is_recognised():
 
 
 def test_a_table_named_by_a_number_is_refused_with_its_line(tmp_path):
-    """Elsewhere in a key, a number counts the entries of a list. Found by tests/studies/fuzz_readers.py."""
+    """Elsewhere in a key, a number counts the entries of a list."""
     (tmp_path / "tyre.toml").write_text(f"{MINIMAL}\n[9]\n")
     with pytest.raises(InputError, match="is unknown; known here are tyre, rig") as caught:
         config.load(tmp_path / "tyre.toml")

@@ -57,7 +57,7 @@ def test_any_bytes(name):
 
 
 def test_a_header_outside_a_section_does_not_stop_the_reader():
-    """Found by tests/studies/fuzz_readers.py."""
+    """A byte in front of the first section."""
     outcome("a.tdx", b"x**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1\n")
 
 
