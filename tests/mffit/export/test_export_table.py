@@ -79,6 +79,7 @@ def test_a_csv_table_interpolated_by_pandas_and_scipy_is_the_tyre(tmp_path, caps
         assert 0.0 < off <= error * 1.02 <= 0.005
         assert f"misses {100 * error:.2f} % of the largest {heading}" in text
         assert "turn slip off" in text
+        assert f"{float(tyre['INFLPRES']) / 1000:g} kPa;" in text
 
 
 def test_a_mat_file_is_the_tyre_in_octave(tmp_path, capsys):

@@ -311,3 +311,10 @@ def test_a_load_that_wanders_by_half_drops_its_sweep(swing, dropped):
     assert bool(found.dropped) == dropped
     if dropped:
         assert found.dropped == "the load wanders from 1115 to 1885 N"
+
+
+def test_a_series_of_faulty_samples_only_is_one_dropped_stretch_of_all_of_them():
+    sweep = swept(500)
+    always = Fault(np.full(500, True), "the wheel slips", ends_stretch=True)
+    (found,) = chosen(sweep, [always], None)
+    assert (found.begin, found.end, found.dropped) == (0, 500, "the wheel slips")
