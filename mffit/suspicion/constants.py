@@ -116,7 +116,7 @@ LARGEST_FALL_LEFT = Real(
     "-",
     "Fall of the sum of squares that a step still promises beyond which a search is stuck: the step moves numbers by three "
     "standard uncertainties. Edges of the model, as play has, leave up to 2.2 at a minimum; a stuck search left 800.",
-    "tests/studies/solver_study.py",
+    "151 searches against scipy, docs/recovery.md",
 )
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
 MISFIT_OF_ANOTHER_UNIT = Real(

@@ -13,7 +13,6 @@ from __future__ import annotations
 import ast
 import difflib
 import os
-import queue
 import random
 import shutil
 import subprocess
@@ -21,7 +20,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import count, islice
 from pathlib import Path
@@ -209,28 +207,18 @@ def main() -> None:
     groups = [[room] for room in given.rooms] if given.each else [given.rooms]
     sample = [m for group in groups for m in drawn(given.draws, given.seed, group, given.modules)]
     found: list[Outcome] = []
-    with tempfile.TemporaryDirectory() as scratch, ThreadPoolExecutor(given.workers) as pool:
-        trees: queue.Queue[Path] = queue.Queue()
-        for k in range(given.workers):
-            trees.put(copy_of_the_tree(Path(scratch) / str(k)))
-
-        def run(one: Mutant, limit: float) -> Outcome:
-            tree = trees.get()
-            try:
-                return judged(tree, one, limit, tests_of(one.room, given.quick))
-            finally:
-                trees.put(tree)
-
-        limits = {}
-        for room in dict.fromkeys(m.room for m in sample):
-            outcome = run(Mutant(room), LONGEST_BASELINE)
+    with tempfile.TemporaryDirectory() as scratch:
+        tree, limits = copy_of_the_tree(Path(scratch)), {}
+        for one in [*map(Mutant, dict.fromkeys(m.room for m in sample)), *sample]:
+            limit = limits.get(one.room, LONGEST_BASELINE)
+            outcome = judged(tree, one, limit, tests_of(one.room, given.quick))
             print(outcome.line(), flush=True)
-            if outcome.killed_by:
-                sys.exit(f"the tests of {room} fail without any change: {outcome.killed_by}")
-            limits[room] = 120.0 + 5.0 * outcome.seconds
-        for outcome in pool.map(lambda one: run(one, limits[one.room]), sample):
+            if not one.module and outcome.killed_by:
+                sys.exit(f"the tests of {one.room} fail without any change: {outcome.killed_by}")
+            if not one.module:
+                limits[one.room] = 120.0 + 5.0 * outcome.seconds
+                continue
             found.append(outcome)
-            print(outcome.line(), flush=True)
             if given.out and not outcome.killed_by:
                 with given.out.open("a", encoding="utf-8") as kept:
                     kept.write(outcome.line() + "\n")
