@@ -137,7 +137,9 @@ def _with_their_ends(settings: SteadySettings, rests: Sequence[tuple[int, int]])
     short = samples_in(settings.time, constants.AVERAGED_TIME)
     compared = samples_in(settings.time, constants.COMPARED_APART)
     taken = compared + compared // 2  # and half of a mean over it
-    values = {name: uniform_filter1d(getattr(settings, name), short, mode="nearest") for name in STEP}
+    values = {
+        name: scipy.ndimage.uniform_filter1d(getattr(settings, name), short, mode="nearest") for name in STEP
+    }
     n = len(settings.time)
     clear = beyond(FALSE_ALARM / n) * np.sqrt(2.0 / short)
     tolerance = {

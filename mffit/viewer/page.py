@@ -16,6 +16,7 @@ from mffit.as_json import Json
 from mffit.errors import InputError
 from mffit.quantities import MODEL, QuantityName
 from mffit.templates import environment
+from mffit.viewer.bundle import script
 from mffit.viewer.controls import OUTPUTS, PANELS, in_si, settings
 from mffit.viewer.named import Given, described, named
 from tir.codegen.javascript import javascript
@@ -93,22 +94,42 @@ def show(
         "quantities": {name: on_page(MODEL[name]) for name in (*INPUTS, *OUTPUTS)},
         "tyres": [described(name, tyre, names) for name, tyre in found.items()],
     }
-    filled = (
-        environment("mffit.viewer")
-        .get_template("show.html.j2")
-        .render(
-            data=data,
-            names=list(found),
-            panels=PANELS,
-            quantities=MODEL,
-            models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
-            version=mffit.__version__,
-        )
+    filled = rendered(
+        "show",
+        data,
+        {mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
+        title=", ".join(found),
+        names=list(found),
+        panels=PANELS,
+        quantities=MODEL,
     )
     page = Page(filled, tuple(found))
     if out is not None:
         page.write(out)
     return page
+
+
+def rendered(
+    page: str, content: object, models: Mapping[str, str], *, title: str, module: str = "", **given: object
+) -> str:
+    """The template ``page`` with the script ``module`` (default: of that name), its content and code of models."""
+    template = environment("mffit.viewer").get_template(f"{page}.html.j2")
+    code = script(module or page)
+    return template.render(
+        {"window": None, **given},
+        content=content,
+        models=models,
+        title=title,
+        script=code,
+        version=mffit.__version__,
+    )
+
+
+def recordings_html(folder: str, to: str, here: Mapping[str, object]) -> str:
+    """The page of a window with the recordings of a folder, for a new project or, if ``to`` names one, to add to it."""
+    return rendered(
+        "recordings", None, {}, title=f"{folder}: recordings", name=folder, to=to, here=here, window=True
+    )
 
 
 def on_page(quantity: QuantityName) -> dict[str, Json]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import mffit
 from mffit.as_json import Json, document
 from mffit.fit import name_at_temperature
 from mffit.fit.agreement import with_points
@@ -12,8 +11,7 @@ from mffit.fit.influences.modelled import without_runs
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.rig import SIMULATED
-from mffit.templates import environment
-from mffit.viewer.page import Page, on_page
+from mffit.viewer.page import Page, on_page, rendered
 from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import axis_quantities, columns, delivered, differing
 from tir.codegen.javascript import javascript
@@ -116,18 +114,15 @@ def project_html(
     ``window`` is the state of the local window, see :mod:`mffit.window`, ``here`` folder and endings of recordings that it
     takes; None for a page without a server.
     """
-    return (
-        environment("mffit.viewer")
-        .get_template("project.html.j2")
-        .render(
-            content={"project": data, "window": window},
-            name=name,
-            models={name: javascript((name,), turn_slip=turn_slip, star=star) for name in _computed(data)},
-            turn_slip=turn_slip,
-            window=window,
-            here=here,
-            version=mffit.__version__,
-        )
+    return rendered(
+        "project",
+        {"project": data, "window": window},
+        {one: javascript((one,), turn_slip=turn_slip, star=star) for one in _computed(data)},
+        title=name,
+        module="page" if window is None else "window",
+        turn_slip=turn_slip,
+        window=window,
+        here=here,
     )
 
 

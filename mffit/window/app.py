@@ -19,8 +19,8 @@ from starlette.routing import Route
 from mffit.as_json import plain
 from mffit.errors import InputError
 from mffit.sweeps.formats import ENDINGS
-from mffit.templates import environment
 from mffit.viewer import project_html
+from mffit.viewer.page import recordings_html
 from mffit.window import constants
 from mffit.window.guard import App, Entrance, Guard
 from mffit.window.reading import ReadingProcess
@@ -224,8 +224,7 @@ def _page(opened: Opened) -> str:
 def _recordings_page(opened: Opened) -> str:
     """The recordings of a folder, or those to add to a project."""
     folder, to = opened.folder.folder, opened.session.file.path.name if opened.has_project else ""
-    template = environment("mffit.viewer").get_template("recordings.html.j2")
-    return template.render(name=folder.name, to=to, here=_here(folder))
+    return recordings_html(folder.name, to, _here(folder))
 
 
 def _here(folder: Path) -> dict[str, Any]:

@@ -24,21 +24,29 @@ import tir
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.points import concatenate
 from mffit.rig import Simulation
-from mffit.templates import environment
 from mffit.viewer import project_data, project_html, show
+from mffit.viewer.bundle import EXPORT, IMPORT, module, script
 from mffit.viewer.packing import packed
+from mffit.viewer.page import recordings_html
 from mffit.viewer.project_points import delivered, differing
 from mffit.virtual_rig.machine import loaded_radius
 from tir.codegen.javascript import javascript
 
 SIX_DIGITS = 1e-4
 """Agreement [-] of misfits: points have six digits in a page, and a misfit is a hundredth of a force."""
-RULES = {
+RULES: dict[str, Any] = {
     "env": {"browser": True, "es2024": True},
+    "plugins": ["import"],
     "categories": {"correctness": "error"},
-    "rules": {"no-undef": "error", "no-unused-vars": "error", "eqeqeq": "error", "oxc/erasing-op": "off"},
+    "rules": {
+        **dict.fromkeys(("no-undef", "no-unused-vars", "no-redeclare", "eqeqeq", "import/named"), "error"),
+        "oxc/erasing-op": "off",
+    },
 }
 """``0.0 * PEY5`` is what the generated code of the equations has where an input is zero."""
+
+
+MODULES = [path for path in files("mffit.viewer").joinpath("scripts").iterdir() if path.name.endswith(".js")]
 
 
 class Engine:
@@ -46,11 +54,9 @@ class Engine:
 
     def __init__(self, data: dict[str, Any]) -> None:
         self.context = pytest.importorskip("quickjs").Context()
-        folder = files("mffit.viewer").joinpath("templates")
         html = project_html("small", data, turn_slip=data["turn_slip"], star=data["star"])
-        models = html[html.index("const MODELS") : html.index("const content =")]
-        parts = [models, *(folder.joinpath(name).read_text() for name in ("shared.js", "project_model.js"))]
-        self.context.eval("\n".join(parts))
+        models = html[html.index("const MODELS") : html.index("(() => {")]
+        self.context.eval(models + script("model"))
         content = list(zlib.decompress(base64.b64decode(data["points"]["bytes"])))
         self(f"take({json.dumps(data)}, Uint8Array.from({content}))")
         self("filter()")
@@ -317,20 +323,44 @@ def test_a_picture_is_saved_as_its_numbers(engine, result):
     assert order == sorted(order)
 
 
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.name)
+def test_a_module_imports_what_it_uses_and_each_line_can_be_read(path):
+    """Names of other modules, each exported there; the joined script has one scope, in which a name means one thing."""
+    text = path.read_text(encoding="utf-8")
+    assert all(len(line) < 120 for line in text.splitlines())
+    for names, source in re.findall(r'^import \{([^}]*)\} from "\./(\w+)\.js";', text, re.MULTILINE):
+        exported = re.findall(r"^export (?:async )?(?:function|const|let) (.*)", module(source), re.MULTILINE)
+        known = set(re.findall(r"\w+", " ".join(exported)))
+        assert {name.strip() for name in names.split(",") if name.strip()} <= known
+    rest = EXPORT.sub("", IMPORT.sub("", text))
+    assert not re.search(r"^(import|export)\b", rest, re.MULTILINE)
+
+
 def test_a_linter_finds_nothing(tmp_path):
     lint = shutil.which("oxlint", path=str(Path(sys.executable).parent)) or shutil.which("oxlint")
     if lint is None:
         pytest.skip("no oxlint on this machine")
     here = {"folder": "x", "endings": []}
-    recordings = environment("mffit.viewer").get_template("recordings.html.j2")
     pages = {
         "project": project_html("x", None, turn_slip=False, star=False, window={"fits": 0}, here=here),
         "show": show(SAMPLE / "true.tir").html,
-        "recordings": recordings.render(name="x", to="", here=here),
+        "recordings": recordings_html("x", "", here),
     }
-    for name, html in pages.items():
-        scripts = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
-        (tmp_path / f"{name}.js").write_text("\n".join(scripts), encoding="utf-8")
-    (tmp_path / "rules.json").write_text(json.dumps(RULES), encoding="utf-8")
-    found = subprocess.run([lint, "-c", "rules.json", "."], cwd=tmp_path, capture_output=True, text=True)
-    assert found.returncode == 0, found.stdout
+    texts = {
+        name: "\n".join(re.findall(r"<script>(.*?)</script>", html, re.DOTALL))
+        for name, html in pages.items()
+    }
+    whole = RULES | {"rules": RULES["rules"] | {"no-unused-vars": "off"}}  # a page may use a part of a module
+    parts = RULES | {"globals": {"MODELS": "readonly"}}
+    of_modules = {path.name: path.read_text(encoding="utf-8") for path in MODULES}
+    for folder, rules, scripts in (
+        ("pages", whole, {f"{name}.js": text for name, text in texts.items()}),
+        ("modules", parts, of_modules),
+    ):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "rules.json").write_text(json.dumps(rules), encoding="utf-8")
+        for name, text in scripts.items():
+            (tmp_path / folder / name).write_text(text, encoding="utf-8")
+        command, where = [lint, "-c", "rules.json", "."], tmp_path / folder
+        found = subprocess.run(command, cwd=where, capture_output=True, text=True)
+        assert found.returncode == 0, found.stdout

@@ -23,16 +23,20 @@ HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.h
 """A name as no file should have it; the file itself gets one too."""
 LONG = "a_very_long_name_of_a_tyre_without_any_space_in_it_that_does_not_fit_into_a_narrow_page"
 TEXTS = """
-return [...document.querySelectorAll("svg text, figcaption, .x, label, th, td, summary, legend")]
+const drawn = [...document.querySelectorAll("figure")].flatMap(figure => {
+  const at = figure.querySelector("canvas").getBoundingClientRect();
+  return mffit.texts(figure.id).map(([a, b, c, d, text]) => [a + at.left, b + at.top, c + at.left, d + at.top, text]);
+});
+return drawn.concat([...document.querySelectorAll("figcaption, .x, label, th, td, summary, legend")]
   .filter(e => e.getClientRects().length && !e.closest("aside"))
-  .map(e => { const r = e.getBoundingClientRect(); return [r.left, r.top + 2, r.right, r.bottom - 2, e.textContent]; });
+  .map(e => { const r = e.getBoundingClientRect(); return [r.left, r.top + 2, r.right, r.bottom - 2, e.textContent]; }));
 """
 
 
 MARGINS = """
-return [...document.querySelectorAll(".plot svg text")].map(e => {
-  const r = e.getBoundingClientRect(), s = e.closest("svg").getBoundingClientRect();
-  return [r.left - s.left, s.right - r.right, s.bottom - r.bottom + 2, r.top - s.top + 2];  // a line is higher than digits
+return [...document.querySelectorAll("figure")].flatMap(figure => {
+  const {clientWidth, clientHeight} = figure.querySelector("canvas");
+  return mffit.texts(figure.id).map(([a, b, c, d]) => [a, clientWidth - c, clientHeight - d, b]);
 });
 """
 
@@ -65,11 +69,8 @@ def drawn(browser) -> None:
     )
 
 
-def lines(browser, panel: str) -> list[str]:
-    return browser.execute_script(
-        "return [...document.querySelectorAll('#' + arguments[0] + ' svg path.curve')].map(e => e.getAttribute('d'));",
-        panel,
-    )
+def lines(browser, panel: str) -> list[object]:
+    return browser.execute_script("return mffit.lines(arguments[0])", panel)
 
 
 def test_the_browser_reports_no_errors(browser):
@@ -136,6 +137,23 @@ def test_a_curve_is_that_of_the_condition_shown(browser):
     drawn(browser)
 
 
+def test_a_picture_is_drawn_where_its_curves_are(browser):
+    move(browser, alpha=0, gamma=0)
+    on, share = browser.execute_script(
+        """
+        const canvas = document.querySelector("#Fy-alpha canvas"), pen = canvas.getContext("2d");
+        const {data} = pen.getImageData(0, 0, canvas.width, canvas.height), at = mffit.place("Fy-alpha");
+        const dark = k => data[4 * k + 3] > 200 && Math.min(data[4 * k], data[4 * k + 1], data[4 * k + 2]) < 128;
+        const pixel = p => Math.round(at.Y(p.y) * at.ratio) * canvas.width + Math.round(at.X(p.x) * at.ratio);
+        const curve = mffit.curve("Fy-alpha", 0).slice(5, -5), every = [...Array(canvas.width * canvas.height).keys()];
+        const share = (list, of) => list.filter(of).length / list.length;
+        return [share(curve.map(pixel), dark), share(every, dark)];
+        """
+    )
+    assert on > 0.85  # the rings of marks lie over it
+    assert share < 0.1
+
+
 def test_turn_slip_can_be_switched(browser):
     """Files of USE_MODE ending in 5 start with it; the force at a curvature goes with the switch, and comes back."""
     flat = lambda: browser.execute_script(  # noqa: E731
@@ -180,7 +198,7 @@ def test_nothing_overflows_and_no_labels_overlap(browser, width):
     assert browser.execute_script("return document.documentElement.scrollWidth") <= width
     boxes = browser.execute_script(TEXTS)
     plots = browser.execute_script(
-        "return [...document.querySelectorAll('.plot svg')].map(e => e.getBoundingClientRect()).map(r => [r.left, r.right]);"
+        "return [...document.querySelectorAll('.plot canvas')].map(e => e.getBoundingClientRect()).map(r => [r.left, r.right]);"
     )
     assert len(plots) == len(PANELS)
     assert all(left >= 0 and right <= width for left, right in plots)
@@ -212,9 +230,7 @@ def test_the_last_tick_of_an_axis_is_not_cut_off(browser, tmp_path):
     mffit.show({"front": tir.read(FILES[0]).replace(FZMAX=3000.0)}, tmp_path / "front.html")
     browser.get((tmp_path / "front.html").as_uri())
     drawn(browser)
-    texts = browser.execute_script(
-        "return [...document.querySelectorAll('#K_ya-Fz text')].map(e => e.textContent)"
-    )
+    texts = browser.execute_script("return mffit.texts('K_ya-Fz').map(text => text[4])")
     assert texts[-1] == "3000"
     assert np.min(browser.execute_script(MARGINS)) >= 0.0
     assert console_errors(browser) == []

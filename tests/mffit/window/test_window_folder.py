@@ -124,7 +124,7 @@ def test_the_window_and_the_command_make_the_same_project(tmp_path, kind):
 
 
 def test_the_form_has_every_field_that_a_project_is_made_of():
-    script = files("mffit.viewer").joinpath("templates", "recordings.js").read_text(encoding="utf-8")
+    script = files("mffit.viewer").joinpath("scripts", "recordings.js").read_text(encoding="utf-8")
     path = {"disc": ("path_radius", "path_centre"), "belt": ("type",)}
     names = [name for field in Stated._fields for name in path.get(field, (field,))]
     assert [name for name in names if f'"{name}"' not in script] == []

@@ -1,16 +1,23 @@
 // The list of coefficients: fields and sliders that act at once, and buttons that write tyre.toml.
-const cells = {};
-function listCoefficients() {
-  const home = byId("coefficients"), open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key));
+import {byId, details, element, key, tell} from "./dom.js";
+import {coefficient, hooks, project, rows, trial} from "./model.js";
+import {trimmed, written} from "./text.js";
+
+export const cells = {};
+export function listCoefficients() {
+  const home = byId("coefficients"),
+    open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key));
   const first = !home.children.length;
   home.replaceChildren();
   for (const name in cells) delete cells[name];
   for (const group of new Set(rows.map(row => row.group))) {
-    const members = rows.filter(row => row.group === group), found = members.filter(row => row.found), rest = members.filter(row => !row.found);
+    const members = rows.filter(row => row.group === group), found = members.filter(row => row.found),
+      rest = members.filter(row => !row.found);
     const box = details(home, group, `${group}`, first ? found.length > 0 : open.has(group));
     for (const row of found) box.append(coefficientRow(row));
     if (rest.length) {
-      const key = `${group}-rest`, inner = details(box, key, `${rest.length} that the points do not determine`, open.has(key));
+      const key = `${group}-rest`,
+        inner = details(box, key, `${rest.length} that the points do not determine`, open.has(key));
       const fill = () => { if (inner.open && inner.children.length === 1) inner.append(...rest.map(coefficientRow)); };
       inner.addEventListener("toggle", fill);
       fill();
@@ -18,65 +25,41 @@ function listCoefficients() {
   }
   find();
 }
-function details(home, key, title, open) {
-  const box = home.appendChild(document.createElement("details"));
-  box.className = "group";
-  box.dataset.key = key;
-  box.open = open;
-  box.appendChild(document.createElement("summary")).textContent = title;
-  return box;
-}
-function element(tag, className, text = "") {
-  const made = document.createElement(tag);
-  made.className = className;
-  made.textContent = text;
-  return made;
-}
-// A text that stays is not set again, which would lay out the page.
-function tell(node, text) {
-  if (node.textContent !== text) node.textContent = text;
-}
-function key(text, title, action) {
-  const made = element("button", "small", text);
-  made.type = "button";
-  made.title = title;
-  made.addEventListener("click", action);
-  return made;
-}
 function coefficientRow(row) {
   const box = element("div", "coefficient"), line = element("div", "line"), keys = element("span", "keys");
   box.dataset.name = row.name;
   const field = Object.assign(element("input", "number"), {type: "number", step: "any"});
-  const slider = Object.assign(element("input", "slider"), {type: "range", min: row.slider[0], max: row.slider[1], step: "any"});
+  const slider = Object.assign(element("input", "slider"),
+    {type: "range", min: row.slider[0], max: row.slider[1], step: "any"});
   field.setAttribute("aria-label", row.name);
   slider.setAttribute("aria-label", `${row.name}, slider`);
   const u = element("span", "u", row.stderr ? `± ${row.stderr.toPrecision(2)}` : ""), tag = element("span", "tag");
-  const reset = key("reset", "back to the fitted value", () => move(row.name, row.value, true));
+  const reset = key("reset", "back to the fitted value", () => hooks.move(row.name, row.value, true));
   keys.append(reset);
   const about = element("div", "about");
   line.append(element("span", "id", row.name), field, u, tag, keys);
   box.append(line, slider, about);
   box.title = `${row.about}${row.unit ? ` [${row.unit}]` : ""}`;
-  field.addEventListener("change", () => { if (Number.isFinite(field.valueAsNumber)) move(row.name, field.valueAsNumber, true); });
-  slider.addEventListener("input", () => move(row.name, slider.valueAsNumber, false));
-  slider.addEventListener("change", () => move(row.name, slider.valueAsNumber, true));
+  field.addEventListener("change",
+    () => { if (Number.isFinite(field.valueAsNumber)) hooks.move(row.name, field.valueAsNumber, true); });
+  slider.addEventListener("input", () => hooks.move(row.name, slider.valueAsNumber, false));
+  slider.addEventListener("change", () => hooks.move(row.name, slider.valueAsNumber, true));
   slider.addEventListener("keydown", event => {
     const steps = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10}[event.key];
     if (!steps) return;
     event.preventDefault();
-    move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200, row.slider[0]), row.slider[1]), true);
+    hooks.move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200,
+      row.slider[0]), row.slider[1]), true);
   });
   cells[row.name] = {box, field, slider, tag, reset, about, keys};
-  extendRow(row, keys, box);
+  hooks.extendRow(row, keys, box);
   showRow(row);
   return box;
 }
-let extendRow = () => {};  // a window adds "hold", "limits" and "free"
-let entryOf = name => project.hand[name] ?? null;
-function showRow(row) {
+export function showRow(row) {
   const cell = cells[row.name];
   if (!cell) return;
-  const moved = row.name in trial, value = moved ? trial[row.name] : row.value, entry = entryOf(row.name);
+  const moved = row.name in trial, value = moved ? trial[row.name] : row.value, entry = hooks.entryOf(row.name);
   cell.field.value = Number(value.toPrecision(5));
   cell.slider.value = value;
   cell.box.classList.toggle("moved", moved);
@@ -87,7 +70,8 @@ function showRow(row) {
   cell.tag.classList.toggle("held", held);
   const before = project.before && row.name in project.before.values ? project.before.values[row.name] : null;
   const parts = [row.about];
-  if (before !== null && Math.abs(before - row.value) > 1e-9 * Math.abs(row.value)) parts.push(`before ${trimmed(written(before))}`);
+  if (before !== null &&
+    Math.abs(before - row.value) > 1e-9 * Math.abs(row.value)) parts.push(`before ${trimmed(written(before))}`);
   if (moved) parts.push(`fit ${trimmed(written(row.value))}`);
   if (row.partner) parts.push(`goes with ${row.partner[0]} (correlation ${row.partner[1].toFixed(3)})`);
   tell(cell.about, parts.join("; "));
@@ -98,8 +82,9 @@ function entryText(entry) {
   if (entry === "base") return "held at the base value";
   return Object.entries(entry).map(([name, x]) => `${name} ${x}`).join(", ");
 }
-function find() {
+export function find() {
   const wanted = byId("find").value.trim().toUpperCase();
   if (wanted) for (const inner of byId("coefficients").querySelectorAll("details")) inner.open = true;
-  for (const name in cells) cells[name].box.hidden = wanted !== "" && !name.includes(wanted) && !coefficient[name].about.toUpperCase().includes(wanted);
+  for (const name in cells) cells[name].box.hidden = wanted !== "" && !name.includes(wanted) &&
+    !coefficient[name].about.toUpperCase().includes(wanted);
 }

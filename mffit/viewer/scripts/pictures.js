@@ -1,26 +1,39 @@
-// Pictures: any quantity over any other. Points are set as pixels of one image, because a picture has up to a million of them.
-const NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 18, BOTTOM = 22, LETTER = 6.6, LINE = 13, RATIO_OF_PAPER = 3;
-const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];  // places of a label along its curve, the best first
-let theme = {}, palette = [], inks = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
+// Pictures: any quantity over any other. Points are set as pixels of one image, because a picture has up to a million
+// of them.
+import {BOTTOM, LETTER, RIGHT, TOP, axes, frameOf, over, penOf, placeOf, ring, stroke, theme} from "./axes.js";
+import {
+  MOST_MOVED, RESIDUAL, bandOf, beforeModels, changed, channels, columns, csvOf, curvePoints, dragging, extent, facet,
+  fitModels, fixedCurve, hooks, isMoved, left, misfit, misfits, models, placed, project, quantity, state, version,
+  visible,
+} from "./model.js";
+import {written} from "./text.js";
+
+const NEAR = 14, LINE = 13;
+export const NEAREST_DRAG = 6, MOST_LISTED = 300;
+// places of a label along its curve, the best first
+const LABELS_AT = [1, 0.92, 0.08, 0, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4];
+export let palette = [], chosen = [], isChosen = new Uint8Array(0), pointed = -1;
+let inks = [];
 const scratch = document.createElement("canvas");
 
-function readTheme() {
-  const style = getComputedStyle(document.documentElement), of = name => style.getPropertyValue(`--${name}`).trim();
-  theme = Object.fromEntries(["paper", "ink", "muted", "grid", "line", "accent"].map(name => [name, of(name)]));
-  theme.dark = !shared.onPaper() && matchMedia("(prefers-color-scheme: dark)").matches;
-  theme.colours = [0, 1, 2, 3, 4, 5, 6, 7].map(i => of(`c${i}`));
-  theme.font = `11px ${getComputedStyle(document.body).fontFamily}`;
-  recolour();
+export function setChosen(members) {
+  if (Math.max(chosen.length, members.length) > MOST_LISTED) changed();  // inked among the points
+  chosen = members;
+  isChosen = new Uint8Array(columns.count);
+  for (const i of chosen) isChosen[i] = 1;
 }
-function recolour() {
+export const setPointed = i => { pointed = i; };
+export function recolour() {
   const by = facet(state.colour) || project.points.facets[0], many = by.labels.length;
-  palette = by.labels.map((_, i) => many <= 8 ? theme.colours[i] : `hsl(${250 - 250 * i / (many - 1)} 70% ${theme.dark ? 62 : 42}%)`);
+  palette = by.labels.map((_, i) => many <= 8 ? theme.colours[i]
+    : `hsl(${250 - 250 * i / (many - 1)} 70% ${theme.dark ? 62 : 42}%)`);
   inks = pixelsOf([...palette.map(colour => [colour, .72]), [theme.ink, 1]]);
-  version++;
+  changed();
 }
 // Colours on the paper as pixels.
 function pixelsOf(colours) {
-  const canvas = Object.assign(document.createElement("canvas"), {width: colours.length, height: 1}), pen = canvas.getContext("2d");
+  const canvas = Object.assign(document.createElement("canvas"), {width: colours.length, height: 1}),
+    pen = canvas.getContext("2d");
   pen.fillStyle = theme.paper;
   pen.fillRect(0, 0, colours.length, 1);
   colours.forEach(([colour, alpha], i) => {
@@ -30,39 +43,30 @@ function pixelsOf(colours) {
   });
   return new Uint32Array(pen.getImageData(0, 0, colours.length, 1).data.buffer);
 }
-function label(name) {
+export function label(name) {
   const residual = name.startsWith(RESIDUAL), known = quantity(residual ? name.slice(RESIDUAL.length) : name);
   return `${residual ? RESIDUAL + known.symbol.replace("_", "") : known.word}${known.unit ? ` [${known.unit}]` : ""}`;
 }
 
-function draw(panel) {
+export function draw(panel) {
   if (dragging && panel.unseen) return;
-  if (!dragging) panel.size = [panel.canvas.clientWidth, panel.canvas.clientHeight];  // asking for it lays out the page
-  const canvas = panel.canvas, [width, height] = panel.size, ratio = shared.onPaper() ? RATIO_OF_PAPER : devicePixelRatio || 1;
+  // asking for it lays out the page
+  if (!dragging) panel.size = [panel.canvas.clientWidth, panel.canvas.clientHeight];
+  const [width, height] = panel.size;
   if (!width) return;
-  if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
-  if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
-  const pen = canvas.getContext("2d");
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, width, height);
+  const {pen, ratio} = penOf(panel.canvas, width, height);
   paint(panel, pen, width, height, ratio);
 }
 function paint(panel, pen, width, height, ratio) {
   const shown = placed(panel);
-  const lines = shown.curves.map(curve => ({curve, now: models === fitModels || !(isMoved(curve.x) || isMoved(curve.y)) ? fixedCurve(fitModels, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
-  const typical = typicalOf(lines), box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
-  const start = 10 + LETTER * Math.max(...rows_.map(tick => tick.text.length));
-  const kx = (width - start - RIGHT) / (box.x[1] - box.x[0]), ky = (TOP + BOTTOM - height) / (box.y[1] - box.y[0]);
-  const place = {box, start, width, height, ratio, rows_, kx, ky, ox: start - box.x[0] * kx, oy: height - BOTTOM - box.y[0] * ky};
-  place.X = x => place.ox + kx * x;
-  place.Y = y => place.oy + ky * y;
-  panel.place = place;
-  const frame = new Path2D();
-  frame.rect(start - 3, TOP - 3, width - start - RIGHT + 6, height - TOP - BOTTOM + 6);
+  const lines = shown.curves.map(curve => ({curve, now: models === fitModels || !(isMoved(curve.x) || isMoved(curve.y))
+    ? fixedCurve(fitModels, curve)
+    : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
+  const typical = typicalOf(lines), box = limits(panel, shown, lines);
+  const place = panel.place = placeOf(box, width, height, ratio), frame = frameOf(place);
   // What a slider does not move is drawn once: axes, points and the curves of the fits.
   const still = on => {
     on.setTransform(ratio, 0, 0, ratio, 0, 0);
-    on.font = theme.font;
     axes(on, place);
     on.save();
     on.clip(frame);
@@ -74,9 +78,11 @@ function paint(panel, pen, width, height, ratio) {
     }
     on.restore();
   };
-  const name = [panel.x, panel.y, width, height, ratio, ...box.x, ...box.y, state.reading, state.bands, models === fitModels, version, shown.serial].join();
+  const name = [panel.x, panel.y, width, height, ratio, ...box.x, ...box.y, state.reading, state.bands,
+    models === fitModels, version, shown.serial].join();
   if (!panel.layer || panel.layer.name !== name) {
-    const layer = Object.assign(document.createElement("canvas"), {width: Math.round(width * ratio), height: Math.round(height * ratio)});
+    const layer = Object.assign(document.createElement("canvas"),
+      {width: Math.round(width * ratio), height: Math.round(height * ratio)});
     still(layer.getContext("2d"));
     panel.layer = {name, layer};
   }
@@ -84,23 +90,20 @@ function paint(panel, pen, width, height, ratio) {
   pen.font = theme.font;
   pen.save();
   pen.clip(frame);
-  for (const {curve, now} of lines) stroke(pen, now, place, palette[columns.of[state.colour][curve.group.members[0]]], lines.length > 30 ? 1 : 2, []);
+  const colour = curve => palette[columns.of[state.colour][curve.group.members[0]]];
+  for (const {curve, now} of lines) stroke(pen, now, place, colour(curve), lines.length > 30 ? 1 : 2, []);
   marks(pen, shown, place);
   pen.restore();
   labels(pen, typical, place);
   const said = [];
   if (channels.includes(shown.y)) {
     const {rmse, over_noise, about} = misfits[shown.y] ??= misfit(shown.y);
-    said.push(`misfit ${about ? "≈ " : ""}${written(rmse)} ${quantity(shown.y).unit}${Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : ""}`);
+    const noise = Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : "";
+    said.push(`misfit ${about ? "≈ " : ""}${written(rmse)} ${quantity(shown.y).unit}${noise}`);
   }
   const {drawn, of} = panel.count;
   if (drawn < of) said.push(`drawn ${drawn} of ${of}`);
   over(pen, said.join("; "), width - RIGHT - 2, TOP - 7, theme.muted);
-}
-function over(pen, text, x, y, colour) {  // readable over curves
-  Object.assign(pen, {fillStyle: colour, strokeStyle: theme.paper, lineWidth: 4, lineJoin: "round", textAlign: "right"});
-  pen.strokeText(text, x, y);
-  pen.fillText(text, x, y);
 }
 function limits(panel, shown, lines) {
   if (panel.view) return panel.view;
@@ -115,8 +118,10 @@ function limits(panel, shown, lines) {
       if (x > x1) x1 = x;
     }
   }
-  if (shown.residual || (lines.length && Math.min(Math.abs(y0), Math.abs(y1)) < y1 - y0)) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }  // a radius is far from it
-  const wide = (low, high) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)] : [low - 1, high + 1];
+  const isNear = Math.min(Math.abs(y0), Math.abs(y1)) < y1 - y0;  // to zero; a radius is far from it
+  if (shown.residual || (lines.length && isNear)) [y0, y1] = [Math.min(y0, 0), Math.max(y1, 0)];
+  const wide = (low, high) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)]
+    : [low - 1, high + 1];
   let box = {x: wide(x0, x1), y: wide(y0, y1)};
   if (panel.box && dragging) {  // axes only grow while a slider moves, so that the curve is seen to move, and in steps
     const grown = axis => {
@@ -127,34 +132,14 @@ function limits(panel, shown, lines) {
   }
   return panel.box = box;
 }
-function axes(pen, {X, Y, box, start, width, height, rows_}) {
-  pen.lineWidth = 1;
-  const line = (x1, y1, x2, y2, colour) => {
-    pen.strokeStyle = colour;
-    pen.beginPath();
-    pen.moveTo(Math.round(x1) + .5, Math.round(y1) + .5);
-    pen.lineTo(Math.round(x2) + .5, Math.round(y2) + .5);
-    pen.stroke();
-  };
-  pen.fillStyle = theme.muted;
-  pen.textAlign = "right";
-  for (const tick of rows_) {
-    line(start, Y(tick.x), width - RIGHT, Y(tick.x), theme.grid);
-    pen.fillText(tick.text, start - 5, Y(tick.x) + 4);
-  }
-  pen.textAlign = "center";
-  for (const tick of ticks(...box.x, Math.max(3, Math.min(8, (width - start) / 58)))) {
-    line(X(tick.x), TOP, X(tick.x), height - BOTTOM, theme.grid);
-    pen.fillText(tick.text, Math.min(X(tick.x), width - 3.6 * tick.text.length), height - 6);
-  }
-  if (box.x[0] <= 0 && box.x[1] >= 0) line(X(0), TOP, X(0), height - BOTTOM, theme.line);
-  if (box.y[0] <= 0 && box.y[1] >= 0) line(start, Y(0), width - RIGHT, Y(0), theme.muted);
-}
-// Sets a square for each point; of many, one for those that fall on the same pixel. `panel.at` has the row, from 1, by pixel.
+// Sets a square for each point; of many, one for those that fall on the same pixel. `panel.at` has the row, from 1, by
+// pixel.
 function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
   const size = Math.round((columns.count > 3000 ? 2 : columns.count > 1200 ? 3 : 4) * ratio), half = size >> 1;
-  const w = Math.round(width * ratio), h = Math.round(height * ratio), image = new ImageData(w, h), pixels = new Uint32Array(image.data.buffer);
-  const across = Math.ceil(width), at = panel.at = {rows: new Int32Array(across * Math.ceil(height)), across}, out = [];
+  const w = Math.round(width * ratio), h = Math.round(height * ratio), image = new ImageData(w, h),
+    pixels = new Uint32Array(image.data.buffer);
+  const across = Math.ceil(width), at = panel.at = {rows: new Int32Array(across * Math.ceil(height)), across},
+    out = [];
   const {px, py} = shown, of = columns.of[state.colour], inked = chosen.length > MOST_LISTED ? isChosen : null;
   const thinned = columns.count > MOST_MOVED, right = width - RIGHT + 3, low = height - BOTTOM + 3;
   let drawn = 0, all = 0;
@@ -170,7 +155,9 @@ function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
     if (left[i]) { out.push(x, y); continue; }
     if (ink < 0) continue;
     const first = Math.max(0, Math.round(x * ratio) - half), top = Math.max(0, Math.round(y * ratio) - half);
-    for (let b = top; b < Math.min(h, top + size); b++) for (let a = first; a < Math.min(w, first + size); a++) pixels[b * w + a] = inks[ink];
+    for (let b = top; b < Math.min(h, top + size); b++) {
+      for (let a = first; a < Math.min(w, first + size); a++) pixels[b * w + a] = inks[ink];
+    }
   }
   panel.count = {drawn, of: Math.min(all, columns.count)};
   if (scratch.width !== w || scratch.height !== h) Object.assign(scratch, {width: w, height: h});
@@ -205,20 +192,6 @@ function band(pen, curve, {X, Y}) {
   pen.setLineDash([]);
   pen.globalAlpha = 1;
 }
-function stroke(pen, points, {X, Y}, colour, width, dash) {
-  pen.strokeStyle = colour;
-  pen.lineWidth = width;
-  pen.setLineDash(dash);
-  pen.beginPath();
-  let open = false;
-  for (let k = 0; k < points.length; k += 2) {
-    if (!Number.isFinite(points[k + 1])) { open = false; continue; }
-    if (open) pen.lineTo(X(points[k]), Y(points[k + 1])); else pen.moveTo(X(points[k]), Y(points[k + 1]));
-    open = true;
-  }
-  pen.stroke();
-  pen.setLineDash([]);
-}
 // By level of the colour, the curve of most points: it has a band and a label.
 function typicalOf(lines) {
   const of = columns.of[state.colour], found = new Map();
@@ -235,30 +208,29 @@ function labels(pen, typical, {X, Y, start, width, height}) {
   for (const [level, {now}] of typical) {
     const long = LETTER * words[level].length, last = now.length / 2 - 1;
     for (const share of LABELS_AT) {
-      const k = 2 * Math.round(share * last), x = Math.min(width - RIGHT - 2, Math.max(start + long + 4, X(now[k]) + (share < .5 ? long : 0))), y = Y(now[k + 1]) - 5;
+      const k = 2 * Math.round(share * last), x = Math.min(width - RIGHT - 2,
+        Math.max(start + long + 4, X(now[k]) + (share < .5 ? long : 0))), y = Y(now[k + 1]) - 5;
       const own = [x - long, y - LINE + 2, x, y + 2];
-      if (!(y > TOP + LINE - 2 && y < height - BOTTOM) || taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
+      if (!(y > TOP + LINE - 2 && y < height - BOTTOM) ||
+        taken.some(box => own[0] < box[2] && own[2] > box[0] && own[1] < box[3] && own[3] > box[1])) continue;
       taken.push(own);
       over(pen, words[level], x, y, palette[level]);
       break;
     }
   }
 }
-// The same points in every picture: those chosen by a click, and the one under the pointer. Many are inked as pixels instead.
+// The same points in every picture: those chosen by a click, and the one under the pointer. Many are inked as pixels
+// instead.
 function marks(pen, shown, {X, Y}) {
-  for (const [members, width] of [[chosen.length > MOST_LISTED ? [] : chosen, 2.5], [pointed >= 0 ? [pointed] : [], 1.5]]) {
-    pen.strokeStyle = theme.ink;
-    pen.lineWidth = width;
+  for (const [members, width] of [[chosen.length > MOST_LISTED ? [] : chosen, 2.5],
+    [pointed >= 0 ? [pointed] : [], 1.5]]) {
     for (const i of members) {
-      if (!visible[i] || Number.isNaN(shown.py[i])) continue;
-      pen.beginPath();
-      pen.arc(X(shown.px[i]), Y(shown.py[i]), 6, 0, 2 * Math.PI);
-      pen.stroke();
+      if (visible[i] && !Number.isNaN(shown.py[i])) ring(pen, X(shown.px[i]), Y(shown.py[i]), 6, theme.ink, width);
     }
   }
 }
 // The point nearest to a place of the picture; -1 without one.
-function nearest(panel, x, y) {
+export function nearest(panel, x, y) {
   const {rows, across} = panel.at, {X, Y} = panel.place, {px, py} = panel.kept;
   let best = -1, least = NEAR ** 2;
   for (let b = Math.max(0, Math.trunc(y) - NEAR); b <= y + NEAR; b++) {
@@ -273,21 +245,22 @@ function nearest(panel, x, y) {
 }
 
 // ---- zoom, and pictures as files
-const ZOOM = 1.25;
+export const ZOOM = 1.25;
 const boxOf = panel => panel.view || panel.place.box;
 // The view widened by a factor about a place of the picture, or shifted by pixels.
-function zoom(panel, factor, x, y) {
-  const {ox, oy, kx, ky} = panel.place, box = boxOf(panel), about = ([low, high], at) => [at + (low - at) * factor, at + (high - at) * factor];
+export function zoom(panel, factor, x, y) {
+  const {ox, oy, kx, ky} = panel.place, box = boxOf(panel),
+    about = ([low, high], at) => [at + (low - at) * factor, at + (high - at) * factor];
   look(panel, {x: about(box.x, (x - ox) / kx), y: about(box.y, (y - oy) / ky)});
 }
-function pan(panel, dx, dy) {
+export function pan(panel, dx, dy) {
   const {kx, ky} = panel.place, box = boxOf(panel);
   look(panel, {x: box.x.map(at => at - dx / kx), y: box.y.map(at => at - dy / ky)});
 }
-function look(panel, view) {
+export function look(panel, view) {
   panel.view = view;
   panel.whole.hidden = !view;
-  update();
+  hooks.update();
 }
 function saved(name, content, type) {
   const link = document.createElement("a");
@@ -297,10 +270,12 @@ function saved(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 const nameOf = panel => `${panel.y.replace(RESIDUAL, "residual_")}_over_${panel.x}`;
-function savePicture(panel) {
+export function savePicture(panel) {
   const scale = 2, head = 26, foot = 18, {clientWidth: width, clientHeight: height} = panel.canvas;
-  const canvas = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * (height + head + foot)}), pen = canvas.getContext("2d");
-  const inner = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * height}), on = inner.getContext("2d");
+  const canvas = Object.assign(document.createElement("canvas"),
+    {width: scale * width, height: scale * (height + head + foot)}), pen = canvas.getContext("2d");
+  const inner = Object.assign(document.createElement("canvas"), {width: scale * width, height: scale * height}),
+    on = inner.getContext("2d");
   on.setTransform(scale, 0, 0, scale, 0, 0);
   paint(panel, on, width, height, scale);
   pen.fillStyle = theme.paper;
@@ -312,6 +287,6 @@ function savePicture(panel) {
   pen.textAlign = "right";
   pen.fillText(label(panel.x), width - RIGHT, height + head + foot - 5);
   canvas.toBlob(blob => saved(`${nameOf(panel)}.png`, blob, "image/png"));
-  update();
+  hooks.update();
 }
-const saveNumbers = panel => saved(`${nameOf(panel)}.csv`, csvOf(panel, label), "text/csv");
+export const saveNumbers = panel => saved(`${nameOf(panel)}.csv`, csvOf(panel, label), "text/csv");

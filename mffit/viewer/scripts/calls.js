@@ -1,21 +1,28 @@
 // What the pages of a local window share: questions to its server, and recordings that are dropped or chosen.
+import {byId} from "./dom.js";
+
 const PATIENCE = 3000;
-const ENDED = "The server of this window has ended. Everything that you saved is in tyre.toml; run `mffit open` again, and this page follows.";
+export const ENDED = "The server of this window has ended. Everything that you saved is in tyre.toml; " +
+  "run `mffit open` again, and this page follows.";
 // The answer as an object, null without a server. A call is never given up: what it asks for may yet be done.
-async function asked(address, say, given = {}) {
-  const late = setTimeout(() => say(`No answer for ${PATIENCE / 1000} s; still waiting. Do not repeat it: it may yet be done.`, true), PATIENCE);
+export async function asked(address, say, given = {}) {
+  const late = setTimeout(() =>
+    say(`No answer for ${PATIENCE / 1000} s; still waiting. Do not repeat it: it may yet be done.`, true), PATIENCE);
   try {
     const answer = await fetch(address, given);
-    return answer.status === 403 ? null : await answer.json().catch(() => ({error: `The server answered with status ${answer.status}; see the terminal.`}));
+    return answer.status === 403 ? null : await answer.json().catch(() =>
+      ({error: `The server answered with status ${answer.status}; see the terminal.`}));
   } catch {
     return null;
   } finally {
     clearTimeout(late);
   }
 }
-const sent = body => ({method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
+export const sent = body =>
+  ({method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
 async function filesOf(transfer) {
-  const entries = [...transfer.items].filter(item => item.kind === "file").map(item => item.webkitGetAsEntry()).filter(Boolean);
+  const entries = [...transfer.items].filter(item => item.kind === "file").map(item =>
+    item.webkitGetAsEntry()).filter(Boolean);
   const within = async entry => {
     if (entry.isFile) return [await new Promise((done, failed) => entry.file(done, failed))];
     const reader = entry.createReader(), found = [];
@@ -28,15 +35,22 @@ async function filesOf(transfer) {
   return (await Promise.all(entries.map(within))).flat();
 }
 // Files that are dropped into the page, or chosen, are stored in the folder once the user agrees.
-function takesRecordings(say, stored) {
-  const byId = id => document.getElementById(id), {folder, endings} = JSON.parse(byId("recordings-here").textContent);
-  const isRecording = file => endings.some(ending => file.name.toLowerCase().endsWith(ending)) && !file.name.startsWith(".");
+export function takesRecordings(say, stored) {
+  const {folder, endings} = JSON.parse(byId("recordings-here").textContent);
+  const isRecording = file => endings.some(ending => file.name.toLowerCase().endsWith(ending)) &&
+    !file.name.startsWith(".");
   function offer(files) {
     const taken = files.filter(isRecording), dialog = byId("store"), others = files.length - taken.length;
-    if (!taken.length) return say(`No recording among ${files.length === 1 ? "it" : `these ${files.length} files`}: their names end in ${endings.join(", ")}.`, true);
+    const these = (number, word) => number === 1 ? `this ${word}` : `these ${number} ${word}s`;
+    if (!taken.length) {
+      return say(`No recording among ${these(files.length, "file")}: their names end in ${endings.join(", ")}.`, true);
+    }
     const size = taken.reduce((sum, file) => sum + file.size, 0) / 1e6;
-    byId("store-about").textContent = `Store ${taken.length === 1 ? "this recording" : `these ${taken.length} recordings`} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB) in the folder ${folder}?${others ? ` ${others} other ${others === 1 ? "file is no recording" : "files are no recordings"}.` : ""}`;
-    byId("store-files").replaceChildren(...taken.map(file => Object.assign(document.createElement("li"), {textContent: file.name})));
+    const what = `${these(taken.length, "recording")} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB)`;
+    const rest = others ? ` ${others} other ${others === 1 ? "file is" : "files are"} not a recording.` : "";
+    byId("store-about").textContent = `Store ${what} in the folder ${folder}?${rest}`;
+    byId("store-files").replaceChildren(
+      ...taken.map(file => Object.assign(document.createElement("li"), {textContent: file.name})));
     dialog.returnValue = "";
     dialog.onclose = () => { if (dialog.returnValue === "yes") store(taken); };
     dialog.showModal();
@@ -45,7 +59,8 @@ function takesRecordings(say, stored) {
     const refusals = [];
     for (const [k, file] of files.entries()) {
       say(`storing ${k + 1} of ${files.length}: ${file.name}`);
-      const found = await asked(`store/${encodeURIComponent(file.name)}`, say, {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: file});
+      const found = await asked(`store/${encodeURIComponent(file.name)}`, say,
+        {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: file});
       if (!found) return say(ENDED, true);
       if (found.error) refusals.push(found.error);
     }

@@ -1,5 +1,16 @@
 // A local window: every click is saved in tyre.toml, and Refit runs the real fit.
-let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false, ended = false, waiting = Promise.resolve();
+import {ENDED, asked, sent, takesRecordings} from "./calls.js";
+import {cells, showRow} from "./coefficients.js";
+import {content} from "./content.js";
+import {byId, details, element, key} from "./dom.js";
+import {hooks, left, lineRanges, markLeftOut, project, rows, setTrial, trial} from "./model.js";
+import {chosen} from "./pictures.js";
+import {
+  begin, dropMoves, frame, moves, pointName, remember, showChosen, showProject, tryOut, update,
+} from "./project.js";
+
+let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false, ended = false,
+  waiting = Promise.resolve();
 
 const say = (sentence, bad = false) => {
   byId("status").textContent = sentence;
@@ -17,10 +28,12 @@ function lost() {
   showStatus();
   return false;
 }
-// One change after the other: each is meant for the file as the one before left it. A refusal is said at the place of the click.
+// One change after the other: each is meant for the file as the one before left it. A refusal is said at the place of
+// the click.
 function edit(name, given, refused = found => say(found.error, true)) {
   const change = async () => {
-    const done = await post("edit", {do: name, seen: live.digest, with: given}, found => found.versions ? showBoth(found.versions) : refused(found));
+    const done = await post("edit", {do: name, seen: live.digest, with: given},
+      found => found.versions ? showBoth(found.versions) : refused(found));
     if (done) moves.push({edit: true});
     if (project) frame();
     return done;
@@ -34,12 +47,12 @@ function edit(name, given, refused = found => say(found.error, true)) {
   };
   return waiting = waiting.then(change);
 }
-canUndo = () => live.can_undo;
-undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
-entryOf = name => live.hand[name] ?? null;
+hooks.canUndo = () => live.can_undo;
+hooks.undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
+const entryOf = hooks.entryOf = name => live.hand[name] ?? null;
 
 const drafts = {};  // by coefficient, what is typed into its limits and not saved yet
-extendRow = (row, keys, box) => {
+hooks.extendRow = (row, keys, box) => {
   const held = entry => typeof entry === "number" || entry === "base";
   const now = () => Number((row.name in trial ? trial[row.name] : row.value).toPrecision(9));
   const problem = element("p", "problem");
@@ -47,20 +60,24 @@ extendRow = (row, keys, box) => {
   const refused = found => {
     const field = (found.key || "").startsWith(`coefficients.${row.name}.`) ? found.key.split(".").pop() : "";
     problem.textContent = found.key ? `${field || row.name}: ${found.sentence}` : found.error;
-    for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid", input.name === field);
+    for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid",
+      input.name === field);
   };
   const change = entry => { problem.textContent = ""; return edit("coefficient", {name: row.name, entry}, refused); };
   const given = () => { const own = entryOf(row.name); return own !== null && typeof own === "object" ? own : {}; };
   const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => change(now()));
-  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => change({...given(), start: now()}));
+  const start = key("start", "write this value into tyre.toml as the one from which the fit starts",
+    () => change({...given(), start: now()}));
   const free = key("free", "remove the entry of this coefficient from tyre.toml", () => change(null));
   const limits = key("limits", "bounds, start and what is known beforehand, written into tyre.toml", () => {
-    if (row.name in drafts) delete drafts[row.name]; else drafts[row.name] = typeof entryOf(row.name) === "object" ? {...entryOf(row.name)} : {};
+    if (row.name in drafts) delete drafts[row.name];
+      else drafts[row.name] = typeof entryOf(row.name) === "object" ? {...entryOf(row.name)} : {};
     form();
   });
   const form = () => {
     limits.setAttribute("aria-expanded", row.name in drafts);
-    const old = box.querySelector(".limits"), made = row.name in drafts ? limitsForm(row, change, refused, () => { delete drafts[row.name]; form(); limits.focus(); }) : null;
+    const old = box.querySelector(".limits"), made = row.name in drafts
+      ? limitsForm(row, change, refused, () => { delete drafts[row.name]; form(); limits.focus(); }) : null;
     if (old) old.remove();
     if (!made) { problem.textContent = ""; return; }
     problem.before(made);
@@ -81,22 +98,27 @@ extendRow = (row, keys, box) => {
 function limitsForm(row, change, refused, close) {
   const form = element("form", "limits"), draft = drafts[row.name];
   const [low, high] = row.bounds.map(x => x === null ? "none" : `${Number(x.toPrecision(5))}`);
-  const fields = {min: ["min", low], max: ["max", high], start: ["start", "chosen"], value: ["known value", "none"], u: ["its u (1 sigma)", "none"]};
+  const fields = {min: ["min", low], max: ["max", high], start: ["start", "chosen"], value: ["known value", "none"],
+    u: ["its u (1 sigma)", "none"]};
   for (const [name, [word, usual]] of Object.entries(fields)) {
-    const label = element("label", "", word), input = Object.assign(element("input", "number"), {type: "number", step: "any", name, placeholder: usual});
+    const label = element("label", "", word),
+      input = Object.assign(element("input", "number"), {type: "number", step: "any", name, placeholder: usual});
     if (name in draft) input.value = draft[name];
     input.setAttribute("aria-label", `${row.name}: ${name}`);
-    input.addEventListener("input", () => { if (Number.isFinite(input.valueAsNumber)) draft[name] = input.valueAsNumber; else delete draft[name]; });
+    input.addEventListener("input", () =>
+      { if (Number.isFinite(input.valueAsNumber)) draft[name] = input.valueAsNumber; else delete draft[name]; });
     label.append(input);
     form.append(label);
   }
-  const save = Object.assign(element("button", "small", "save"), {type: "submit"}), cancel = key("cancel", "close without saving", close);
+  const save = Object.assign(element("button", "small", "save"), {type: "submit"}),
+    cancel = key("cancel", "close without saving", close);
   form.append(save, cancel);
   form.noValidate = true;
   form.addEventListener("submit", async event => {
     event.preventDefault();
     const wrong = [...form.querySelectorAll("input")].find(input => input.validity.badInput);
-    if (wrong) return refused({key: `coefficients.${row.name}.${wrong.name}`, sentence: "this is not a number; write one, with a decimal point"});
+    if (wrong) return refused({key: `coefficients.${row.name}.${wrong.name}`,
+      sentence: "this is not a number; write one, with a decimal point"});
     if (await change({...draft})) close();
   });
   form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
@@ -113,10 +135,11 @@ byId("other-file").addEventListener("change", async event => {
   tryOut(found.values);
   say(`Solid curves have the values of ${file.name}, dashed ones are the fit; Reset all ends it.`);
 });
-leaveOut = () => {
+const leaveOut = hooks.leaveOut = () => {
   const members = chosen.filter(i => !left[i]), dialog = byId("ask");
   if (!members.length) return;
-  byId("ask-about").textContent = members.length === 1 ? `${placeOf(members[0])} gets no weight in the fit.` : `${members.length} points get no weight in the fit.`;
+  byId("ask-about").textContent = members.length === 1 ? `${pointName(members[0])} gets no weight in the fit.`
+    : `${members.length} points get no weight in the fit.`;
   dialog.returnValue = "";
   dialog.onclose = () => {
     const why = byId("ask-why").value.trim();
@@ -125,10 +148,12 @@ leaveOut = () => {
   dialog.showModal();
   byId("ask-why").select();
 };
-chosenActions = () => {
+hooks.chosenActions = () => {
   const actions = [];
-  if (chosen.some(i => !left[i])) actions.push(key("Leave out", "asks why, and writes it into tyre.toml (Delete)", leaveOut));
-  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml", () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))})));
+  if (chosen.some(i => !left[i])) actions.push(key("Leave out", "asks why, and writes it into tyre.toml (Delete)",
+    leaveOut));
+  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml",
+    () => edit("take_back", {readings: lineRanges(chosen.filter(i => left[i]))})));
   return actions;
 };
 
@@ -136,7 +161,7 @@ function setLive(state) {
   live = state;
   ended = false;
   showSettings();
-  if (!live.can_undo) moves = moves.filter(one => one.trial);  // another program has changed the file since
+  if (!live.can_undo) dropMoves(one => !one.trial);  // another program has changed the file since
   if (live.fits !== shownFit && live.fits > 0) return bring();
   if (project) {
     project.hand = live.hand;
@@ -157,8 +182,8 @@ async function bring() {
   if (!data || data.error) return lost();
   if (project && (data.turn_slip !== project.turn_slip || data.star !== project.star)) return location.reload();
   if (shownFit >= 0) {  // a new fit: what the sliders tried is over
-    trial = {};
-    moves = moves.filter(one => !one.trial);
+    setTrial({});
+    dropMoves(one => one.trial);
     remember();
   }
   shownFit = wantedFit;
@@ -172,7 +197,8 @@ function showNews() {
   box.hidden = !news;
   if (!news) return box.replaceChildren();
   box.textContent = `New recordings: ${news.lines.join("; ")}. `;
-  if (news.unlisted.length) box.append(Object.assign(element("a", "", `Add ${news.unlisted.join(", ")} to tyre.toml`), {href: "add"}));
+  if (news.unlisted.length) box.append(Object.assign(element("a", "", `Add ${news.unlisted.join(", ")} to tyre.toml`),
+    {href: "add"}));
   else box.append("Refit takes them in.");
 }
 function showStatus() {
@@ -184,22 +210,27 @@ function showStatus() {
   showLinks();
   if (ended) return say(ENDED, true);
   if (live.problem) return say(live.problem, true);
-  if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
+  if (live.run) return say(
+    `${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
   if (live.last && live.last.state === "stopped") return say("Stopped; nothing was written.");
-  say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml." : "tyre.toml or a file that it names differs from the fit that is shown: Refit.");
+  say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml."
+    : "tyre.toml or a file that it names differs from the fit that is shown: Refit.");
 }
 function showLinks() {
   const parts = [];
   for (const page of live.pages) {
     const part = document.createElement("span");
     if (page.href) {
-      const link = Object.assign(document.createElement("a"), {href: page.href, target: "_blank", textContent: page.title});
+      const link = Object.assign(document.createElement("a"),
+        {href: page.href, target: "_blank", textContent: page.title});
       if (page.old) link.append(" (older than tyre.toml)");
       part.append(link);
-      for (const name of page.files) part.append(Object.assign(document.createElement("a"), {href: `${page.href.replace(/[^/]*$/, "")}${encodeURIComponent(name)}`, download: name, textContent: name}));
+      for (const name of page.files) part.append(Object.assign(document.createElement("a"),
+        {href: `${page.href.replace(/[^/]*$/, "")}${encodeURIComponent(name)}`, download: name, textContent: name}));
     }
-    const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`, `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
+    const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`,
+      `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
     make.disabled = ended || !!live.run;
     part.append(make);
     parts.push(part);
@@ -215,25 +246,29 @@ async function showSettings() {
   settingsOf = live.digest;
   const tables = await asked("settings", say);
   if (!Array.isArray(tables)) return;
-  const open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key)), at = document.activeElement.id;
+  const open = new Set([...home.querySelectorAll("details[open]")].map(one => one.dataset.key)),
+    at = document.activeElement.id;
   home.replaceChildren();
   for (const {title, table, file, keys} of tables) {
     const inner = details(home, title, title, open.has(title)), written = keys.filter(one => one.value).length;
     if (written) inner.querySelector("summary").append(element("span", "unit", ` ${written} written`));
-    for (const one of keys) inner.append(settingRow(one, `setting ${title} ${one.key}`, value => ({table, key: one.key, value, ...(file ? {file} : {})})));
+    for (const one of keys) inner.append(settingRow(one, `setting ${title} ${one.key}`,
+      value => ({table, key: one.key, value, ...(file ? {file} : {})})));
   }
   if (at && byId(at)) byId(at).focus();
 }
 function settingRow({key: name, value, default: usual, choices}, id, change) {
   const line = element("div", "setting"), label = element("label", "", name), problem = element("p", "problem");
   const field = document.createElement(choices.length ? "select" : "input");
-  if (choices.length) field.append(new Option(`(${usual || "none"})`, ""), ...choices.map(text => new Option(text, text)));
+  if (choices.length) field.append(new Option(`(${usual || "none"})`, ""),
+    ...choices.map(text => new Option(text, text)));
   else field.placeholder = usual || "none";
   Object.assign(field, {id, value});
   label.htmlFor = id;
   problem.setAttribute("role", "alert");
   line.classList.toggle("written", value !== "");
-  field.addEventListener("change", () => { problem.textContent = ""; edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; }); });
+  field.addEventListener("change", () => { problem.textContent = "";
+    edit("setting", change(field.value.trim()), found => { problem.textContent = found.sentence || found.error; }); });
   line.append(label, field, problem);
   return line;
 }
@@ -242,7 +277,8 @@ byId("settings").addEventListener("toggle", showSettings);
 takesRecordings(say, refusals => { if (refusals.length) say(refusals.join(" "), true); else location.assign("add"); });
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
-// A server that was started again has another address: its page says so to those of the old one, which follow with their view.
+// A server that was started again has another address: its page says so to those of the old one, which follow with
+// their view.
 const windows = new BroadcastChannel("mffit window"), here = {project: live.project, address: location.pathname};
 function heard({state = null}) {
   if (state) return setLive(state);
@@ -251,10 +287,12 @@ function heard({state = null}) {
 }
 windows.onmessage = ({data}) => {
   if (data.address === here.address) return heard(data);
-  if (data.project === here.project && /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
+  if (data.project === here.project &&
+    /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
 };
 windows.postMessage({...here, state: live});
-// Of all pages that are seen, one listens to the server and tells the others: a browser has six connections for all of them.
+// Of all pages that are seen, one listens to the server and tells the others: a browser has six connections for all of
+// them.
 let quiet = new AbortController();
 function listen() {
   quiet.abort();
@@ -271,3 +309,4 @@ function listen() {
 document.addEventListener("visibilitychange", listen);
 listen();
 showStatus();
+begin(content.project);

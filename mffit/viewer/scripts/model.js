@@ -1,32 +1,42 @@
 // Numbers: the points, what the model says of them, the misfit, and the curves. Nothing here touches the page.
-const {written, trimmed, ticks} = shared;
-const RESIDUAL = "residual of ";
+export const RESIDUAL = "residual of ";
 const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, KNOTS = 16;
-const MOST_MOVED = 2000;  // points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
+// points that a slider moves at once, all follow when it stops; of more, only those that can be seen are drawn
+export const MOST_MOVED = 2000;
 const TYPES = {f4: Float32Array, u1: Uint8Array, i1: Int8Array, u2: Uint16Array, i2: Int16Array, i4: Int32Array};
-const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true, fit: ""};
-let project = null;
-let rows = [];  // coefficients by index, and by name below
-let coefficient = {};
-let channels = [];  // those that the page computes
-let columns = {};  // typed arrays by name, of every point
+export const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve", bands: true, fit: ""};
+export let project = null;
+export let rows = [];  // coefficients by index, and by name below
+export let coefficient = {};
+export let channels = [];  // those that the page computes
+export let columns = {};  // typed arrays by name, of every point
 let known = {};  // by name, whether a column has numbers that differ
-let own = {};  // by channel: the model at the conditions of every point
+export let own = {};  // by channel: the model at the conditions of every point
 let moved = {};  // where the model at the points is computed anew
 let every = 1;  // while a slider moves, of each so-manieth point only
-let fitOwn = {};  // the same of the fit, before any slider moved
-let models, fitModels, beforeModels = null;
-let misfits = {}, fitMisfits = {};  // by channel, of the present values and of the fit; see misfit
-let left = new Uint8Array(0);  // 1 where a point is left out
-let visible = new Uint8Array(0);
-let trial = {};  // coefficients that differ from the fit
+export let fitOwn = {};  // the same of the fit, before any slider moved
+export let models, fitModels, beforeModels = null;
+export let misfits = {}, fitMisfits = {};  // by channel, of the present values and of the fit; see misfit
+export let left = new Uint8Array(0);  // 1 where a point is left out
+export let visible = new Uint8Array(0);
+export let trial = {};  // coefficients that differ from the fit
 let curveGroups = {}, swept = null;
 let computed = "", serial = 0;  // for which values the model was computed at the points, and a number for them
-let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
+export let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
 
-const quantity = name => project.quantities[name];
-const shownIn = (name, x) => x / quantity(name).si;
-const facet = name => project.points.facets.find(one => one.name === name);
+export const setTrial = values => { trial = values; };
+export const changed = () => { version++; };
+export let dragging = false;  // while a slider moves
+export const setDragging = moves => { dragging = moves; };
+// What a page adds: drawing after a change, moving a coefficient, and what a window writes into tyre.toml.
+export const hooks = {
+  update() {}, move() {}, canUndo: () => false, undoEdit() {}, extendRow() {}, chosenActions: () => [], leaveOut() {},
+  entryOf: name => project.hand[name] ?? null,
+};
+
+export const quantity = name => project.quantities[name];
+export const shownIn = (name, x) => x / quantity(name).si;
+export const facet = name => project.points.facets.find(one => one.name === name);
 
 // n numbers by their places. A typed array's own "from" takes ten times as long.
 function floats(n, of) {
@@ -46,7 +56,7 @@ function unpacked(bytes, layout) {
   return found;
 }
 // Takes the data of the fit, or what another fit of the same points has instead, with the bytes of its columns.
-function take(data, bytes, over = null) {
+export function take(data, bytes, over = null) {
   project = data;
   rows = data.coefficients;
   coefficient = Object.fromEntries(rows.map(row => [row.name, row]));
@@ -65,7 +75,8 @@ function take(data, bytes, over = null) {
     columns.missed = {};
     set(unpacked(over, data.over));
   }
-  for (const [name, shift] of Object.entries(columns.shift)) columns.read[name] = floats(n, i => columns[name][i] + shift[i]);
+  for (const [name, shift] of Object.entries(columns.shift)) columns.read[name] = floats(n,
+    i => columns[name][i] + shift[i]);
   columns.last = floats(n, i => columns.line[i] + columns.more[i]);
   for (const name of ["line", "last", "file"]) points[name] = columns[name];
   for (const one of points.facets) one.of = columns.of[one.name];
@@ -87,7 +98,7 @@ function take(data, bytes, over = null) {
   markLeftOut(data.exclude);
   recompute(false);
 }
-const axisKnown = name => known[name];
+export const axisKnown = name => known[name];
 
 // ---- the model
 function compiled(values) {
@@ -104,24 +115,26 @@ function predicted(by_mount, name, found, step) {
   }
   return found;
 }
-const isMoved = name => channels.includes(name) && project.channels.find(one => one.name === name).uses.some(used => used in trial);
+export const isMoved = name => channels.includes(name) &&
+  project.channels.find(one => one.name === name).uses.some(used => used in trial);
 // What the present values say of the points; while a slider moves, of some of them.
-function recompute(dragging) {
-  const wanted = JSON.stringify([dragging, trial]);
+export function recompute(moves) {
+  const wanted = JSON.stringify([moves, trial]);
   if (wanted === computed) return;
   computed = wanted;
   serial++;
   misfits = {};
-  const changed = Object.keys(trial).length > 0;
-  models = changed ? compiled({...project.values, ...trial}) : fitModels;
-  every = dragging ? Math.ceil(columns.count / MOST_MOVED) : 1;
+  const differs = Object.keys(trial).length > 0;
+  models = differs ? compiled({...project.values, ...trial}) : fitModels;
+  every = moves ? Math.ceil(columns.count / MOST_MOVED) : 1;
   for (const name of channels) {
-    own[name] = changed && isMoved(name) ? predicted(models, name, moved[name] ??= new Float64Array(columns.count), every) : fitOwn[name];
+    own[name] = differs && isMoved(name)
+      ? predicted(models, name, moved[name] ??= new Float64Array(columns.count), every) : fitOwn[name];
   }
 }
 const stepOf = name => own[name] === fitOwn[name] ? 1 : every;
 // Root mean square of what the model misses, in the channel's unit and in units of the noise that readings state.
-function misfit(channel, from = own) {
+export function misfit(channel, from = own) {
   const measured = columns[channel], u = columns.u[channel], used = columns.used[channel], model = from[channel];
   const step = from === own ? stepOf(channel) : 1;
   let sum = 0, n = 0, weighted = 0, m = 0;
@@ -142,7 +155,7 @@ const rangesOf = entry => entry.lines.split(",").map(part => {
   const [first, last] = part.split("-").map(Number);
   return [first, last ?? first];
 });
-function markLeftOut(entries) {
+export function markLeftOut(entries) {
   const {line, file} = columns;
   left = new Uint8Array(columns.count);
   for (const [number, name] of project.points.files.entries()) {
@@ -157,7 +170,7 @@ function markLeftOut(entries) {
   version++;
 }
 // Lines of points as [{file, lines}], in the notation of tyre.toml; ranges that touch are one.
-function lineRanges(members) {
+export function lineRanges(members) {
   const {file, line, last} = columns, found = new Map();
   for (const i of Int32Array.from(members).sort((a, b) => file[a] - file[b] || line[a] - line[b])) {
     const name = project.points.files[file[i]], ranges = found.get(name) ?? [], before = ranges.at(-1);
@@ -168,12 +181,13 @@ function lineRanges(members) {
   const text = ([from, to]) => from === to ? `${from}` : `${from}-${to}`;
   return [...found].map(([name, ranges]) => ({file: name, lines: ranges.map(text).join(", ")}));
 }
-function whyLeftOut(i) {
+export function whyLeftOut(i) {
   const file = project.points.files[columns.file[i]], line = columns.line[i];
-  const found = project.exclude.find(entry => entry.file === file && rangesOf(entry).some(([first, last]) => line >= first && line <= last));
+  const found = project.exclude.find(entry => entry.file === file &&
+    rangesOf(entry).some(([first, last]) => line >= first && line <= last));
   return found ? found.why || "" : "";
 }
-function filter() {
+export function filter() {
   const n = columns.count;
   visible = new Uint8Array(n).fill(1);
   for (const one of project.points.facets) {
@@ -195,13 +209,15 @@ function filter() {
 const SWEPT = ["alpha", "gamma", "kappa"];
 // By sweep, in how many parts of the range of all points an angle or slip lies; 0 where it is held.
 function spread(name) {
-  const X = columns[name], of = columns.of.sweep, many = facet("sweep").labels.length, ends = floats(2 * many, k => k % 2 ? -Infinity : Infinity);
+  const X = columns[name], of = columns.of.sweep, many = facet("sweep").labels.length,
+    ends = floats(2 * many, k => k % 2 ? -Infinity : Infinity);
   for (let i = 0; i < columns.count; i++) {
     const k = 2 * of[i];
     if (X[i] < ends[k]) ends[k] = X[i];
     if (X[i] > ends[k + 1]) ends[k + 1] = X[i];
   }
-  const low = Math.min(...ends), least = NARROWEST * (Math.max(...ends) - low), parts = Array.from({length: many}, () => new Set());
+  const low = Math.min(...ends), least = NARROWEST * (Math.max(...ends) - low),
+    parts = Array.from({length: many}, () => new Set());
   for (let i = 0; i < columns.count; i++) parts[of[i]].add(Math.floor((X[i] - low) / least));
   return parts.map((set, k) => ends[2 * k + 1] - ends[2 * k] > least && facet(name).labels.length > 1 ? set.size : 0);
 }
@@ -217,11 +233,14 @@ function sweptOver() {
 // By sweep, whether it would be vertical lines over x: others vary x, and this one varies something else.
 const upright = x => sweptOver().includes(x) ? sweptOver().map(name => name !== "" && name !== x) : [];
 // What is drawn at first: each channel over what varies it, and then over what other sweeps vary; and the residuals.
-function defaultPanels() {
-  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name), others = project.points.measured.filter(name => !fitted.includes(name));
+export function defaultPanels() {
+  const fitted = project.channels.filter(one => one.of_fit).map(one => one.name),
+    others = project.points.measured.filter(name => !fitted.includes(name));
   const levels = name => facet(name).labels.length;
-  const over = name => !channels.includes(name) ? "Fz" : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
-  const further = name => SWEPT.filter(x => name !== "Fx" && over(name) !== "Fz" && over(name) !== x && sweptOver().includes(x));
+  const over = name => !channels.includes(name) ? "Fz"
+    : axisKnown("kappa") && (name === "Fx" || levels("kappa") > levels("alpha")) ? "kappa" : "alpha";
+  const further = name =>
+    SWEPT.filter(x => name !== "Fx" && over(name) !== "Fz" && over(name) !== x && sweptOver().includes(x));
   const all = names => [...names.map(y => ({x: over(y), y})), ...names.flatMap(y => further(y).map(x => ({x, y})))];
   return [...all(fitted), ...all(others), ...all(fitted).map(({x, y}) => ({x, y: RESIDUAL + y}))];
 }
@@ -260,7 +279,8 @@ function groupsOver(x) {
 }
 function median(members, column) {
   const step = Math.ceil(members.length / MOST_MOVED);  // so many tell it
-  const sorted = floats(Math.ceil(members.length / step), k => column[members[k * step]]).sort(), k = sorted.length >> 1;
+  const sorted = floats(Math.ceil(members.length / step), k => column[members[k * step]]).sort(),
+    k = sorted.length >> 1;
   return sorted.length % 2 ? sorted[k] : (sorted[k - 1] + sorted[k]) / 2;
 }
 // A channel along the curve of a group, in SI.
@@ -271,7 +291,8 @@ function along(by_mount, group, name) {
     return model(at[0], at[1], at[2], at[3], at[4], at[5], at[6])[name];
   };
 }
-// The input that runs along a curve: that of the axis; slip or sideslip where both axes are forces, as in a friction ellipse.
+// The input that runs along a curve: that of the axis; slip or sideslip where both axes are forces, as in a friction
+// ellipse.
 function parameterOf(x, y) {
   if (project.order.includes(x)) return x;
   if (x === y || !channels.includes(x)) return null;
@@ -283,8 +304,9 @@ function toTheCurve(group, x, name) {
   const {members} = group, at = columns[x], there = fitOwn[name];
   return (group.shift ??= {})[name] ??= floats(members.length, k => model(at[members[k]]) - there[members[k]]);
 }
-function curvePoints(by_mount, curve, steps) {
-  const {group, x, y} = curve, Y = along(by_mount, group, y), X = channels.includes(x) ? along(by_mount, group, x) : null;
+export function curvePoints(by_mount, curve, steps) {
+  const {group, x, y} = curve, Y = along(by_mount, group, y),
+    X = channels.includes(x) ? along(by_mount, group, x) : null;
   const found = new Float64Array(2 * steps + 2);
   for (let k = 0; k <= steps; k++) {
     const at = group.from + (group.to - group.from) * k / steps;
@@ -293,12 +315,13 @@ function curvePoints(by_mount, curve, steps) {
   }
   return found;
 }
-function fixedCurve(by_mount, curve) {
+export function fixedCurve(by_mount, curve) {
   const name = `${curve.x} ${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
   return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve, curve.steps);
 }
-// Where a further run is expected around the curve of the fit, and the middle of that: [x, low, middle, high] along the curve.
-function bandOf(curve) {
+// Where a further run is expected around the curve of the fit, and the middle of that: [x, low, middle, high] along
+// the curve.
+export function bandOf(curve) {
   const {group, y} = curve;
   return (group.bands ??= {})[y] ??= bandPoints(curve);
 }
@@ -308,7 +331,8 @@ function bandPoints({group, x, y, sx, sy}) {
   for (const i of group.members) inside[i] = 1;
   columns.band.rows.forEach((row, k) => {
     if (!inside[row]) return;
-    const at = columns[x][row], knot = knots[Math.min(KNOTS - 1, Math.floor((at - group.from) / (group.to - group.from) * KNOTS))];
+    const at = columns[x][row],
+      knot = knots[Math.min(KNOTS - 1, Math.floor((at - group.from) / (group.to - group.from) * KNOTS))];
     [1, at, columns.missed[y][k], columns.half[y][k]].forEach((number, j) => { knot[j] += number; });
   });
   const model = along(fitModels, group, y);
@@ -318,25 +342,30 @@ function bandPoints({group, x, y, sx, sy}) {
   });
 }
 
-// What a picture shows of every point, in the units of the page, and its curves. Kept until anything but a slider changes.
-function placed(panel) {
+// What a picture shows of every point, in the units of the page, and its curves. Kept until anything but a slider
+// changes.
+export function placed(panel) {
   const name = [panel.x, panel.y, state.reading, version].join();
   if (!panel.kept || panel.kept.name !== name) panel.kept = {name, ...places(panel)};
   const shown = panel.kept;
   if (shown.residual && shown.serial !== serial) {
-    const measured = columns[shown.y], model = own[shown.y], size = quantity(shown.y).si, step = shown.step = stepOf(shown.y);
+    const measured = columns[shown.y], model = own[shown.y], size = quantity(shown.y).si,
+      step = shown.step = stepOf(shown.y);
     for (let i = 0; i < columns.count; i += step) shown.py[i] = (measured[i] - model[i]) / size;
     Object.assign(shown, {serial, order: null, extent: null});
   }
   return shown;
 }
 function places(panel) {
-  const residual = panel.y.startsWith(RESIDUAL), y = residual ? panel.y.slice(RESIDUAL.length) : panel.y, n = columns.count;
+  const residual = panel.y.startsWith(RESIDUAL), y = residual ? panel.y.slice(RESIDUAL.length) : panel.y,
+    n = columns.count;
   const source = name => (state.reading === "read" && columns.read[name]) || columns[name];
-  const parameter = channels.includes(y) && !residual ? parameterOf(panel.x, y) : null, elsewhere = upright(panel.x), of = columns.of.sweep;
+  const parameter = channels.includes(y) && !residual ? parameterOf(panel.x, y) : null, elsewhere = upright(panel.x),
+    of = columns.of.sweep;
   const over = parameter ? groupsOver(parameter).filter(group => group.members.some(i => !elsewhere[of[i]])) : [];
   const sx = quantity(panel.x).si, sy = quantity(y).si, X = source(panel.x), Y = source(y);
-  const px = floats(n, i => elsewhere[of[i]] ? NaN : X[i] / sx), py = residual ? new Float64Array(n) : floats(n, i => Y[i] / sy);
+  const px = floats(n, i => elsewhere[of[i]] ? NaN : X[i] / sx),
+    py = residual ? new Float64Array(n) : floats(n, i => Y[i] / sy);
   const steps = Math.max(FEWEST_STEPS, Math.min(STEPS, Math.floor(STEPS_OF_A_PICTURE / over.length)));
   if (state.reading === "curve") {
     for (const group of over) {
@@ -347,10 +376,11 @@ function places(panel) {
       }
     }
   }
-  return {px, py, curves: over.map(group => ({group, x: panel.x, y, sx, sy, steps})), residual, y, step: 1, order: null};
+  return {px, py, curves: over.map(group => ({group, x: panel.x, y, sx, sy, steps})), residual, y, step: 1,
+    order: null};
 }
 // Ends of what points show: [x0, x1, y0, y1].
-function extent(shown) {
+export function extent(shown) {
   const {px, py} = shown;
   let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity;
   for (let i = 0; i < px.length; i += shown.step) {
@@ -364,25 +394,32 @@ function extent(shown) {
   return [x0, x1, y0, y1];
 }
 // The points of a picture in a rectangle of its units.
-function within(shown, x0, x1, y0, y1) {
+export function within(shown, x0, x1, y0, y1) {
   const {px, py} = shown, found = [];
-  for (let i = 0; i < columns.count; i++) if (visible[i] && px[i] >= x0 && px[i] <= x1 && py[i] >= y0 && py[i] <= y1) found.push(i);
+  for (let i = 0; i < columns.count; i++) {
+    if (visible[i] && px[i] >= x0 && px[i] <= x1 && py[i] >= y0 && py[i] <= y1) found.push(i);
+  }
   return found;
 }
-const inOrder = shown => shown.order ??= Int32Array.from(within(shown, -Infinity, Infinity, -Infinity, Infinity))
+export const inOrder = shown =>
+  shown.order ??= Int32Array.from(within(shown, -Infinity, Infinity, -Infinity, Infinity))
   .sort((a, b) => shown.px[a] - shown.px[b] || shown.py[a] - shown.py[b]);
 // Numbers of a picture as CSV: its points, then its curves.
-function csvOf(panel, label) {
+export function csvOf(panel, label) {
   const shown = panel.kept, quoted = text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-  const lines = [["what", "file", "line", ...project.points.facets.map(one => one.word), label(panel.x), label(panel.y)]];
+  const lines = [["what", "file", "line", ...project.points.facets.map(one => one.word), label(panel.x),
+    label(panel.y)]];
   for (const i of inOrder(shown)) {
     const of = project.points.facets.map(one => one.labels[one.of[i]] ?? "");
-    lines.push([left[i] ? "left out" : "point", project.points.files[columns.file[i]], columns.line[i], ...of, shown.px[i], shown.py[i]]);
+    lines.push([left[i] ? "left out" : "point", project.points.files[columns.file[i]], columns.line[i], ...of,
+      shown.px[i], shown.py[i]]);
   }
   for (const curve of shown.curves) {
     const found = curvePoints(models, curve, curve.steps), first = curve.group.members[0];
-    const of = project.points.facets.map(one => one.is_run || one.inputs.includes(parameterOf(curve.x, curve.y)) ? "" : one.labels[one.of[first]] ?? "");
+    const of = project.points.facets.map(one => one.is_run || one.inputs.includes(parameterOf(curve.x, curve.y)) ? ""
+      : one.labels[one.of[first]] ?? "");
     for (let k = 0; k < found.length; k += 2) lines.push(["curve", "", "", ...of, found[k], found[k + 1]]);
   }
-  return lines.map(line => line.map(cell => quoted(typeof cell === "number" ? String(Number(cell.toPrecision(7))) : String(cell))).join()).join("\n") + "\n";
+  return lines.map(line => line.map(cell =>
+    quoted(typeof cell === "number" ? String(Number(cell.toPrecision(7))) : String(cell))).join()).join("\n") + "\n";
 }

@@ -1,0 +1,214 @@
+// The recordings of a folder: what is recognised, corrected by hand, and the project made of them.
+import {ENDED, asked, sent, takesRecordings} from "./calls.js";
+import {byId, element} from "./dom.js";
+
+let table = null;
+const say = (sentence, bad = false) => {
+  byId("status").textContent = sentence;
+  byId("status").classList.toggle("bad", bad);
+};
+function field(home, word, name, given) {
+  const label = element("label", "", word), input = element("input", "", "", {name, ...given});
+  label.append(input);
+  home.append(label);
+  return input;
+}
+function select(home, word, name, options, value) {
+  const label = element("label", "", word), list = element("select", "", "", {name});
+  for (const [text, shown] of options) list.append(new Option(shown, text, false, text === value));
+  label.append(list);
+  home.append(label);
+  return list;
+}
+// A question for which the recordings are read; meanwhile it can be stopped.
+async function read(address, given) {
+  byId("stop").hidden = false;
+  const found = await asked(address, () => say("reading the recordings; this takes a while"), given);
+  byId("stop").hidden = true;
+  return found;
+}
+byId("stop").addEventListener("click", () => asked("stop-reading", say, sent({})));
+async function post(address) {
+  const found = await read(address, sent(choice()));
+  if (!found || found.error) say(found ? found.error : ENDED, true);
+  return found && !found.error ? found : null;
+}
+const number = name => {
+  const x = document.querySelector(`[name=${name}]`).valueAsNumber;
+  return Number.isFinite(x) ? x : null;
+};
+const text = name => document.querySelector(`[name=${name}]`).value;
+const does = byId("choice").dataset.does, adds = does === "add";
+function choice() {
+  return adds ? {groups: table.groups, seen: table.seen} : {
+    tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"),
+      nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"),
+      nominal_speed: number("nominal_speed"), width: number("width"), rim_radius: number("rim_radius"),
+      side: text("side")},
+    rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"),
+      path_centre: text("path_centre")},
+    groups: table.groups,
+  };
+}
+function list(sentences) {
+  byId("problems").replaceChildren(...sentences.map(sentence => element("li", "", sentence)));
+  byId("problems").hidden = !sentences.length;
+}
+const offer = takesRecordings(say, async (refusals, count) => {
+  say("reading the recordings");
+  await load();
+  if (!refusals.length) return;
+  say(`${refusals.length} of ${count} files were not stored; see below.`, true);
+  list([...refusals, ...table.problems]);
+});
+for (const id of ["add-files", "add-folder"]) byId(id).addEventListener("change",
+  event => { offer([...event.target.files]); event.target.value = ""; });
+// What was corrected stays when recordings are added.
+function carriedOver(before, after) {
+  const columns = new Map(
+    before.groups.flatMap(group => group.columns).map(one => [`${one.heading} ${one.stated}`, one]));
+  const files = new Map(before.groups.flatMap(group => group.files).map(one => [one.name, one]));
+  for (const group of after.groups) {
+    for (const one of group.columns) {
+      const {channel, unit, minus} = columns.get(`${one.heading} ${one.stated}`) || one;
+      Object.assign(one, {channel, unit, minus});
+    }
+    for (const one of group.files) {
+      const {used, backward} = files.get(one.name) || one;
+      Object.assign(one, {used, backward});
+    }
+  }
+  return after;
+}
+const touched = new Set();  // fields that were filled in by hand
+byId("choice").addEventListener("input", event => touched.add(event.target.name));
+async function load() {
+  const found = await read("recordings");
+  if (!found || found.error) return say(found ? found.error : ENDED, true);
+  const typed = table && table.groups.length ? choice() : null;
+  table = table ? carriedOver(table, found) : found;
+  show();
+  if (!typed || adds) return;
+  for (const [name, x] of Object.entries({...typed.tyre, ...typed.rig})) {
+    if (x !== null && touched.has(name)) document.querySelector(`[name=${name}]`).value = x;
+  }
+  document.querySelector("[name=type]").dispatchEvent(new Event("change"));
+}
+
+function show() {
+  const tyre = byId("tyre"), rig = byId("rig"), disc = table.disc.length > 0;
+  tyre.replaceChildren();
+  rig.replaceChildren();
+  byId("found").hidden = true;
+  byId("choice").hidden = !table.groups.length;
+  list(table.problems);
+  if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below."
+    : adds ? "Every recording of this folder is in tyre.toml." : "No recordings here yet.", table.problems.length > 0);
+  if (!adds) tyreAndRig(tyre, rig, disc);
+  byId("groups").replaceChildren(...table.groups.map(group));
+  const first = disc && !adds ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
+  say(first || (table.problems.length ? "Something was not recognised; see below." : ""),
+    !first && table.problems.length > 0);
+}
+function tyreAndRig(tyre, rig, disc) {
+  field(tyre, "name", "name", {value: table.tyre.name, required: true});
+  field(tyre, "size", "size", {value: table.tyre.size ?? ""});
+  const any = {type: "number", step: "any", required: true, min: 0};
+  field(tyre, "unloaded radius [m]", "unloaded_radius", any);
+  field(tyre, "nominal load [N]", "nominal_load", any);
+  field(tyre, "nominal pressure [kPa]", "nominal_pressure", {...any, value: table.tyre.nominal_pressure ?? ""});
+  const optional = {type: "number", step: "any", min: 0};
+  for (const [word, name] of [["nominal speed [m/s]", "nominal_speed"], ["width [m]", "width"],
+    ["rim radius [m]", "rim_radius"]])
+    field(tyre, word, name, {...optional, value: table.tyre[name] ?? ""});
+  select(tyre, "side of the measured tyre", "side", ["left", "right", "symmetric"].map(x => [x, x]), "left");
+  const type = select(rig, "rig", "type", [["", "disc or belt?"], ["flat-track", "belt: a straight path"],
+    ["rotating-disk", "disc: a curved path"]], disc ? "" : "flat-track");
+  type.required = true;
+  select(rig, "axes of the readings", "axes", ["iso", "sae",
+    "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
+  const radius = field(rig, "path radius [m]", "path_radius", optional);
+  const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]),
+    "left");
+  const curved = () => {
+    radius.required = type.value === "rotating-disk";
+    for (const one of [radius, centre]) one.parentNode.hidden = one.disabled = !radius.required;
+  };
+  type.addEventListener("change", curved);
+  curved();
+}
+function group(one) {
+  const home = element("section"), files = element("div", "files"), scroll = element("div", "scroll");
+  const names = one.files.map(file => file.name);
+  home.append(element("h2", "",
+    names.length > 3 ? `${names[0]} ... ${names[names.length - 1]} (${names.length} files)` : names.join(", ")));
+  for (const file of one.files) {
+    const line = element("div"), used = element("label"), back = element("label");
+    const box = element("input", "", "", {type: "checkbox", checked: file.used !== false}),
+      backward = element("input", "", "", {type: "checkbox", checked: file.backward});
+    box.addEventListener("change", () => { file.used = box.checked; });
+    backward.addEventListener("change", () => { file.backward = backward.checked; });
+    used.append(box, `${file.name}, ${file.rows} row${file.rows === 1 ? "" : "s"} `);
+    back.append(backward, "rolls backwards");
+    line.append(used, " ", back);
+    files.append(line);
+  }
+  const folded = element("details", "", "", {open: names.length < 4});
+  folded.append(element("summary", "", "files"), files);
+  const rows = element("table"), head = rows.insertRow();
+  const words = ["heading", "unit in the file", "readings", "is", "read in unit", "turn sign", ""];
+  head.append(...words.map(word => element("th", "", word)));
+  for (const column of one.columns) rows.append(row(column));
+  scroll.append(rows);
+  home.append(folded, scroll);
+  for (const remark of one.remarks) home.append(element("p", "sub", remark));
+  return home;
+}
+function row(column) {
+  const line = element("tr"),
+    cell = content => { const made = element("td"); made.append(content); line.append(made); return made; };
+  cell(column.heading);
+  cell(column.stated);
+  cell(column.range ? column.range.map(x => Number(x.toPrecision(4))).join(" to ") : "text");
+  const is = element("select");
+  is.setAttribute("aria-label", `${column.heading} is`);
+  is.append(new Option("not used", "", false, !column.channel));
+  for (const channel of table.channels) is.append(new Option(channel.name, channel.name, false,
+    channel.name === column.channel));
+  const about = () => {
+    const known = table.channels.find(one => one.name === is.value);
+    is.title = known ? known.about : "";
+    line.classList.toggle("unused", !is.value);
+  };
+  is.addEventListener("change", () => { column.channel = is.value; about(); });
+  cell(is);
+  const unit = element("input", "", "", {value: column.unit, placeholder: "as stated", size: 8});
+  unit.setAttribute("aria-label", `unit of ${column.heading}`);
+  unit.addEventListener("change", () => { column.unit = unit.value.trim(); });
+  cell(unit);
+  const minus = element("input", "", "", {type: "checkbox", checked: column.minus});
+  minus.setAttribute("aria-label", `turn the sign of ${column.heading}`);
+  minus.addEventListener("change", () => { column.minus = minus.checked; });
+  cell(minus);
+  cell(column.why).className = "why";
+  about();
+  return line;
+}
+byId("check").addEventListener("click", async () => {
+  if (!byId("choice").reportValidity()) return;
+  say("reading the recordings as chosen");
+  const found = await post("check");
+  if (!found) return;
+  const said = [`${found.points} points`,
+    ...found.conditions.map(one => `${one.name}: ${one.levels.join(", ")} ${one.unit}`),
+    found.axes.length ? `the signs agree with ${found.axes.join(" and ")} axes`
+      : `the signs agree with no axes: in those chosen ${found.wrong.join(" and ")}`, ...found.warnings];
+  byId("conditions").replaceChildren(...said.map(one => element("li", "", one)));
+  byId("found").hidden = false;
+  say("Checked; see below.");
+});
+byId("choice").addEventListener("submit", async event => {
+  event.preventDefault();
+  if (await post(does)) location.assign("./");
+});
+load();
