@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -15,15 +14,13 @@ from mffit import config as configuration
 from mffit.config import Config, SweepTable
 from mffit.config.toml_file import toml_text
 from mffit.errors import InputError
+from mffit.pipeline.arriving import ArrivingFiles
 from mffit.pipeline.inputs import read_usable
-from mffit.pipeline.intake import entry_of, unlisted
 from mffit.pipeline.measuring import alignment_of, spin_of
 from mffit.pipeline.planning import next_run_of
-from mffit.points.loading import Reading, read
-from mffit.recordings.arriving import Seen, is_cut_off, look_at
+from mffit.points.loading import Reading
 from mffit.recordings.project_file import relative
 from mffit.results.campaign import NOTHING_YET, Arrival, WatchedCampaign
-from mffit.sheets import file_of
 from mffit.sweeps import formats
 from mffit.sweeps.loading import NUMBER
 
@@ -64,16 +61,8 @@ def watch(
         found = watched.look()
         if found is not None:
             yield found
-        if once and not watched.waiting:
+        if once and not watched.arriving.waiting:
             return
-
-
-class _File(NamedTuple):
-    """A complete file."""
-
-    signature: tuple[int, int]  #: as in :class:`Seen`
-    entry: SweepTable
-    problem: str = ""  #: why it cannot be read
 
 
 class _Watch:
@@ -81,23 +70,17 @@ class _Watch:
 
     def __init__(self, path: Path) -> None:
         self.path, self.config = path, configuration.load(path, awaiting=True)
-        self._seen: dict[Path, Seen] = {}
-        self._files: dict[Path, _File] = {}  #: the complete ones, those of tyre.toml first
+        self.arriving = ArrivingFiles()
         self._shown: object = None  #: what the last campaign was made of
         self._last = NOTHING_YET
         self._states: dict[str, tuple[object, ...]] = {}  #: of its files, by their names
         self._said: set[str] = set()  #: its warnings, without their numbers
-        self._see()
-
-    @property
-    def waiting(self) -> list[Path]:
-        """Files that are being written."""
-        return [path for path in self._seen if path not in self._files]
+        self.arriving.look(self.config)
 
     @formats.reading_once()
     def look(self) -> WatchedCampaign | None:
         """The campaign if something has changed since the look before; None otherwise."""
-        before = self._files
+        before = self.arriving.files
         try:
             config = configuration.load(self.path, awaiting=True)
         except InputError as error:
@@ -105,45 +88,20 @@ class _Watch:
             wrong = replace(self._last, changed=(), warnings=(), problem=str(error))
             return wrong if known != self._shown else None
         if config.model_copy(update={"sweep": self.config.sweep}) != self.config:
-            self._files = {}  # read them again: columns or axes may be others
+            self.arriving.forget()  # columns or axes may be others
         self.config = config
-        self._see()
-        rewritten = {path: before[path] for path in self.waiting if path in before}  # no news until complete
-        if (config, rewritten | self._files) == self._shown:
+        self.arriving.look(config)
+        files, waiting = self.arriving.files, self.arriving.waiting
+        rewritten = {path: before[path] for path in waiting if path in before}  # no news until complete
+        if (config, rewritten | files) == self._shown:
             return None
-        self._shown = config, self._files
+        self._shown = config, files
         self._last = self._campaign()
         return self._last
 
-    def _see(self) -> None:
-        """Look at every file, and read those that have become complete."""
-        listed = {self.config.folder / entry.file: entry for entry in self.config.sweep}
-        there = look_at((*listed, *unlisted(self.config)), self._seen)
-        in_order = sorted(there, key=lambda path: 0 if path in listed else there[path].signature[1])
-        self._seen = {path: there[path] for path in in_order}
-        known, self._files = self._files, {}
-        for path, seen in self._seen.items():
-            file, entry = known.get(path), listed.get(path)
-            if file is None or file.signature != seen.signature or file.entry != (entry or file.entry):
-                file = self._read(path, seen, entry) if seen.looks else None
-            if file is not None:
-                self._files[path] = file
-
-    def _read(self, path: Path, seen: Seen, entry: SweepTable | None) -> _File | None:
-        """A file that is complete, or that stays unreadable; None while it is being written."""
-        try:
-            if not seen.is_final and is_cut_off(file_of(path)):
-                return None
-            entry = entry or entry_of(path, self.config)
-            read(self._of([entry]), may_be_empty=True)
-        except InputError as error:
-            entry = entry or SweepTable(file=self._name(path))
-            return _File(seen.signature, entry, str(error)) if seen.is_final else None
-        return _File(seen.signature, entry)
-
     def _campaign(self) -> WatchedCampaign:
         """What the complete files say."""
-        files, listed = self._files.values(), {entry.file for entry in self.config.sweep}
+        files, listed = self.arriving.files.values(), {entry.file for entry in self.config.sweep}
         sound = [file for file in files if not file.problem]
         doubted = {name for name, (is_refused, *_) in self._states.items() if is_refused}
         usable = read_usable(self._of(file.entry for file in sound), listed, doubted)
@@ -167,7 +125,7 @@ class _Watch:
         return WatchedCampaign(
             changed=changed,
             taken=tuple(entry.file for entry in taken),
-            awaited=tuple(dict.fromkeys([*missing, *map(self._name, self.waiting)])),
+            awaited=tuple(dict.fromkeys([*missing, *map(self._name, self.arriving.waiting)])),
             points=0 if reading is None else len(reading.points),
             measured=measured,
             before=self._last.epsilon_gamma,
@@ -183,7 +141,7 @@ class _Watch:
         """What became of files since the campaign before; other numbers in a sentence are no change."""
         before, self._states = self._states, {}
         files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
-        for file in self._files.values():
+        for file in self.arriving.files.values():
             name, text = file.entry.file, ""
             why, own = refused.get(name, ""), int(np.sum(files == name))
             if not why and name not in listed:
@@ -193,7 +151,7 @@ class _Watch:
             self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
             if self._states[name] != before.get(name):
                 yield Arrival(name, "refused" if why else "taken", own, why, text)
-        there = {*self._states, *map(self._name, self.waiting)}
+        there = {*self._states, *map(self._name, self.arriving.waiting)}
         yield from (Arrival(name, "gone") for name in before if name not in there)
 
     def _name(self, path: Path) -> str:
