@@ -47,7 +47,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     if np.any(reason >= 0):
         settings = SteadySettings(*(np.where(np.isfinite(x), x, 0.0) for x in settings))
     found = []
-    for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
+    for stretch in stretches(settings, sweep.point, cuts.tolist(), scale, sweep.line):
         k = int(reason[stretch.begin]) if sweep.point is None else -1
         found.append(stretch if k < 0 else Stretch(stretch.begin, stretch.end, ends[k].reason, MOVE))
     return sorted(found)

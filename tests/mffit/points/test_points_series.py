@@ -14,7 +14,7 @@ from mffit import config as configuration
 from mffit import points
 from mffit.config.models import FitTable
 from mffit.errors import InputError
-from mffit.points.steady import SteadySettings, moves, stretches
+from mffit.points.steady import SteadySettings, gaps, moves, stretches
 
 RATE = 20.0
 SIGMA = 0.4  # relaxation length [m]
@@ -187,6 +187,33 @@ def test_a_sweep_that_never_rests_is_kept_for_the_diagnosis_only(project):
     assert np.all(part.continuous)
     assert np.all(np.diff(part.time) > 0.0)
     assert np.median(np.diff(part.time)) == pytest.approx(0.1, rel=0.01)
+
+
+@pytest.mark.parametrize("rows", [[3], [80], [157], [60, 61, 62, 63, 64, 65]])
+def test_means_of_a_moving_sweep_can_be_left_out_alone(project, rows):
+    """The wheel has rolled on through the lines that are left out: what follows them neither settles nor is too short."""
+    project.add(
+        "moving.csv", series(np.array([-8.0, 8.0, -8.0]), hold=1.0, steering=2.0, noise=2.0, rate=100.0)
+    )
+    config = configuration.load(project.write())
+    own = of_file(points.load(config, continuous=True)[0], "moving.csv")
+    assert len(own) > 150
+    lines = f"{own.line[rows[0]]}-{own.last_line[rows[-1]]}"
+    out = FitTable(exclude=({"file": "moving.csv", "lines": lines, "why": "x"},))
+    left = of_file(points.load(config.model_copy(update={"fit": out}), continuous=True)[0], "moving.csv")
+    assert left.line.tolist() == np.delete(own.line, rows).tolist()
+
+
+def test_a_pause_of_a_recording_is_a_gap_however_its_lines_are_counted():
+    time = np.r_[np.arange(50), 100 + np.arange(50)] * 0.02
+    line = np.arange(2, 102)
+    assert gaps(time, line).tolist() == gaps(time).tolist() == [50]
+    skipped = np.r_[
+        line[:50], 50 + line[50:]
+    ]  # fifty lines are left out: the recording went on, too briefly for a rest
+    assert gaps(time, skipped).tolist() == []
+    time[50:] += 5.0  # a rest may be hidden
+    assert gaps(time, skipped + np.r_[np.zeros(50, int), np.full(50, 250)]).tolist() == [50]
 
 
 def test_a_creeping_sweep_is_not_taken_for_a_plateau(project):
