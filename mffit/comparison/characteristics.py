@@ -104,14 +104,14 @@ def characteristics(
     best = found
     if predictor is not None:
         best, _ = with_slopes(tyre, load, (), turn_slip=turn_slip, tested=tested, predictor=predictor)
-    u = {key: math.hypot(own[i], best[key] - x) for i, (key, x) in enumerate(found.items())}
+    u = dict(zip(found, own.tolist(), strict=True))
     numbers: dict[str, Quantity] = {}
     for key, known_as in CHARACTERISTICS.items():
         if key not in found:
             continue
         fall = FALL + key
-        risen = fall in found and found[fall] <= COVERAGE_FACTOR_95 * u[fall]
-        numbers[key] = (AtLeast if risen else Quantity)(found[key], u[key], known_as.unit)
+        kind = AtLeast if fall in found and best[fall] <= COVERAGE_FACTOR_95 * u[fall] else Quantity
+        numbers[key] = kind(found[key], math.hypot(u[key], best[key] - found[key]), known_as.unit)
     return numbers
 
 

@@ -253,7 +253,7 @@ def contradicted_priors(fitted: Fitted) -> Iterator[str]:
     The posterior mean of a number is the mean of prior and points weighted by their precisions, so the estimate from the points
     alone follows from posterior and prior.
     """
-    stderr = fitted.posterior.stderr
+    stderr = fitted.stderr
     far = float(-ndtri(PREDICTION_FALSE_ALARM / (2.0 * max(len(fitted.hand.priors), 1))))
     for name, prior in fitted.hand.priors.items():
         if name not in fitted.values or name in fitted.at_bound:

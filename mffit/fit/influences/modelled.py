@@ -131,7 +131,7 @@ def at_temperature(
 def _moved(found: NuisanceFit) -> dict[str, tuple[float, float, float]]:
     """Coefficients that the temperature terms changed by clearly more than their standard errors."""
     plain, full = found.plain, found.full
-    errors = full.posterior.stderr
+    errors = full.stderr
     moved = {
         name: (plain.values[name], value, errors[name])
         for name, value in full.values.items()
