@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -97,35 +98,23 @@ def measure(
     a fit to these points adds. Raises InputError if the turn-slip force points towards the centre of the disc.
     """
     evidence = evidence_of(config, points, parts, base, after.spin)
-    warnings = [*parts.unpaired]
-    rows = []
-    stiffnesses = []
-    for group in load_groups(evidence.points):
-        slopes, troubles = load_slopes(evidence, group)
-        stiffnesses.append((group, slopes))
-        warnings += troubles
-    evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes in stiffnesses])
-    scatter: SetupScatter | None = None
-    zeros: tuple[SideslipZeros, ...] = ()
-    drift: Drift | None = None
-    if evidence.rig is not None:
-        scatter = setup_scatter(evidence, stiffnesses)
-        evidence = replace(evidence, excess=excess_forces(scatter, evidence.rig.of_setups))
-        evidence, drift = _with_drift(evidence)
-        axes, zeros = _sideslip_zeros(evidence, stiffnesses)
-        evidence = replace(evidence, axes=axes)
-    for group, slopes in stiffnesses:
+    slopes = [(group, *load_slopes(evidence, group)) for group in load_groups(evidence.points)]
+    stiffnesses = [(group, own) for group, own, _ in slopes]
+    evidence, skew = _with_measured_skew(evidence, [own for _, own in stiffnesses])
+    evidence, scatter, zeros, drift = _with_setups(evidence, stiffnesses)
+    tried = []
+    for group, own in stiffnesses:
         calibrated = partial(calibration, evidence, group, powers_of_load(stiffnesses, group.load))
         # With camber sweeps in both directions (skew), no correction is needed: their mean holds at true zero sideslip.
-        found, troubles = _at_load(
-            evidence, group, slopes if skew else _at_true_sideslip(evidence, group, slopes), calibrated, after
-        )
-        rows += [] if found is None else [found]
-        warnings += troubles
+        at_zero = own if skew else _at_true_sideslip(evidence, group, own)
+        tried.append(_at_load(evidence, group, at_zero, calibrated, after))
+    rows = [found for found, _ in tried if found is not None]
     rows = sorted([*rows, *_of_model_alone(after, rows)], key=lambda found: found.row.load)
     row, law, notes, of_nominal = _at_nominal(evidence, rows, skew)
     stated, left = judge(MeasuredFacts(row, zeros, drift)), config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
+    of_loads = chain(*(said for *_, said in slopes), *(said for _, said in tried))
+    troubles = (*parts.unpaired, *of_loads, *of_nominal)
     return Measured(
         per_load=tuple(found.row for found in rows),
         nominal=row,
@@ -133,12 +122,7 @@ def measure(
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=on_disc is not None and on_disc.slips_beyond(left),
         notes=notes,
-        warnings=(
-            *stated.warnings,
-            *warnings,
-            *of_nominal,
-            *warnings_of_setups(points, row, scatter, config),
-        ),
+        warnings=(*stated.warnings, *troubles, *warnings_of_setups(points, row, scatter, config)),
         load_note=law.note if law else "",
         setup_scatter=scatter,
         sideslip_zeros=zeros,
@@ -150,6 +134,28 @@ def measure(
         made=stated.made,
         reasons=stated.reasons,
     )
+
+
+class _WithSetups(NamedTuple):
+    """The evidence with what differs between set-ups and sweeps."""
+
+    evidence: DirectEvidence
+    scatter: SetupScatter | None = None
+    zeros: tuple[SideslipZeros, ...] = ()
+    drift: Drift | None = None
+
+
+def _with_setups(
+    evidence: DirectEvidence, stiffnesses: Sequence[tuple[LoadGroup, LoadSlopes]]
+) -> _WithSetups:
+    """The evidence with scatter and sideslip zeros of the set-ups and with a drift; unchanged on a straight path."""
+    if evidence.rig is None:
+        return _WithSetups(evidence)
+    scatter = setup_scatter(evidence, stiffnesses)
+    evidence = replace(evidence, excess=excess_forces(scatter, evidence.rig.of_setups))
+    evidence, drift = _with_drift(evidence)
+    axes, zeros = _sideslip_zeros(evidence, stiffnesses)
+    return _WithSetups(replace(evidence, axes=axes), scatter, zeros, drift)
 
 
 def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]:
