@@ -22,8 +22,8 @@ AVERAGED_CHANNELS = (
     *(f"u_{name}" for name in CHANNELS),
 )
 
-AVERAGED_RANGE = {"alpha": STRAIGHT.rad, "gamma": STRAIGHT.rad, "kappa": float(constants.SLIP)}
-"""Largest change of each swept setting within one average along a sweep."""
+AVERAGED_RANGE = {"alpha": STRAIGHT.rad, "gamma": STRAIGHT.rad, "kappa": STRAIGHT.rad}
+"""Largest change of each swept setting within one average along a sweep; forces bend over slip to any side alike."""
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:

@@ -100,11 +100,11 @@ def settled(
     ``responses`` has, for each measured force or moment, the samples (n,), the acceptable drift over a stretch, and the unit.
     """
     time, begin = settings.time, _rolled_from(stretch.begin, settings, stretch.end)
-    short = _too_short(time, begin, stretch.end)
+    short = _too_short(settings, begin, stretch.end)
     if short:
         return stretch._replace(dropped=short)
     begin = max(begin + _transient(x[begin : stretch.end]) for x, _, _ in responses)
-    short = _too_short(time, begin, stretch.end)
+    short = _too_short(settings, begin, stretch.end)
     if short:
         return stretch._replace(dropped=short)
     clear = beyond(FALSE_ALARM / len(time))
@@ -115,11 +115,13 @@ def settled(
     return Stretch(begin, stretch.end, transient=begin - stretch.begin)
 
 
-def _too_short(time: np.ndarray, begin: int, end: int) -> str:
+def _too_short(settings: SteadySettings, begin: int, end: int) -> str:
     if end - begin < constants.FEWEST_POINTS:
         return f"only {max(end - begin, 0)} samples after the transient"
-    seconds = time[end - 1] - time[begin]
-    return f"only {seconds:.1f} s steady" if seconds < constants.SHORTEST_STRETCH else ""
+    seconds = settings.time[end - 1] - settings.time[begin]
+    rolled = seconds * float(np.median(np.abs(settings.V[begin:end])))
+    long = seconds >= constants.SHORTEST_STRETCH or rolled >= constants.SHORTEST_ROLL
+    return "" if long else f"only {seconds:.1f} s steady"
 
 
 def _transient(x: np.ndarray) -> int:

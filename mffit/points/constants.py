@@ -15,7 +15,7 @@ PRESSURE = Real(10e3, "Pa", "Pressures of one level differ by less.")
 SLIP = Real(
     0.02,
     "-",
-    "Longitudinal slips of one level differ by less: a wheel rolls freely up to it, a sweep is averaged over it.",
+    "Longitudinal slips of one level differ by less: a wheel rolls freely up to it.",
 )
 LEVEL_FLANK = Real(
     0.3, "-", "Density over that half a tolerance away below which values are a flank of that level."
@@ -49,6 +49,9 @@ COMPARED_APART = Real(
     "Time between readings that are compared: a setting that changed, a sensor that is stuck shows over it.",
 )
 SHORTEST_STRETCH = Real(2.0, "s", "Shortest stretch after its transient.")
+SHORTEST_ROLL = Real(
+    10.0, "m", "Rolling after its transient that makes a shorter plateau long enough: five turns of a wheel."
+)
 FEWEST_POINTS = Count(8, "-", "Fewest samples or points that show a level, a line or a noise.")
 TRANSIENT_ROLL = Real(2.0, "m", "Distance dropped after a change: three to ten relaxation lengths.")
 SMALLEST_SWEEP_OF_SLIP = Real(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # its parts are loaded on first use
 
-from mffit.constants import FALSE_ALARM
+from mffit.constants import FALSE_ALARM, STRAIGHT, UPRIGHT
 from mffit.points import constants
 from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
 from mffit.scatter import beyond, finite_median, robust
@@ -26,6 +26,8 @@ STEP = {
     "kappa": float(constants.SLIP),
 }
 """Settings that a rig sweeps, in the order of the search, and the smallest change to another set-point."""
+LEVEL = {"alpha": STRAIGHT.rad, "gamma": UPRIGHT.rad, "kappa": float(constants.SLIP)}
+"""Readings of each setting within which it is one level."""
 OTHERS = {"alpha": ("gamma", "kappa"), "gamma": ("kappa",), "kappa": ("alpha", "gamma")}
 """The settings that must rest in a sweep of a setting. Sideslip may follow camber, as on rigs that steer about another axis."""
 Scale = Mapping[str, float]
@@ -270,7 +272,24 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
             usual = max(scale[name], float(np.median(np.abs(values))))
             step = usual * _step_of_condition(masks["kappa"][lag:])
         masks[name] = _changes(smooth, np.maximum(step, noise), lag)
+        if name in STEP:
+            masks[name] |= _swings(settings.time, values, LEVEL[name])
     return masks
+
+
+def _swings(time: np.ndarray, values: np.ndarray, level: float) -> np.ndarray:
+    """Mask (n,) of the samples in sweeps so fast that means over :data:`COMPARED_APART` hide them.
+
+    Means over half and a quarter of that time change by more than a level's tolerance and half of the setting's range there;
+    control around a set-point does not.
+    """
+    low, high = np.percentile(values, constants.CORE)
+    step, found = max(level, constants.SWEPT_SHARE * (high - low)), np.zeros(len(values), dtype=bool)
+    lag = samples_in(time, constants.COMPARED_APART)
+    while (lag := lag // 2) >= samples_in(time, constants.AVERAGED_TIME):
+        noise = beyond(FALSE_ALARM / len(values)) * _noise(values) * np.sqrt(2.0 / lag)
+        found |= _changes(uniform_filter1d(values, lag, mode="nearest"), max(step, noise), lag)
+    return found
 
 
 def _smoothed(settings: SteadySettings, name: str) -> tuple[np.ndarray, float]:

@@ -79,9 +79,9 @@ def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
     assert not any("lag" in sentence for sentence in found.warnings)
 
 
-def test_a_fast_sweep_is_averaged_over_a_fiftieth_of_slip():
-    """At a slip of 1 per second a tenth of a second would be 0.1; at 0.1 per second it is the tenth of a second."""
-    for rate, samples in ((1.0, 2), (0.1, 10)):
+def test_a_fast_sweep_is_averaged_over_no_more_of_slip_than_of_sideslip():
+    """At a slip of 0.35 per second a tenth of a second would be 0.035; at 0.05 per second it is the tenth of a second."""
+    for rate, samples in ((0.35, 2), (0.05, 10)):
         time = np.arange(200) / 100.0
         some = SimpleNamespace(time=time, alpha=0.0 * time, gamma=0.0 * time, kappa=rate * time)
         assert _blocks(some, np.arange(200))[1] == samples
