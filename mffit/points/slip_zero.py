@@ -223,10 +223,11 @@ def against_free_rolling(
         if zero is None:
             continue
         zero = slip_zero(_with_free_wheels(readings, zero)) or zero
-        wrong = _contradiction(heading, zero)
-        if wrong:
-            raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
         form = None if heading == FROM_SPEEDS else form_of(readings, _wheel_speed([out[k] for k in rows]))
+        by_speeds = heading == FROM_SPEEDS or (form is not None and form.over is not None)
+        wrong, key = _contradiction(heading, zero, by_speeds)
+        if wrong:
+            raise InputError(wrong, file=config.path or config.sweep[0].file, key=f"columns.{key}")
         if form is not None and form.over != ROAD:
             if over is not None:
                 wrong = f'{heading} is declared over = "{over}", which contradicts the recorded speeds: '
@@ -379,18 +380,26 @@ def _weak(of: Driven, config: Config) -> str:
     )
 
 
-def _contradiction(heading: str, zero: SlipZero) -> str:
-    """Why a column cannot be slip as a ratio that is positive when driven; empty if it can."""
+def _contradiction(heading: str, zero: SlipZero, by_speeds: bool) -> tuple[str, str]:
+    """Why a column cannot be slip as a ratio that is positive when driven, empty if it can, and the channel to correct.
+
+    ``by_speeds``: the recorded speeds give this slip or agree with it, so that a wrong sign is that of the force.
+    """
     if abs(zero.slope) < constants.SOFTEST_SLIP_STIFFNESS:
-        return (
+        said = (
             f"Fx rises by {zero.slope:.2g} times the load per unit of {heading}, tyres by "
             f'{constants.SOFTEST_SLIP_STIFFNESS:g} or more: it looks like per cent; write unit = "%" for kappa under [columns]'
         )
-    if zero.slope < 0.0:
-        return f"Fx falls with {heading}, so braking is positive there; write scale = -1 for kappa under [columns]"
-    if zero.largest > 1.0 - EFFECTIVE_RADIUS_RANGE[0]:
-        return f"Fx = 0 lies at {heading} {zero.said}, which no radius explains; check this column"
-    return ""
+    elif zero.slope < 0.0 and by_speeds:
+        said = f"Fx falls with {heading}, which the recorded speeds confirm; write scale = -1 for Fx_N under [columns]"
+        return said, "Fx_N"
+    elif zero.slope < 0.0:
+        said = f"Fx falls with {heading}, so braking is positive there; write scale = -1 for kappa under [columns]"
+    elif zero.largest > 1.0 - EFFECTIVE_RADIUS_RANGE[0]:
+        said = f"Fx = 0 lies at {heading} {zero.said}, which no radius explains; check this column"
+    else:
+        said = ""
+    return said, "kappa"
 
 
 def readings_of(rows: MeasuredRows) -> Driven:

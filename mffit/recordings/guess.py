@@ -28,6 +28,9 @@ WITH_UNIT = re.compile(r"(.+?)(?:\s*[/,_]\s*|\s+in\s+)([^_,\s]+)")
 """A heading that ends with its unit: ``Fz / N``, ``Fz, N``, ``Fz in N``, ``Fz_N``."""
 
 
+OF_SLIP = re.compile(r"slip|schlupf", re.IGNORECASE)
+OF_ANGLE = re.compile(r"angle|winkel|side|lat|quer|schr[äa]g", re.IGNORECASE)
+
 SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 """Characters that headings spell in several ways, and one spelling for each."""
 
@@ -74,7 +77,7 @@ def guesses(
     raw, of_rest = _rolling(raw)
     named = {name: heading for name, heading in named.items() if heading in raw.headings}
     columns = _number_columns(raw, named)
-    slips = candidates(raw, BY_NAME[SLIP], named)
+    slips = candidates(raw, BY_NAME[SLIP], named) or _called_slip(raw)
     columns.pop(SLIP, None)
     columns |= {name: columns[name]._replace(given=True) for name in given if name in columns}
     known = {column.heading for column in (*columns.values(), *slips)} | set(named.values())
@@ -100,10 +103,13 @@ def guesses(
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
-    slip, of_slip = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
-    remarks += of_slip
-    if slip is not None:
-        found[SLIP] = slip
+    slip = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
+    remarks += slip.remarks
+    if slip.guess is not None:
+        found[SLIP] = slip.guess
+    if slip.force_reversed:
+        why = "; ".join(filter(None, (found["Fx_N"].why, slip.force_reversed)))
+        found["Fx_N"] = found["Fx_N"]._replace(scale=-1.0, why=why)
     remarks += questions(raw, found, {guess.heading for guess in found.values()})
     if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
         remarks.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
@@ -189,6 +195,15 @@ def candidates(
     """Columns with a known name of a channel and suitable readings, in the order of the names; else the one that is ``named``."""
     names = [named[channel.name]] if channel.name in named else _known_headings(raw, channel, named.values())
     columns = [_column(raw, channel, heading) for heading in names]
+    return [column for column in columns if column is not None]
+
+
+def _called_slip(raw: RawTable) -> list[FoundChannel]:
+    """Columns with the word slip in their heading that are no angle; which one is the slip, the forces decide."""
+    headings = [
+        heading for heading in raw.headings if OF_SLIP.search(heading) and not OF_ANGLE.search(heading)
+    ]
+    columns = [_column(raw, BY_NAME[SLIP], heading) for heading in headings]
     return [column for column in columns if column is not None]
 
 

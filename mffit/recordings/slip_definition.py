@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,10 +16,18 @@ from mffit.sweeps.units import converted
 SLIP = "kappa"
 
 
+class SlipColumn(NamedTuple):
+    """The column to take as slip, None without any, with remarks."""
+
+    guess: Guess | None
+    remarks: tuple[str, ...]
+    force_reversed: str = ""  #: why Fx has the other sign in the file; "" if it has not
+
+
 def slip_definition(
     candidates: Sequence[FoundChannel], found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
-) -> tuple[Guess | None, tuple[str, ...]]:
-    """The column to take as slip, None without any, and remarks; it is the column whose slip at Fx = 0 is closest to zero.
+) -> SlipColumn:
+    """The column to take as slip: that whose slip at Fx = 0 is closest to zero.
 
     ``candidates`` are columns with a heading of slip, ``found`` those of the other channels, whose units ``unit_of`` gives.
     """
@@ -29,17 +38,18 @@ def slip_definition(
             remarks.append(f"{column.heading} is left out: {why}")
         else:
             judged.append(_judged(column, found, unit_of))
-    known = [(guess, zero) for guess, zero in judged if zero is not None]
+    known = [(guess, zero, why) for guess, zero, why in judged if zero is not None]
     if not known:
-        return (judged[0][0] if judged else None), tuple(remarks)
-    chosen, nearest = min(known, key=lambda pair: pair[1].largest)
+        return SlipColumn(judged[0][0] if judged else None, tuple(remarks))
+    chosen, nearest, force_reversed = min(known, key=lambda one: one[1].largest)
     remarks += [
         f"{chosen.heading} is taken, not {guess.heading}: in the latter Fx = 0 lies at slip {zero.said}"
-        for guess, zero in known
+        for guess, zero, _ in known
         if guess is not chosen
     ]
     said = sentence(chosen.heading, chosen.against, nearest)
-    return chosen._replace(why="; ".join(filter(None, (chosen.why, said)))), tuple(remarks)
+    chosen = chosen._replace(why="; ".join(filter(None, (chosen.why, said))))
+    return SlipColumn(chosen, tuple(remarks), force_reversed)
 
 
 def _no_slip(
@@ -72,11 +82,13 @@ def _wheel_not_recorded(column: FoundChannel) -> bool:
 
 def _judged(
     column: FoundChannel, found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]
-) -> tuple[Guess, SlipZero | None]:
-    """A candidate with its unit, sign and reference radius, and its slip at Fx = 0; None if that cannot be found."""
+) -> tuple[Guess, SlipZero | None, str]:
+    """A candidate with its unit, sign and reference radius; its slip at Fx = 0, None if that cannot be found; and why Fx, not
+    the slip, has the other sign, "" if it has not.
+    """
     zero = _zero(converted(column.values, column.unit, "") if column.unit else column.values, found, unit_of)
     choice = None
-    if not column.unit:
+    if _is_plain(column.unit):  # "none" or "-" often stands over per cent
         if column.size > column.channel.upper:
             choice = Choice("%", f"{column.range} look like %")
         elif zero is not None and abs(zero.slope) < SOFTEST_SLIP_STIFFNESS:
@@ -86,18 +98,30 @@ def _judged(
         zero = _zero(0.01 * column.values, found, unit_of)
     guess = column.guess(choice)
     if zero is None:
-        return guess, None
-    if zero.slope < 0.0:
-        why = "braking is positive in the file, as Fx falls with it"
-        guess = guess._replace(scale=-1.0, why="; ".join(filter(None, (guess.why, why))))
-        zero = zero.reversed
-    scale = guess.scale * (0.01 if choice is not None else 1.0)
-    slip = scale * (converted(column.values, column.unit, "") if column.unit else column.values)
+        return guess, None, ""
+    slip = 0.01 * column.values
+    if choice is None:
+        slip = converted(column.values, column.unit, "") if column.unit else column.values
     form, in_form = _form(slip, found, unit_of)
+    force_reversed = ""
+    if zero.slope < 0.0:
+        zero = zero.reversed
+        if form is not None and form.over is not None:
+            force_reversed = f"Fx falls with {column.heading}, which the recorded speeds confirm"
+            in_form = None if in_form is None else in_form.reversed
+        else:
+            why = "braking is positive in the file, as Fx falls with it"
+            guess = guess._replace(scale=-1.0, why="; ".join(filter(None, (guess.why, why))))
+            form, in_form = _form(-slip, found, unit_of)
     if form is not None and form.over not in (None, ROAD):
         why = "; ".join(filter(None, (guess.why, form.said(column.heading))))
         guess, zero = guess._replace(over=form.over, why=why), in_form or zero
-    return guess._replace(against=zero.against), zero
+    return guess._replace(against=zero.against), zero, force_reversed
+
+
+def _is_plain(unit: str) -> bool:
+    """Whether a column has no unit, or one that stands for a plain number."""
+    return not unit or float(converted(np.ones(1), unit, "")[0]) == 1.0
 
 
 def _form(

@@ -16,6 +16,7 @@ from mffit.config.models import Column
 from mffit.constants import HOTTEST_TREAD
 from mffit.points import levels
 from mffit.points.clock import spread
+from mffit.points.constants import CORE
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible, numbers
@@ -351,10 +352,16 @@ def _turning(known: _Known) -> dict[str, Choice] | str:
     of_rotation = (column.unit,) if column.unit else ROTATION_UNITS
     usual = size or math.sqrt(math.prod(limits))
     fits = {
-        (unit, rotation): abs(math.log(radius / usual))
+        (unit, rotation): min(of_wheel)
         for unit in of_speed
         for rotation in of_rotation
-        if limits[0] <= (radius := _rolling_radius(speed, unit, column, rotation)) <= limits[1]
+        if (
+            of_wheel := [
+                abs(math.log(radius / usual))
+                for radius in _rolling_radii(speed, unit, column, rotation)
+                if limits[0] <= radius <= limits[1]
+            ]
+        )
     }
     if not fits:
         units = KINDS["m/s"].units
@@ -379,13 +386,18 @@ def _measured_radius(known: _Known) -> float | None:
     return middle if RADII[0] <= middle <= RADII[1] else None
 
 
-def _rolling_radius(speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str) -> float:
-    """Median of speed over rotation [m] in these units; infinite if the wheel or the road is at rest."""
+def _rolling_radii(
+    speed: FoundChannel, unit: str, rotation: FoundChannel, unit_of_rotation: str
+) -> list[float]:
+    """A small, the middle and a large ratio of speed to rotation [m] in these units; none if the wheel or the road rests.
+
+    A wheel that is braked most of the time has the radius of rolling at the small one only, one that is driven at the large one.
+    """
     V = np.abs(converted(speed.values, unit, "m/s"))
     omega = np.abs(converted(rotation.values, unit_of_rotation, "rad/s"))
-    seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
-    with np.errstate(divide="ignore"):
-        return float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
+    seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0) & (omega > 0.0)
+    low, high = CORE
+    return np.percentile(V[seen] / omega[seen], [low, 50.0, high]).tolist() if np.any(seen) else []
 
 
 def _implausible(name: str, known: _Known) -> str:

@@ -6,7 +6,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from flat_belt import drive_recording, recording, write_mat73
+from flat_belt import DRIVE_UNITS, drive_recording, recording, write_mat73
 
 from mffit import config as configuration
 from mffit import pipeline, points
@@ -59,6 +59,44 @@ def test_the_same_slip_comes_from_another_unit_sign_or_radius(table, project, tm
     found, written, _ = started(tmp_path / "drive.csv", tmp_path)
     assert entry.items() <= written.items()
     assert np.max(np.abs(found.points.kappa - project[0].points.kappa)) < 0.0025
+
+
+@pytest.mark.parametrize("heading", ["SL", "Long slip", "brake slip"])
+def test_slip_in_per_cent_is_found_under_any_heading_and_a_unit_of_none(table, project, tmp_path, heading):
+    other = table.drop(columns="SR").rename(columns={"SL": heading})
+    other[heading] *= 100.0
+    units = ["none" if name == heading else DRIVE_UNITS.get(name, "") for name in other]
+    lines = [
+        ",".join(other),
+        ",".join(units),
+        *(",".join(map(repr, row)) for row in other.to_numpy().tolist()),
+    ]
+    (tmp_path / "drive.csv").write_text("\n".join(lines) + "\n")
+    found, written, _ = started(tmp_path / "drive.csv", tmp_path)
+    assert {"column": heading, "unit": "%"}.items() <= written.items()
+    assert np.max(np.abs(found.points.kappa - project[0].points.kappa)) < 0.0025
+
+
+def test_a_force_of_the_other_sign_is_told_by_the_speeds_from_a_slip_of_the_other_sign(
+    table, project, tmp_path
+):
+    other = table.drop(columns="SR").assign(FX=-table["FX"])
+    file = write_mat73(other, tmp_path / "drive.mat")
+    found, written, content = started(file, tmp_path)
+    assert "scale" not in written
+    assert tomllib.loads(content)["columns"]["Fx_N"] == {"column": "FX", "scale": -1}
+    assert found.points.Fx == pytest.approx(project[0].points.Fx)
+    without = sniff([write_mat73(other.drop(columns="N"), tmp_path / "other.mat")]).recordings[0].guesses
+    assert (without["kappa"].scale, without["Fx_N"].scale) == (-1.0, 1.0)
+
+
+def test_the_speed_of_a_wheel_that_is_braked_to_a_stop_is_kept(table, tmp_path):
+    """Most of the time it turns more slowly than any wheel of its size that rolls."""
+    slip = np.where(table["SL"] < 0.14, -0.9, table["SL"])
+    locked = table.drop(columns="SR").assign(SL=slip, N=table["N"] * (1.0 + slip) / (1.0 + table["SL"]))
+    (recording,) = sniff([write_mat73(locked, tmp_path / "a.mat")], unloaded_radius=0.228).recordings
+    assert np.median(locked["N"]) < 0.2 * np.max(locked["N"])
+    assert recording.guesses["omega_radps"].heading == "N"
 
 
 def test_a_wheel_whose_speed_was_not_recorded_has_no_slip(table, tmp_path):
