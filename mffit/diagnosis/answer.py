@@ -28,6 +28,7 @@ from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Readings
+from mffit.rig_errors import T_REF
 from mffit.suspicion.outliers import Outlier, outliers
 from tir import Tyre
 from tir.mode import with_turn_slip
@@ -179,7 +180,7 @@ def _found(
         held_out=validate(given, with_it).gap_after,
         tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
-        T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,
+        T_ref=chosen.state.faults[T_REF] if "temperatures" in effect.needs else None,
     )
 
 

@@ -14,7 +14,7 @@ from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
-from mffit.diagnosis.needs import HELD_AT, possible, without
+from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.notes import DiagnosisNote, NoRepair, OneSweep, TakenOff, WithinPlay
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -29,6 +29,7 @@ from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
+from mffit.rig_errors import T_REF
 from mffit.suspicion.misread import misread
 from tir import Tyre
 
@@ -148,7 +149,7 @@ def _candidates(
     """
     candidates, hidden = possible(effects, points, start)
     if known:
-        candidates = [without(effect, HELD_AT) for effect in candidates]
+        candidates = [without(effect, T_REF) for effect in candidates]
     if len(np.unique(points.sweep)) < 2:
         return [], [*hidden, OneSweep()]
     return [e for e in candidates if not set(e.parameters) <= set(known)], [*hidden]

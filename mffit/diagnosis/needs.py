@@ -13,9 +13,7 @@ from mffit.diagnosis.notes import NotVisible
 from mffit.effects import OF_CHANNEL, Effect
 from mffit.points import Points, levels
 from mffit.rig import Simulation, distance_km, sense
-
-HELD_AT = "T_ref_degC"
-"""The number of a temperature effect that is the model's reference temperature."""
+from mffit.rig_errors import T_REF
 
 
 def _spread(x: np.ndarray) -> float:
@@ -91,12 +89,12 @@ def _in_range(effect: Effect, points: Points) -> Effect:
 
     A reference far outside would turn a temperature effect into a constant change of the tyre.
     """
-    if HELD_AT not in effect.parameters:
+    if T_REF not in effect.parameters:
         return effect
     T = points.T[np.isfinite(points.T)]
     spread, lower, upper = float(np.std(T)), float(T.min()), float(T.max())
     free = [
-        replace(f, spread=spread, lower=lower, upper=upper) if f.name == HELD_AT else f for f in effect.free
+        replace(f, spread=spread, lower=lower, upper=upper) if f.name == T_REF else f for f in effect.free
     ]
     return replace(effect, free=tuple(free))
 

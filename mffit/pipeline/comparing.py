@@ -23,7 +23,7 @@ from mffit.pipeline.provenance import posterior_of, temperature_of, use_of
 from mffit.points import Points
 from mffit.progress import READING, Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import NO_FAULTS
+from mffit.rig_errors import NO_FAULTS, T_REF
 from mffit.viewer.named import tell_apart
 
 
@@ -158,4 +158,4 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     found = against_points(subject, simulation, points, measured, of_file, name)
     if not warm:
         return found
-    return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm["T_ref_degC"])))
+    return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm[T_REF])))

@@ -19,7 +19,7 @@ from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
-from mffit.rig_errors import error_of, unit_of
+from mffit.rig_errors import T_REF, error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
 from tir.temperature import CURVED_BY, HIGHEST, LOWEST, REFERENCE, RIG, terms_of
@@ -123,7 +123,7 @@ def temperature_of(tyre: Tyre) -> dict[str, float]:
     """The temperature terms of a file and the temperature at which it holds, by rig number; empty without terms."""
     terms = terms_of(tyre)
     found = {name: term.value for name, term in terms.items()}
-    return found | {"T_ref_degC": tyre.measured[REFERENCE].value} if found else {}
+    return found | {T_REF: tyre.measured[REFERENCE].value} if found else {}
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

@@ -19,12 +19,9 @@ from mffit.points.points import OF_SI
 from mffit.prediction.conditions import PATH, UNITS
 from mffit.quantities import column, u_column
 from mffit.rig import Readings, Simulation
-from mffit.rig_errors import BESIDE, ZEROS, error_of
+from mffit.rig_errors import BESIDE, T_REF, ZEROS, error_of
 from tir import Tyre
 from tir.frozen import ReadOnlyArrays
-
-T_REF = "T_ref_degC"
-"""Rig number with the temperature at which the fitted model holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig.histories import History, path_radii
 from mffit.rig.lag import lagged_setting
 from mffit.rig.play import settled
-from mffit.rig_errors import AFTER, BEFORE, RigError
+from mffit.rig_errors import AFTER, BEFORE, T_REF, RigError
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.evaluate import turned_on_rim
 from tir.outputs import outputs_of
@@ -119,7 +119,7 @@ class Chain:
     def warmth(self) -> Any:
         """Temperature above the reference (n,) [K]; 0 where it was not measured."""
         known = np.isfinite(self.points.T)
-        return np.where(known, np.nan_to_num(self.points.T) - self.numbers["T_ref_degC"], 0.0)
+        return np.where(known, np.nan_to_num(self.points.T) - self.numbers[T_REF], 0.0)
 
     @cached_property
     def speed_above_usual(self) -> np.ndarray:

@@ -13,6 +13,7 @@ from mffit.rig_errors.catalog import (
     WORDS,
     ZEROS,
 )
+from mffit.rig_errors.environment import T_REF
 from mffit.rig_errors.faults import (
     NO_FAULTS,
     OF_RUN,
@@ -38,6 +39,7 @@ __all__ = [
     "NO_FAULTS",
     "OF_RUN",
     "RIG_ERRORS",
+    "T_REF",
     "UNITS",
     "WORDS",
     "ZEROS",

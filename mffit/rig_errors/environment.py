@@ -13,6 +13,8 @@ from mffit.rig_errors.record import Appearance, Place, RigError
 from tir.temperature import SCALED_BY
 
 WARMTH = "(T - T_ref)"
+T_REF = "T_ref_degC"
+"""Number with the temperature at which the fitted model holds."""
 
 
 def _warmed(k: Any, value: Any, at: Any) -> Any:
@@ -28,7 +30,7 @@ _of_temperature = partial(
     formula=_warmed,
     limits=(-0.05, 0.05),
     known_sign=-1,
-    counts_from="T_ref_degC",
+    counts_from=T_REF,
 )
 _of_run = partial(
     RigError,
@@ -67,7 +69,7 @@ TEMPERATURE_GRIP_CURVATURE = RigError(
     ),
     spread=1e-4,
     limits=(-5e-3, 5e-3),
-    counts_from="T_ref_degC",
+    counts_from=T_REF,
 )
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
@@ -118,7 +120,7 @@ TEMPERATURE = _of_temperature(
         name="tyre temperature",
         physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
         needs=("temperatures",),
-        together_with=("T_ref_degC",),
+        together_with=(T_REF,),
     ),
 )
 PRESSURE_ARM = RigError(
@@ -170,7 +172,7 @@ SWEEP_HEATING = RigError(
     ),
 )
 REFERENCE_TEMPERATURE = RigError(
-    name="T_ref_degC",
+    name=T_REF,
     word="temperature at which the model holds",
     unit="degC",
     meaning="temperature at which the model holds, T_ref; the mean of the data unless it is fitted",

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.rig_errors import Faults
+from mffit.rig_errors import T_REF, Faults
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
@@ -60,7 +60,7 @@ def _leant(s: Settings, m: Machine) -> np.ndarray:
 
 
 def _kelvin(s: Settings, m: Machine) -> np.ndarray:
-    return s.T - m.faults["T_ref_degC"]
+    return s.T - m.faults[T_REF]
 
 
 def _grip(s: Settings, m: Machine) -> np.ndarray:
@@ -131,7 +131,7 @@ CELL = (
     "crosstalk_Fx_Mz_m", "crosstalk_Fx_Mx_m", "crosstalk_Fy_Mx_m", "drag_Fx_N",
 )  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
-ELSEWHERE = ("path_radius_m", "crown_m", "T_ref_degC", "p_ref_kPa", "relaxation_m")
+ELSEWHERE = ("path_radius_m", "crown_m", T_REF, "p_ref_kPa", "relaxation_m")
 """Errors with formulae elsewhere: path radius and crown in :func:`at_the_tyre`, references in the factors and terms, lag in
 :mod:`mffit.virtual_rig.recording`."""
 FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *ADDED, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)

@@ -19,9 +19,8 @@ from mffit.fit.written.misfit import FileFigures
 from mffit.linearised import LinearisedFit
 from mffit.points import Points
 from mffit.prediction import Predictor, predictor
-from mffit.prediction.predictor import T_REF
 from mffit.rig import Simulation
-from mffit.rig_errors import OF_RUN, rig_estimates
+from mffit.rig_errors import OF_RUN, T_REF, rig_estimates
 from mffit.scatter import ALARM
 from tir.temperature import SCALED_BY
 

@@ -18,6 +18,7 @@ from mffit.fit.influences.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.points import Points
+from mffit.rig_errors import T_REF
 from mffit.suspicion import parts_of_sweeps
 
 Gaps = Mapping[str, float]
@@ -136,7 +137,7 @@ def at_reference(config: Config, problem: FitProblem) -> FitProblem:
     points = problem.points
     reference = {"p_ref_kPa": round(float(np.mean(points.p)) / 1e3, 1)}
     if np.any(np.isfinite(points.T)):
-        reference["T_ref_degC"] = reference_temperature(config, points)
+        reference[T_REF] = reference_temperature(config, points)
     return problem.with_values(reference)
 
 

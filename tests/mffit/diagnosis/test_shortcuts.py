@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.bumps import bump_scan
-from mffit.diagnosis.needs import HELD_AT, possible, without
+from mffit.diagnosis.needs import possible, without
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.effects import CATALOG
 from mffit.points import Points, make_points
 from mffit.rig import Simulation
+from mffit.rig_errors import T_REF
 
 WARMTH = next(effect for effect in CATALOG if effect.id == "temperature")
 
@@ -71,9 +72,9 @@ def test_the_model_holds_at_a_temperature_of_the_data():
     points = _points()
     start = Simulation({}, turn_slip=True)
     (warm,), _ = possible([WARMTH], points, start)
-    (held_at,) = (free for free in warm.free if free.name == HELD_AT)
+    (held_at,) = (free for free in warm.free if free.name == T_REF)
     assert held_at.lower == points.T.min()
     assert held_at.upper == points.T.max()
     assert held_at.spread == pytest.approx(np.std(points.T))
-    assert without(warm, HELD_AT).parameters == ("k_T_per_K",)
+    assert without(warm, T_REF).parameters == ("k_T_per_K",)
     assert replace(warm, free=WARMTH.free) == WARMTH
