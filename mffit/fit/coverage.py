@@ -36,7 +36,7 @@ LACKING = {
     "coupled": "no sweep combines sideslip and camber",
     "side": "neither sideslip nor camber was run",
     "kappa": "no sweep varies longitudinal slip",
-    "combined": "no sweep combines longitudinal slip and sideslip",
+    "combined": "longitudinal slip was run at one sideslip only, which does not show how it falls with sideslip",
     "side_force": "no sweep combines longitudinal slip and side force, from sideslip or camber",
     "both_sides": "sideslip was run to one side only, which does not show how the other one differs: run sideslip of the other "
     "sign",
@@ -86,7 +86,7 @@ def design(points: Points, side: str) -> Design:
         "sideslips": levels.count(points.alpha, levels.SIDESLIP),
         "side": np.any(slipping | cambered),
         "kappa": np.any(driven),
-        "combined": np.any(driven & slipping),
+        "combined": levels.count(np.abs(points.alpha[driven]), levels.SIDESLIP) - 1 if np.any(driven) else 0,
         "side_force": np.any(driven & (slipping | cambered)),
         "both_sides": _differ(towards[slipping]),
         "curvature": curved,

@@ -56,6 +56,19 @@ def test_braking_alone_shows_nothing_of_the_side():
     assert found.keys().isdisjoint({"PKX1", "PDX1", "PCX1", "PEX1"})
 
 
+@pytest.mark.parametrize(
+    ("sideslips", "known"), [((6.0,), False), ((-6.0, 6.0), False), ((0.0, 6.0), True), ((0.0,), False)]
+)
+def test_how_sideslip_weakens_the_longitudinal_force_needs_two_sizes_of_it(sideslips, known):
+    """At one size every weight of combined slip is a factor of the pure force."""
+    kappa = np.tile(np.linspace(-0.12, 0.0, 13), len(sideslips))
+    alpha = np.radians(np.repeat(sideslips, 13))
+    points = make_points(alpha, 0.0, 1400.0, kappa=kappa, p=250e3, V=6.0, phi_t=0.0)
+    points = points.replace(Fx=20.0 * points.Fz * kappa, Fy=-10.0 * points.Fz * alpha)
+    assert ("RBX1" not in held(points)) == known
+    assert "PKX1" not in held(points)
+
+
 def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stiffness():
     found = held(programme(*LOADS, *PRESSURES))
     assert set(found) == {"PPY2"}
