@@ -10,6 +10,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
+import numpy as np
+
 from tir.codegen.program import Switches, trace
 from tir.defaults import completed
 from tir.document import AS_TEXT, NUMBER, Document, FileLine, number_of, unquoted
@@ -27,6 +29,8 @@ OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in 
 """Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 LONG_NAME, LIKENESS = 6, 0.85
 """Characters from which a name without a number is like few others, and the likeness that makes another one a misspelling."""
+LARGEST = float(np.finfo(np.float32).max)
+"""Largest size of a value: simulation programs have no larger one in single precision, and squares of it are finite here."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
@@ -163,7 +167,7 @@ def value_of(
         return unquoted(line.value)
     text = unquoted(line.value)
     number = number_of(text)
-    if number is not None and math.isfinite(number):
+    if number is not None and abs(number) <= LARGEST:
         return number * factor(row.unit, words)
     if not text:
         if row.name in (*ESSENTIAL, *ESSENTIAL_COEFFICIENTS) or line.number == len(document.lines):

@@ -44,6 +44,8 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     tyres = (first.tyre, second.tyre)
     lower, upper = max(float(t["FZMIN"]) for t in tyres), min(float(t["FZMAX"]) for t in tyres)
     nominal = float(first.tyre["FNOMIN"])
+    if not 0.0 < upper >= lower:  # the ranges have no load in common
+        lower, upper = 0.0, np.inf
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
     tested, shared = Tested.of(tyres), _shared(first, second)

@@ -14,7 +14,7 @@ import tir
 from mffit.conversion import mf52, wording
 from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, camber_range, misfits
 from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
-from mffit.conversion.old_files import OF_62, OWN, old_completed, refuse_load_of_zero
+from mffit.conversion.old_files import OF_62, OWN, old_completed, refuse_load_of_zero, refuse_no_numbers
 from mffit.conversion.refit import UNBOUNDED
 from mffit.conversion.result import ROUNDING, OldConversion
 from mffit.least_squares import FreeNumber, of_model, solve
@@ -80,16 +80,18 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
     Raises
     ------
     TirError
-        If the file cannot be read, or has no cornering stiffness.
+        If the file cannot be read, has no cornering stiffness, or gives forces that are not numbers.
     """
     tyre = tir.read(path, **given)
     refuse_load_of_zero(tyre.values, path)
     reach = reach_of(tyre.values, tyre.present)
     at = conditions(reach)
     goal = dict(zip(CHANNELS_COMPARED, _forces(tyre, at), strict=True))
+    refuse_no_numbers(goal, path)
     keys = _keys(kind)
     values = _start(tyre, keys) | _cornering_stiffness(tyre, reach) | camber_range(tyre, reach)
     values |= _relaxation(tyre, values, reach)
+    refuse_no_numbers(mf52.forces(mf52.in_terms_of_62(values), *at)._asdict(), path)
     fitted: list[str] = []
     for channel in OF_CHANNEL:
         wanted, u = goal[channel], at.u(goal[channel])

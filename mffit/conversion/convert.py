@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.conversion import constants, mf52, wording
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
-from mffit.conversion.old_files import OldFile, read_old
+from mffit.conversion.old_files import OldFile, read_old, refuse_no_numbers
 from mffit.conversion.refit import held, refit
 from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
 from mffit.errors import InputError
@@ -62,6 +62,7 @@ def convert(
     reach = reach_of(old.values, old.present)
     at = conditions(reach)
     goal = mf52.forces(p, *at)._asdict()
+    refuse_no_numbers(goal, path)
     start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
     start |= in_one_form(start)

@@ -9,6 +9,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from tir import Problem, TirError
 from tir.defaults import completed
 from tir.document import Document, read_document
@@ -109,6 +111,15 @@ def refuse_load_of_zero(values: Mapping[str, Any], path: str | Path) -> None:
             "PKY2 is 0, but the cornering stiffness divides the load by it: give its value",
             path=path,
             name="PKY2",
+        )
+
+
+def refuse_no_numbers(forces: Mapping[str, np.ndarray], path: str | Path) -> None:
+    """Raise TirError if a force of a file is not a number at some condition, so that nothing can be fitted to it."""
+    wrong = [channel for channel, force in forces.items() if not np.all(np.isfinite(force))]
+    if wrong:
+        raise TirError(
+            f"{wrong[0]} is not a number everywhere in the ranges: correct what mffit check names", path=path
         )
 
 

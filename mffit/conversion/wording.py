@@ -67,9 +67,11 @@ def region(row: RegionMisfit) -> str:
 
 def worst(misfit: Iterable[RegionMisfit]) -> str:
     """The misfit of the channel that differs most, as a share of its largest value at the same load."""
-    row = max(misfit, key=lambda row: row.share)
+    row = max(misfit, key=lambda row: row.share, default=None)
     return (
-        f"{MODEL[row.channel].symbol} differs most from the original, by up to {size(row)}, at {region(row)}"
+        "the original gives no force that could differ"
+        if row is None
+        else f"{MODEL[row.channel].symbol} differs most from the original, by up to {size(row)}, at {region(row)}"
     )
 
 

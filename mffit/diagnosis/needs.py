@@ -23,7 +23,7 @@ def _spread(x: np.ndarray) -> float:
 
 def _varies(x: np.ndarray, kind: levels.LevelKind) -> bool:
     """Whether values (n,) belong to more than one level."""
-    return _spread(np.log(x) if kind.relative else x) > kind.tolerance
+    return _spread(np.log(x[x > 0.0]) if kind.relative else x) > kind.tolerance
 
 
 def _coupled(points: Points) -> np.ndarray:

@@ -45,6 +45,8 @@ def grid_of(function: Function, ranges: Ranges, goal: float) -> Grid:
     random = np.random.default_rng(0)
     profiles = {name: _profile(function, ranges, name, random) for name in ranges}
     largest = max(float(np.abs(y).max()) for _, y in profiles.values())
+    if not np.isfinite(largest):
+        return Grid({}, np.zeros(()), largest, 0.0, 0, {})
     bent = {
         name: (x, y / largest)
         for name, (x, y) in profiles.items()

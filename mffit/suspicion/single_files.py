@@ -33,14 +33,15 @@ AS_READ = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 
 @rule_of_files(id="dead-channel", sentence="is {reading:g} in every row, so the channel was dead; {remedy}")
 def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
-    """Mz and Fy that are the same in every row although the angles change."""
+    """Mz and Fy that are the same in every row although the angles change, and a speed of 0, at which there is no slip."""
     if len(part) < constants.FEWEST or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
         return
     for column, reading, remedy in (
         ("Mz_Nm", part.Mz, "leave the column out of this file"),
         ("Fy_N", part.Fy, "leave this file out"),
+        ("V_mps", part.V, "leave the column out of this file"),
     ):
-        if np.all(reading == reading[0]):
+        if np.all(reading == reading[0]) and not (column == "V_mps" and reading[0] > 0.0):
             yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
 
 

@@ -130,7 +130,7 @@ def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, object]:
     ranges = [control.range_of(tyre) for tyre in tyres]
     low, high = min(r[0] for r in ranges) / si, max(r[1] for r in ranges) / si
     start = float(tyres[0][control.start]) / si if control.start else 0.0
-    low, high = min(low, start), max(high, start)
+    low, high = min(low, start, high), max(high, start, low)
     step = _round_step((high - low) / 200.0)  # moves the curves by less than a line's width
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     return {
