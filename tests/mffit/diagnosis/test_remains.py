@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_rigs import LEAN, built, disc
+from small_rigs import LEAN, built, disc, simulated, truth
 
+import mffit
+from mffit import config as configuration
 from mffit.diagnosis.remains import Left, best_effect
 from mffit.effects import CATALOG
 from mffit.fit.fitted import left_by
@@ -132,3 +134,14 @@ def test_left_out_sweeps_are_predicted_worse_than_they_are_fitted(falling):
         assert found.sweeps == len(falling.points.sweep_names)
         assert found.fitted == pytest.approx(np.sqrt(np.nanmean(misfit**2)), rel=0.1)
         assert found.predicted > found.fitted
+
+
+def test_a_coefficient_that_was_set_wrong_is_named_with_its_true_size(tmp_path):
+    """PKY2 is set 30 % too large: the readings tell the tyre's, in units of the coefficient."""
+    simulated(disc(), tmp_path)
+    true = float(truth()["PKY2"])
+    config = configuration.load(tmp_path / "tyre.toml", coefficients=[f"PKY2={1.3 * true!r}"])
+    found = mffit.build(config, with_report=False).remains.effect
+    assert (found.best.effect.id, found.significant) == ("load-cornering-stiffness", True)
+    value, u = found.best.numbers["PKY2"]
+    assert abs(value - true) < 3.0 * u < 0.3

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit.constants import STRAIGHT
 from mffit.points import make_points
 from mffit.points.other_label import other_labels
 
@@ -20,9 +21,18 @@ def force(alpha, gamma, Fz, p, *, by_pressure=0.5):
 
 
 def campaign(
-    *, wrong: dict[str, dict[str, float]] | None = None, seed: int = 1, scatter: float = 0.0, **of_tyre
+    *,
+    wrong: dict[str, dict[str, float]] | None = None,
+    seed: int = 1,
+    scatter: float = 0.0,
+    angles: np.ndarray = ANGLES,
+    off: float = 0.0,
+    **of_tyre,
 ):
-    """Sweeps of sideslip at every load, camber and pressure, each twice; ``wrong`` are false labels by sweep."""
+    """Sweeps of sideslip at every load, camber and pressure, each twice; ``wrong`` are false labels by sweep.
+
+    The second of each two is run at angles that are ``off`` [rad], as it records.
+    """
     random = np.random.default_rng(seed)
     rows, names = [], []
     for Fz in LOADS:
@@ -30,10 +40,11 @@ def campaign(
             for gamma in (0.0, 0.1):
                 for again in "ab":
                     name = f"{Fz:.0f}-{1e-3 * p:.0f}-{gamma:g}{again}"
-                    Fy = force(ANGLES, gamma, Fz, p, **of_tyre) * (1.0 + scatter * random.standard_normal())
-                    Fy = Fy + NOISE * random.standard_normal(len(ANGLES))
+                    run = angles + off * (again == "b")
+                    Fy = force(run, gamma, Fz, p, **of_tyre) * (1.0 + scatter * random.standard_normal())
+                    Fy = Fy + NOISE * random.standard_normal(len(run))
                     label = {"gamma": gamma, "Fz": Fz, "p": p} | (wrong or {}).get(name, {})
-                    rows += [(a, *label.values(), y, len(names)) for a, y in zip(ANGLES, Fy, strict=True)]
+                    rows += [(a, *label.values(), y, len(names)) for a, y in zip(run, Fy, strict=True)]
                     names.append(name)
     alpha, gamma, Fz, p, Fy, sweep = np.array(rows).T
     return make_points(
@@ -91,3 +102,12 @@ def test_a_label_without_neighbours_is_doubted_if_it_matters_elsewhere():
     assert "where 200 kPa moves such readings by about" in found.sentence
     deaf = campaign(wrong={"1600-250-0a": {"p": 200e3}}, by_pressure=0.0)
     assert not other_labels(deaf.select(np.isin(deaf.sweep, kept)))
+
+
+@pytest.mark.parametrize("off", [0.0, 0.002])
+def test_angles_that_are_a_little_off_are_brought_together_by_the_slope(off):
+    """0.002 rad at 27 kN/rad are 54 N, many times the noise; the sweeps run through steps that are close together."""
+    angles = STRAIGHT.rad * np.arange(-8.0, 9.0)
+    assert not other_labels(campaign(angles=angles, off=off))
+    (found,) = other_labels(campaign(angles=angles, off=off, wrong={"1600-250-0a": {"p": 200e3}}))
+    assert (found.sweep, found.column, found.other) == ("1600-250-0a", "p_kPa", pytest.approx(250.0))

@@ -331,3 +331,15 @@ def test_a_campaign_of_many_conditions_has_a_panel_for_each(view):
         dataclasses.replace(view, curves=tuple(many), lines=lines), view.channels[0]
     )
     assert len(sheet.panels) == 80
+
+
+def test_the_overview_has_the_curves_nearest_to_the_nominal_conditions(view):
+    """Every channel over sideslip, and one over camber; each curve is at the nominal load, upright or without sideslip."""
+    sheet, tyre = fit.overview(view), view.build.config.tyre
+    assert len(sheet.panels) >= len(view.channels)
+    at_nominal = np.abs(view.points.Fz - tyre.nominal_load) < 0.1 * tyre.nominal_load
+    for panel in sheet.panels:
+        read = [series.y for series in panel.series if not series.name.startswith("model")]
+        assert read
+        shown = set(np.round(np.concatenate(read), 6))
+        assert any(shown <= set(np.round(view.points.channel(c.name)[at_nominal], 6)) for c in view.channels)
