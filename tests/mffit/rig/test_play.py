@@ -99,3 +99,17 @@ def test_the_angle_without_moment_is_found_within_a_few_evaluations():
     assert rest.floats.all()
     assert rest.alpha == pytest.approx(0.0012, abs=1e-9)
     assert len(calls) <= 4
+
+
+@pytest.mark.parametrize("steep", [1.0, 100.0, 300.0])
+def test_a_wheel_floats_where_a_strongly_bent_moment_vanishes(steep):
+    """Exponential moments whose zeros lie anywhere within a play of 0.02 rad: by bisection, to a hundredth of a millirad."""
+    zeros = np.linspace(-0.0095, 0.0095, 23)
+    signs = np.where(np.arange(23) % 2, 1.0, -1.0)
+
+    def moment_of(which):
+        return lambda alpha: signs[which] * np.expm1(signs[which] * steep * (alpha - zeros[which]))
+
+    found = settled(moment_of, np.zeros(23), 0.01)
+    assert np.all(found.floats)
+    assert found.alpha == pytest.approx(zeros, abs=1e-5)
