@@ -15,13 +15,15 @@ from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 from inside import client_of
 
 from mffit.errors import InputError
 from mffit.viewer import project_data
 from mffit.window.app import Opened, within
-from mffit.window.runs import _work, out_of
+from mffit.window.runs import _work, carry_out, out_of
 from mffit.window.session import Session
 
 
@@ -295,6 +297,19 @@ def test_curves_of_other_readings_are_not_those_of_a_build(session, change):
     assert not session.state()["is_fitted"]
     recording.write_bytes(content)
     assert session.state()["is_fitted"]
+
+
+def test_a_recording_that_cannot_be_used_is_named_and_not_offered(tyre_toml):
+    folder = tyre_toml.parent
+    table = pd.read_csv(folder / "camber_900.csv")
+    table.assign(Fy_N=-table["Fy_N"]).to_csv(folder / "rear.csv", index=False)
+    again = pd.read_csv(folder / "sideslip_900.csv")
+    again.assign(Fy_N=again["Fy_N"] + np.resize([3.0, -4.0, 1.0], len(again))).to_csv(
+        folder / "again.csv", index=False
+    )
+    found = carry_out("watch", tyre_toml, lambda sentence: None)
+    assert found["unlisted"] == ["again.csv"]
+    assert [line for line in found["lines"] if line.startswith("not taken: ") and "rear.csv" in line]
 
 
 def test_two_windows_do_not_overwrite_each_other(client, session):
