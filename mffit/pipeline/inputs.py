@@ -35,6 +35,7 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
 class Usable(NamedTuple):
     """Points of the sweeps that can be used together."""
 
+    config: Config  #: of these sweeps
     reading: Reading | None  #: None if no sweeps can be
     refused: dict[str, str]  #: by the file of a sweep, why it was left out
     problem: str  #: why there is no reading
@@ -48,15 +49,18 @@ def read_usable(config: Config, required: Collection[str], doubted: Collection[s
     others are then added in their order, each unless the points are refused with it, those of which this is ``doubted`` last.
     """
 
+    def of(sweeps: Sequence[SweepTable]) -> Config:
+        return config.model_copy(update={"sweep": tuple(sweeps)})
+
     def together(sweeps: Sequence[SweepTable]) -> Reading | InputError | None:
         try:
-            return read_points(config.model_copy(update={"sweep": tuple(sweeps)})) if sweeps else None
+            return read_points(of(sweeps)) if sweeps else None
         except InputError as error:
             return error
 
     found = together(config.sweep)
     if not isinstance(found, InputError):
-        return Usable(found, {}, "")
+        return Usable(config, found, {}, "")
     taken = [sweep for sweep in config.sweep if sweep.file in required]
     refused: dict[str, str] = {}
     foreign: dict[str, str] = {}
@@ -81,8 +85,8 @@ def read_usable(config: Config, required: Collection[str], doubted: Collection[s
         else:
             foreign |= {sweep.file: str(more) for sweep in group}
     if isinstance(found, InputError):
-        return Usable(None, refused, str(found))
-    return Usable(found, refused | foreign, "")
+        return Usable(of([*taken, *further]), None, refused, str(found))
+    return Usable(of(taken), found, refused | foreign, "")
 
 
 def read_base(config: Config) -> Tyre | None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from mffit import config as configuration
 from mffit.config import Config, SweepTable
 from mffit.config.loading import STAND_IN, checked
+from mffit.config.toml_file import toml_text
 from mffit.csv_tables import csv_text
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
@@ -125,6 +126,11 @@ def entry_of(path: Path, config: Config) -> SweepTable:
     found = sniff([path], unloaded_radius=config.tyre.unloaded_radius)
     text = sweeps_text(found, config.folder, config.columns)
     return SweepTable.model_validate(tomllib.loads(text)["sweep"][0])
+
+
+def sweep_text(entry: SweepTable) -> str:
+    """The [[sweep]] as ``tyre.toml`` writes it."""
+    return toml_text({"sweep": [entry.model_dump(mode="json", exclude_defaults=True)]}).strip()
 
 
 def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[Sniffed, str]:

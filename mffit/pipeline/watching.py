@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,11 +11,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
-from mffit.config import Config, SweepTable
-from mffit.config.toml_file import toml_text
 from mffit.errors import InputError
 from mffit.pipeline.arriving import ArrivingFiles
 from mffit.pipeline.inputs import read_usable
+from mffit.pipeline.intake import sweep_text
 from mffit.pipeline.measuring import alignment_of, spin_of
 from mffit.pipeline.planning import next_run_of
 from mffit.points.loading import Reading
@@ -58,8 +57,7 @@ def watch(
     watched = _Watch(Path(path))
     while True:
         (pause or time.sleep)(every)
-        found = watched.look()
-        if found is not None:
+        if (found := watched.look()) is not None:
             yield found
         if once and not watched.arriving.waiting:
             return
@@ -102,30 +100,30 @@ class _Watch:
     def _campaign(self) -> WatchedCampaign:
         """What the complete files say."""
         files, listed = self.arriving.files.values(), {entry.file for entry in self.config.sweep}
-        sound = [file for file in files if not file.problem]
+        sound = tuple(file.entry for file in files if not file.problem)
         doubted = {name for name, (is_refused, *_) in self._states.items() if is_refused}
-        usable = read_usable(self._of(file.entry for file in sound), listed, doubted)
-        refused = {file.entry.file: file.problem for file in files if file.problem} | usable.refused
-        taken = [file.entry for file in sound if file.entry.file not in refused]
-        reading, problem = usable.reading, usable.problem
+        usable = read_usable(self.config.model_copy(update={"sweep": sound}), listed, doubted)
+        config, reading, problem = usable.config, usable.reading, usable.problem
         measured = alignment = planned = None
         try:
             with threadpool_limits(1):  # the matrices are small: threads cost more than they save
                 if reading is not None:
-                    measured = spin_of(self._of(taken), reading)
-                    alignment = alignment_of(self._of(taken), reading.points)
-                    planned = next_run_of(self._of(taken), reading.points, measured)
+                    measured = spin_of(config, reading)
+                    alignment = alignment_of(config, reading.points)
+                    planned = next_run_of(config, reading.points, measured)
         except InputError as error:
             problem = str(error)
         given = measured.warnings if measured else reading.warnings if reading else ()
         warnings = {NUMBER.sub("0", sentence): sentence for sentence in given}
         said, self._said = self._said, set(warnings)
-        changed = tuple(self._changed(reading, refused, listed))
+        refused = {file.entry.file: file.problem for file in files if file.problem} | usable.refused
+        awaited = [relative(path, self.config.folder) for path in self.arriving.waiting]
+        changed = tuple(self._changed(reading, refused, listed, awaited))
         missing = [entry.file for entry in self.config.sweep if entry.file not in self._states]
         return WatchedCampaign(
             changed=changed,
-            taken=tuple(entry.file for entry in taken),
-            awaited=tuple(dict.fromkeys([*missing, *map(self._name, self.arriving.waiting)])),
+            taken=tuple(entry.file for entry in config.sweep),
+            awaited=tuple(dict.fromkeys([*missing, *awaited])),
             points=0 if reading is None else len(reading.points),
             measured=measured,
             before=self._last.epsilon_gamma,
@@ -136,27 +134,20 @@ class _Watch:
         )
 
     def _changed(
-        self, reading: Reading | None, refused: Mapping[str, str], listed: Collection[str]
+        self,
+        reading: Reading | None,
+        refused: Mapping[str, str],
+        listed: Collection[str],
+        awaited: Collection[str],
     ) -> Iterator[Arrival]:
         """What became of files since the campaign before; other numbers in a sentence are no change."""
         before, self._states = self._states, {}
         files = np.array(reading.points.files)[reading.points.file] if reading else np.array([], str)
         for file in self.arriving.files.values():
-            name, text = file.entry.file, ""
+            name = file.entry.file
             why, own = refused.get(name, ""), int(np.sum(files == name))
-            if not why and name not in listed:
-                text = toml_text(
-                    {"sweep": [file.entry.model_dump(mode="json", exclude_defaults=True)]}
-                ).strip()
             self._states[name] = bool(why), own, NUMBER.sub("0", why), file.signature
             if self._states[name] != before.get(name):
+                text = "" if why or name in listed else sweep_text(file.entry)
                 yield Arrival(name, "refused" if why else "taken", own, why, text)
-        there = {*self._states, *map(self._name, self.arriving.waiting)}
-        yield from (Arrival(name, "gone") for name in before if name not in there)
-
-    def _name(self, path: Path) -> str:
-        return relative(path, self.config.folder)
-
-    def _of(self, entries: Iterable[SweepTable]) -> Config:
-        """The configuration of some sweeps."""
-        return self.config.model_copy(update={"sweep": tuple(entries)})
+        yield from (Arrival(name, "gone") for name in before if name not in {*self._states, *awaited})
