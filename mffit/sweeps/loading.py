@@ -203,11 +203,12 @@ def check_excluded(config: Config, file: str, lines: np.ndarray) -> None:
     Raises InputError if a range begins or ends at another line.
     """
     for index, one in enumerate(config.fit.exclude):
-        ends = (end for pair in one.ranges for end in pair) if one.file == file else ()
-        wrong = next((end for end in ends if not np.any(lines == end)), None)
-        if wrong is not None:
+        ends = np.array(one.ranges).ravel() if one.file == file else np.array([], int)
+        wrong = ends[~np.isin(ends, lines)]
+        if len(wrong):
             line, key = config.line_of(f"fit.exclude.{index}.lines"), f"fit.exclude[{index + 1}].lines"
-            raise InputError(_no_reading(Path(file).name, lines, wrong), file=config.path, line=line, key=key)
+            sentence = _no_reading(Path(file).name, lines, int(wrong[0]))
+            raise InputError(sentence, file=config.path, line=line, key=key)
 
 
 def _no_reading(name: str, lines: np.ndarray, wrong: int) -> str:

@@ -155,16 +155,33 @@ const rangesOf = entry => entry.lines.split(",").map(part => {
   const [first, last] = part.split("-").map(Number);
   return [first, last ?? first];
 });
-export function markLeftOut(entries) {
-  const {line, file} = columns;
-  left = new Uint8Array(columns.count);
-  for (const [number, name] of project.points.files.entries()) {
-    const ranges = entries.filter(entry => entry.file === name).flatMap(rangesOf);
-    if (!ranges.length) continue;
-    for (let i = 0; i < columns.count; i++) {
-      if (file[i] === number && ranges.some(([first, last]) => line[i] >= first && line[i] <= last)) left[i] = 1;
-    }
+// Ranges in order, of which those that touch are one.
+function joined(ranges) {
+  const found = [];
+  for (const [first, last] of ranges) {
+    const before = found.at(-1);
+    if (before && first <= before[1] + 1) before[1] = Math.max(before[1], last); else found.push([first, last]);
   }
+  return found;
+}
+// Whether one of the ranges, in order and apart, holds a line; by halving, as there may be tens of thousands.
+function holds(ranges, line) {
+  let from = 0, to = ranges.length;
+  while (from < to) {
+    const middle = (from + to) >> 1;
+    if (ranges[middle][1] < line) from = middle + 1; else to = middle;
+  }
+  return from < ranges.length && ranges[from][0] <= line;
+}
+export function markLeftOut(entries) {
+  const {line, file} = columns, lists = project.points.files.map(() => []);
+  left = new Uint8Array(columns.count);
+  for (const entry of entries) {
+    const list = lists[project.points.files.indexOf(entry.file)];
+    if (list) for (const range of rangesOf(entry)) list.push(range);
+  }
+  const ranges = lists.map(list => joined(list.sort(([a], [b]) => a - b)));
+  for (let i = 0; i < columns.count; i++) if (holds(ranges[file[i]], line[i])) left[i] = 1;
   misfits = {};
   fitMisfits = {};
   version++;
@@ -173,13 +190,12 @@ export function markLeftOut(entries) {
 export function lineRanges(members) {
   const {file, line, last} = columns, found = new Map();
   for (const i of Int32Array.from(members).sort((a, b) => file[a] - file[b] || line[a] - line[b])) {
-    const name = project.points.files[file[i]], ranges = found.get(name) ?? [], before = ranges.at(-1);
-    if (before && line[i] <= before[1] + 1) before[1] = Math.max(before[1], last[i]);
-    else ranges.push([line[i], last[i]]);
-    found.set(name, ranges);
+    const name = project.points.files[file[i]];
+    if (!found.has(name)) found.set(name, []);
+    found.get(name).push([line[i], last[i]]);
   }
   const text = ([from, to]) => from === to ? `${from}` : `${from}-${to}`;
-  return [...found].map(([name, ranges]) => ({file: name, lines: ranges.map(text).join(", ")}));
+  return [...found].map(([name, ranges]) => ({file: name, lines: joined(ranges).map(text).join(", ")}));
 }
 export function whyLeftOut(i) {
   const file = project.points.files[columns.file[i]], line = columns.line[i];

@@ -265,6 +265,10 @@ def test_the_reading_left_out_is_found_by_its_line(engine, result):
     whole = concatenate([result.points, result.excluded])
     wanted = (whole.file == whole.files.index("camber_900.csv")) & np.isin(whole.line, [3, 4, 5, 8])
     assert engine("left") == wanted.astype(int).tolist()
+    every_other = ", ".join(str(line) for line in range(2, 50_000, 2))
+    engine(f"markLeftOut([{{file: 'camber_900.csv', lines: '{every_other}'}}])")
+    wanted = (whole.file == whole.files.index("camber_900.csv")) & (whole.line % 2 == 0)
+    assert engine("left") == wanted.astype(int).tolist()
 
 
 def test_points_that_follow_each_other_are_left_out_as_one_range(engine, result):
