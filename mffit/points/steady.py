@@ -288,7 +288,7 @@ def _swings(time: np.ndarray, values: np.ndarray, level: float) -> np.ndarray:
     lag = samples_in(time, constants.COMPARED_APART)
     while (lag := lag // 2) >= samples_in(time, constants.AVERAGED_TIME):
         noise = beyond(FALSE_ALARM / len(values)) * _noise(values) * np.sqrt(2.0 / lag)
-        found |= _changes(uniform_filter1d(values, lag, mode="nearest"), max(step, noise), lag)
+        found |= _changes(scipy.ndimage.uniform_filter1d(values, lag, mode="nearest"), max(step, noise), lag)
     return found
 
 
