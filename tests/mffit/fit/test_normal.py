@@ -115,7 +115,7 @@ def test_the_missing_force_and_stiffness_of_the_normal_file_are_stated(result):
     assert 0.0 < files.stiffness_loss < 0.25
     forces = list(files.lacking.values())
     assert forces == sorted(forces)
-    assert as_json.fit(result.fit)["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+    assert as_json.document(result.fit)["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
 
 
 def test_with_the_weight_of_the_road_the_file_is_better_where_one_rides(result):
@@ -129,7 +129,7 @@ def test_with_the_weight_of_the_road_the_file_is_better_where_one_rides(result):
     here = files.by_use["normal"].straight["Fy"]
     assert np.sqrt(np.average(off[within] ** 2, weights=ridden)) < here.ridden
     assert here.rms < np.sqrt(np.mean(off[within] ** 2)) < 1.5 * here.rms
-    stated = as_json.fit(result.fit)["files"]["normal"]
+    stated = as_json.document(result.fit)["files"]["normal"]
     assert (stated["weight"], stated["camber_max_deg"]) == ("everything", None)
 
 
