@@ -32,11 +32,11 @@ class Specimen:
     rig: Mapping[str, Any]  #: the table [rig] of the build
     numbers: Numbers | None  #: of tyre and rig; None if nothing was free
     epsilon_gamma: Quantity | None  #: as the property file carries it
-    epsilon_direct: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
     reasons: tuple[str, ...] = ()  #: reasons against trusting the build; empty for a sound one
     in_doubt: tuple[str, ...] = ()  #: points that the engineer should check
+    epsilon_direct: Quantity | None = None  #: eps_gamma of the direct method
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
     budget: Mapping[str, float] = field(default_factory=dict)
     """Change of the measured eps_gamma by one standard uncertainty of each source of its budget."""
