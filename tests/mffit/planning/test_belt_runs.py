@@ -99,10 +99,12 @@ def test_the_runs_are_made_as_proposed_and_are_as_good(plan, longer, goal):
 
 
 def test_one_number_ranks_runs_of_all_forces(first):
-    """Over its largest value a force that was never measured is the most uncertain one."""
+    """Over its largest value a force that was never measured is the most uncertain one; one run leaves how it falls with
+    sideslip to similar tyres.
+    """
     found = plan_of(first, read_goal("file", on_disc=False), runs=1)
     assert found.steps[0].run.addition.id in {"drive", "combined", "drive-camber"}
-    assert found.then < 0.25 * found.now < 0.25
+    assert found.then < 0.5 * found.now < 0.25
     assert "Fx, Fy, Mx and Mz over their largest values" in wording.promise(found)
 
 
