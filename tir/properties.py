@@ -53,9 +53,9 @@ def described(kind: type[Kind], document: Document, lacking: Mapping[str, float 
     added = add_given(values, lacking, problems)
     status |= dict.fromkeys(added, "given when the file was read")
     formula = formula_of(document, values.get("FITTYP"))
-    _refuse_other_formulas(formula, document)
+    refuse_formulas(formula, document, (*STRANGE, "5.2"))
     _refuse_truncated(values, document)
-    _refuse_unknown(formula, document)
+    refuse_formulas(formula, document, ("unknown",))
     problems += _about_a_cut_number(values, document) + _about_values_below(document)
     stated = {line.key for line in document.entries if parameter_of(line)} | added
     complete = completed(values)
@@ -202,50 +202,27 @@ def _needed() -> frozenset[str]:
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
-def refuse_strange_formulas(formula: Formula, document: Document) -> None:
-    """Raise TirError for a formula that is neither MF 6 nor one that is converted to it."""
-    if formula.kind == "motorcycle":
-        raise TirError(_of_motorcycles(formula), path=document.path)
-    if formula.kind == "other":
-        raise TirError(_of_another_model(formula), path=document.path)
+OTHER_FORMULAS: Mapping[str, str] = {
+    "motorcycle": "is of MF-MCTyre, the old formula for motorcycles ({why}: {name}), whose camber force is another one: fit the "
+    "tyre's data again; or, if it is a car's tyre of MF 5.2 under a wrong name, write FITTYP 6 or use mffit convert --fittyp 6",
+    "other": "is of another tyre model, {name} ({why}), whose coefficients are not those of MF 5.2 or MF 6: take the tyre's file "
+    "of MF 6.1 or 6.2, or fit its data; if the name is wrong, use mffit convert --fittyp 6 for MF 5.2, or write FITTYP = 62 into "
+    "[MODEL]",
+    "5.2": "is a file of the MF 5.2 generation ({why}: {name}); its coefficients have another meaning in MF 6.2, so renaming it "
+    "does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
+    "unknown": "{why}: if it is of MF 6, write FITTYP = 61 or FITTYP = 62 into its [MODEL], or give it in Python, "
+    "tir.read(path, FITTYP=62); if it is of MF 5.2, use mffit convert --fittyp 6",
+}
+"""By the kind of a formula that is not read as MF 6, why its file cannot be used, and what to do."""
+STRANGE = ("motorcycle", "other")
+"""Those that are not converted to MF 6 either."""
 
 
-def _refuse_other_formulas(formula: Formula, document: Document) -> None:
-    refuse_strange_formulas(formula, document)
-    if formula.kind == "5.2":
-        raise TirError(
-            f"is a file of the MF 5.2 generation ({formula.why}: {formula.name}); its coefficients have another meaning in "
-            "MF 6.2, so renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
-            path=document.path,
-        )
-
-
-def _refuse_unknown(formula: Formula, document: Document) -> None:
-    if formula.kind == "unknown":
-        raise TirError(
-            f"{formula.why}: if it is of MF 6, write FITTYP = 61 or FITTYP = 62 into its [MODEL], or give it in Python, "
-            "tir.read(path, FITTYP=62); if it is of MF 5.2, use mffit convert --fittyp 6",
-            path=document.path,
-            name="FITTYP",
-        )
-
-
-def _of_motorcycles(formula: Formula) -> str:
-    """Why a file of the old formula for motorcycles cannot be used, and what to do."""
-    return (
-        f"is of MF-MCTyre, the old formula for motorcycles ({formula.why}: {formula.name}), whose camber force is another one: "
-        "fit the tyre's data again; or, if it is a car's tyre of MF 5.2 under a wrong name, write FITTYP 6 or use mffit convert "
-        "--fittyp 6"
-    )
-
-
-def _of_another_model(formula: Formula) -> str:
-    """Why a file of another tyre model cannot be used, and what to do."""
-    return (
-        f"is of another tyre model, {formula.name} ({formula.why}), whose coefficients are not those of MF 5.2 or MF 6: take the "
-        "tyre's file of MF 6.1 or 6.2, or fit its data; if the name is wrong, use mffit convert --fittyp 6 for MF 5.2, or write "
-        "FITTYP = 62 into [MODEL]"
-    )
+def refuse_formulas(formula: Formula, document: Document, kinds: Collection[str] = STRANGE) -> None:
+    """Raise TirError for a formula of these kinds, by default those that are neither MF 6 nor converted to it."""
+    if formula.kind in kinds:
+        sentence = OTHER_FORMULAS[formula.kind].format(why=formula.why, name=formula.name)
+        raise TirError(sentence, path=document.path, name="FITTYP" if formula.kind == "unknown" else None)
 
 
 def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> None:

@@ -17,7 +17,7 @@ from tir.document import Document, read_document
 from tir.errors import listed, some
 from tir.formula import CAR_FITTYPS, OLD_FITTYPS, formula_of
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP
-from tir.properties import add_given, refuse_strange_formulas, stated_values
+from tir.properties import add_given, refuse_formulas, stated_values
 
 OWN = {
     name: replace(BY_NAME["PHY1"], name=name, section="", default=default, unit=unit)
@@ -148,7 +148,7 @@ def _kind(document: Document, fittyp: int | None) -> str:
             raise TirError(f"FITTYP {fittyp} cannot be converted: give {', '.join(map(str, CAR_FITTYPS))}")
         return OLD_FITTYPS[fittyp]
     formula = formula_of(document)
-    refuse_strange_formulas(formula, document)
+    refuse_formulas(formula, document)
     if formula.kind == "6":
         raise TirError(
             f"is of {formula.name} ({formula.why}) and needs no conversion; if it is of MF 5.2 all the same, use --fittyp 6",

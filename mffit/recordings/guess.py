@@ -84,22 +84,21 @@ def guesses(
     by_unit = only_ones(raw, columns, known)
     columns |= by_unit
     speed = columns.get("V_mps")
-    negative = speed is not None and float(np.nanmedian(speed.values)) < 0.0
-    if speed is not None and negative:
-        columns["V_mps"] = speed._replace(values=-speed.values)
+    sign = -1.0 if speed is not None and float(np.nanmedian(speed.values)) < 0.0 else 1.0
+    if speed is not None:
+        columns["V_mps"] = speed._replace(values=sign * speed.values)
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
     columns = {name: column for name, column in columns.items() if name not in left_out}
     found = {name: column.guess(chosen.get(name)) for name, column in columns.items()}
     remarks = [*of_rest, *of_axes, *left_out.values(), *of_units, *_unknown_units(raw, found)]
     found |= _labels(raw, named)
-    by_unit = {name: column for name, column in by_unit.items() if name in found}
-    found |= {name: found[name]._replace(why="taken by its unit, see above") for name in by_unit}
-    remarks += map(taken_for, by_unit.values())
-    if negative and "V_mps" in found:
-        known_unit = found["V_mps"].why
-        why = "; ".join(filter(None, (known_unit, "the speed is negative in the file")))
-        found["V_mps"] = found["V_mps"]._replace(scale=-1.0, why=why)
+    for name in [name for name in by_unit if name in found]:
+        found[name] = found[name]._replace(why="taken by its unit, see above")
+        remarks.append(taken_for(by_unit[name]))
+    if sign < 0.0 and "V_mps" in found:
+        why = "; ".join(filter(None, (found["V_mps"].why, "the speed is negative in the file")))
+        found["V_mps"] = found["V_mps"]._replace(scale=sign, why=why)
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
@@ -113,8 +112,7 @@ def guesses(
     remarks += questions(raw, found, {guess.heading for guess in found.values()})
     if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
         remarks.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
-    if not found.keys() & {"time_s", "t_s"}:
-        remarks.append(_without_time(raw))
+    remarks += [] if found.keys() & {"time_s", "t_s"} else [_without_time(raw)]
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
 

@@ -217,30 +217,25 @@ def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, Foun
 
 def _shared_unit(kind: str, group: Mapping[str, FoundChannel], known: _Known) -> dict[str, Choice]:
     """The unit of all columns of a group that state none: another column's stated unit, else the likeliest plausible unit."""
-    open_ones = {name: column for name, column in group.items() if not column.unit}
     stated = next((column for column in group.values() if column.unit), None)
+
+    def all_in(unit: str, why: str) -> dict[str, Choice]:
+        open_ones = ((name, column) for name, column in group.items() if not column.unit)
+        return {name: Choice(unit, f"{column.range} {why}") for name, column in open_ones}
+
     if stated is not None:
-        return {
-            name: Choice(stated.unit, f"{column.range} assumed to be in {stated.unit}, like {stated.heading}")
-            for name, column in open_ones.items()
-        }
+        return all_in(stated.unit, f"assumed to be in {stated.unit}, like {stated.heading}")
     value = _decisive(kind, group, known)
     if value is None:
-        why = "assumed to be in s; without a moving angle the unit is not known"
-        return {name: Choice(kind, f"{column.range} {why}") for name, column in open_ones.items()}
+        return all_in(kind, "assumed to be in s; without a moving angle the unit is not known")
     fits = known.possible(kind, value) if value else {}
     if not fits or (kind == "m" and len(fits) > 1):  # in metres an implausible radius is left out
         why = ": in no unit the angle moves as rigs steer, so that the unit is not known" * (kind == "s")
-        return {
-            name: Choice(kind, f"{column.range} taken as {kind}{why}") for name, column in open_ones.items()
-        }
+        return all_in(kind, f"taken as {kind}{why}")
     unit, *others = fits
     also = f", less likely {' or '.join(_with_size(kind, other, fits) for other in others)}" if others else ""
     shared = f"; {', '.join(column.heading for column in group.values())} share a unit" * (len(group) > 1)
-    return {
-        name: Choice(unit, f"{column.range} look like {_with_size(kind, unit, fits)}{also}{shared}")
-        for name, column in open_ones.items()
-    }
+    return all_in(unit, f"look like {_with_size(kind, unit, fits)}{also}{shared}")
 
 
 def _with_size(kind: str, unit: str, fits: Mapping[str, float]) -> str:
