@@ -21,7 +21,9 @@ from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, STAGED, Draw, model_error, pla
 
 import mffit
 import tir
-from mffit import fleet, pipeline, virtual_rig
+from mffit import fleet, virtual_rig
+from mffit.fleet.information import freed
+from mffit.pipeline.fleets import priors_of_rig
 from mffit.scatter import rms
 
 EPSILON_OFF = 0.08
@@ -69,18 +71,18 @@ def one(job: harness.Job) -> Rig:
             folder, true = Path(made) / str(k), drawn_tyre(sample, rng)
             truth = campaign(folder, true, sample, faults, 1000 * seed + k, pecp1="direct")
             faults = faults or {n: truth.faults[n] for n in SHARED}
-            result = mffit.build(folder / "rig" / "tyre.toml", with_report=False)
+            result = mffit.build(folder / "rig" / "tyre.toml", folder / "out", with_report=False)
             direct, draw = result.measured.epsilon_gamma, Draw()
             draw.note(DIRECT, direct.value, direct.u, truth.nominal.epsilon_gamma)
             out.tyres.append(draw)
-            known.append((fleet.information(result.fit.search), true["PECP1"]))
+            known.append((freed(fleet.read(folder / "out").numbers), true["PECP1"]))
         together = fleet.estimate([found for found, _ in known])
         for draw, (found, eps), joint in zip(out.tyres, known, together.tyres, strict=True):
             draw.note(ALONE, *fleet.estimate([found]).tyres[0].number("PECP1"), eps)
             draw.note(TOGETHER, *joint.number("PECP1"), eps)
         out.pulls = {n: (v - faults[n]) / u for n, (v, u) in together.rig.items() if n in faults}
         priors = Path(made) / "priors.json"
-        priors.write_text(json.dumps(pipeline.fleets.priors_of_rig(together, result.fit.tyre, tyres)))
+        priors.write_text(json.dumps(priors_of_rig(together, result.fit.tyre, tyres)))
         for k in range(job.given.later):
             folder, true = Path(made) / f"later {k}", drawn_tyre(sample, rng)
             campaign(folder, true, sample, faults, 1000 * seed + 500 + k, pecp1="model", thin=True)
