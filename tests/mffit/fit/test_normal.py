@@ -118,7 +118,9 @@ def test_the_missing_force_and_stiffness_of_the_normal_file_are_stated(result):
     assert 0.0 < files.stiffness_loss < 0.25
     forces = list(files.lacking.values())
     assert forces == sorted(forces)
-    assert as_json.document(result)["fit"]["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+    assert (
+        as_json.document(result)["fit"]["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+    )
 
 
 def test_with_the_weight_of_the_road_the_file_is_better_where_one_rides(result):
