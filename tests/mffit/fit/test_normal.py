@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from normal_outcome import box, limit, outcome, usual_ranges
 
 import mffit
 import tir
@@ -24,10 +23,7 @@ from mffit.tested import end_tested
 from tir.checking import check
 from tir.parameters import TABLE
 
-ROOT = Path(__file__).parents[3]
-SAMPLES = ROOT / "samples"
-sys.path.insert(0, str(ROOT / "tests" / "studies"))
-normal_study = importlib.import_module("normal_study")
+SAMPLES = Path(__file__).parents[3] / "samples"
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +88,7 @@ def test_the_upright_wheel_is_the_same_in_both_files(result):
 
 def test_the_normal_file_follows_the_true_tyre_on_a_straight_path(result, truth):
     """The formula's own limit on this tyre is 44 N and 1.8 Nm (tests/studies/normal_study.py); the fit adds its noise."""
-    road = normal_study.box(truth["FNOMIN"], truth["NOMPRES"])
+    road = box(truth["FNOMIN"], truth["NOMPRES"])
     made = forces(result.tyres["normal"].values, road, turn_slip=False)
     true = forces(truth.values, road, turn_slip=True)
     assert np.sqrt(np.mean((made.Fy - true.Fy) ** 2)) < 52.0
@@ -100,9 +96,10 @@ def test_the_normal_file_follows_the_true_tyre_on_a_straight_path(result, truth)
 
 
 def test_derivation_comes_within_a_twentieth_of_the_limit(truth):
-    found = normal_study.outcome(truth)
-    assert found.Fy < 1.05 * found.limit_Fy
-    assert found.Mz < 1.05 * found.limit_Mz
+    found = outcome(truth)
+    Fy, Mz = limit(truth)
+    assert found.Fy < 1.05 * Fy
+    assert found.Mz < 1.05 * Mz
 
 
 def test_camber_thrust_does_not_turn_back_where_the_model_does_not(result):
@@ -208,11 +205,11 @@ def test_a_straight_path_measures_no_spin():
 @pytest.mark.parametrize("sample", ["front-120-70", "rear-190-55"])
 def test_one_file_for_both_uses_is_better_than_either_in_the_other_ones_use(sample):
     truth = tir.read(SAMPLES / sample / "true.tir")
-    values, tested = dict(truth.values), normal_study.tested(truth)
+    values, tested = dict(truth.values), usual_ranges(truth)
     written = {**tested}
     both = {**values, **derive(values, tested, written, both_on=-1 / 1.323)}
     normal = {**values, **derive(values, tested, written)}
-    road = normal_study.box(values["FNOMIN"], values["NOMPRES"])
+    road = box(values["FNOMIN"], values["NOMPRES"])
 
     def misfit(file, *, turn_slip, phi_t=0.0):
         there = forces(values, road, turn_slip=True, phi_t=phi_t).Fy
