@@ -163,10 +163,11 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
     and by what runs have of their own, as modelled, and by the model error: the conditions of other sweeps in the same ranges
     would pull it elsewhere around the best that the formula can do. How far, the pulls of the present sweeps tell, each sweep
     left out in turn (the jackknife over clusters, to first order). Together, with H the curvature of the fit and D the
-    covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. The information returned is C^-1 without the priors; where
-    C exceeds a prior, the readings tell nothing.
+    covariance by the jackknife: C = H^-1 (scatter + priors) H^-1 + D. The information returned is C^-1 without the priors, which
+    held numbers do not have here; where C exceeds a prior, the readings tell nothing.
     """
-    precision = np.where(priors.spread > 0.0, priors.spread, np.inf) ** -2.0
+    held = np.array([name in priors.held for name in priors.names], dtype=bool)
+    precision = np.where(held, np.inf, priors.spread) ** -2.0
     curvature = sum((one.information for one in told), np.diag(precision))
     scatter = sum((one.scatter for one in told), np.diag(precision))
     scatter = scatter + _by_model_error(told, curvature)
@@ -175,10 +176,10 @@ def numbers_told(told: Sequence[Told], priors: Priors) -> Numbers:
     precise = curvature / unit @ inverse(scatter / unit) @ (curvature / unit) - np.diag(precision / scale**2)
     size, axes = np.linalg.eigh(0.5 * (precise + precise.T))
     information = (axes * np.maximum(size, 0.0)) @ axes.T * unit
-    pull = sum((one.pull for one in told), -precision * (priors.values - priors.expected))
-    held = np.array([name in priors.held for name in priors.names], dtype=bool)
     score = precision * (priors.values - priors.expected)
-    moved = inverse(curvature)[np.ix_(held, held)] @ pull[held]
+    # The free numbers are at their best; the held ones would move the estimate as far as in the fit with its weights.
+    pull = sum((one.pull for one in told), -score)[held]
+    moved = inverse(curvature)[np.ix_(held, held)] @ pull
     score[held] = inverse(inverse(information + np.diag(precision))[np.ix_(held, held)]) @ moved
     return Numbers(
         priors.names, priors.values, information, score, priors.expected, priors.spread, priors.held

@@ -130,8 +130,9 @@ def test_readings_that_tell_less_than_a_prior_leave_it():
     assert numbers_told(told, priors).stderr["a"] == pytest.approx(2.0)
 
 
-def test_the_score_of_a_held_number_says_what_the_readings_would_make_of_it():
-    """A joint estimate frees it: without a prior it goes to the solution of least squares."""
+@pytest.mark.parametrize("scatter", [1.0, 4.0])
+def test_the_score_of_a_held_number_says_what_the_readings_would_make_of_it(scatter):
+    """A joint estimate frees it: without a prior it goes to the solution of least squares, however much the readings scatter."""
     random = np.random.default_rng(2)
     slopes, truth = random.standard_normal((40, 2)), np.array([1.5, -0.4])
     read = slopes @ truth
@@ -139,7 +140,7 @@ def test_the_score_of_a_held_number_says_what_the_readings_would_make_of_it():
         [float(slopes[:, 0] @ read / (slopes[:, 0] @ slopes[:, 0])), 0.0]
     )  # the second is held at 0
     whole = slopes.T @ slopes
-    told = [Told(whole, whole, np.zeros(2), slopes.T @ (read - slopes @ at))]
+    told = [Told(whole, scatter * whole, np.zeros(2), slopes.T @ (read - slopes @ at))]
     priors = Priors(("a", "b"), at, at, np.array([math.inf, 0.1]), frozenset(["b"]))
     numbers = numbers_told(told, priors)
     freed = replace(numbers, held=frozenset(), spread=np.full(2, math.inf))
