@@ -87,6 +87,9 @@ def init(
 
         if not files:
             raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
+        if folder.is_file():
+            rest = " ".join(map(str, (folder, *files[1:], files[0])))
+            raise InputError(f"the folder comes last, behind the recordings: mffit init --from {rest}")
         with voice.progress() as show:
             show("reading recordings")
             found, written = pipeline.init_from(

@@ -187,6 +187,14 @@ def test_the_command_prints_the_project_file(machine, capsys):
     assert tomllib.loads(printed[start:])["columns"]["alpha_deg"] == "SA"
 
 
+def test_recordings_behind_the_folder_are_put_right(tmp_path, capsys):
+    (tmp_path / "run.csv").write_text("alpha_deg\n0\n")
+    with pytest.raises(SystemExit):
+        main(["init", str(tmp_path / "project"), "--from", str(tmp_path / "run.csv")])
+    said = " ".join(capsys.readouterr().err.split())
+    assert f"mffit init --from {tmp_path / 'run.csv'} {tmp_path / 'project'}" in said
+
+
 @pytest.mark.parametrize(
     "arguments", [["init", "--from", "only-one"], ["init", "a", "b"], ["sniff", "missing.mat"]]
 )
