@@ -26,13 +26,16 @@ NOT_TRUSTED = 3
 @contextmanager
 def progress() -> Iterator[Progress]:
     """A spinner with the current step on a terminal; nothing elsewhere."""
-    if not sys.stderr.isatty():
+    console = None
+    if sys.stderr.isatty() or "FORCE_COLOR" in os.environ:  # elsewhere rich is not even loaded
+        from rich.console import Console
+
+        console = Console(stderr=True)
+    if console is None or not console.is_terminal:
         yield silent
         return
-    from rich.console import Console
-
     begun = time.monotonic()
-    with Console(stderr=True).status("starting") as status:
+    with console.status("starting") as status:
         yield lambda sentence: status.update(ShownStep(sentence, begun))  # which a terminal shows anew
 
 

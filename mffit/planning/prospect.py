@@ -12,7 +12,7 @@ from mffit.config import Config
 from mffit.constants import ANGLES_OF_A_CURVE, COVERAGE_FACTOR_95
 from mffit.fit import FitResult
 from mffit.fit.coverage import coverage
-from mffit.fit.fitted import priors_of
+from mffit.fit.fitted import left_by, priors_of
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import tested_ranges
 from mffit.fit.rig.rig_numbers import rig_numbers
@@ -104,8 +104,7 @@ class Prospect:
         self._sigma = {channel: _usual(s) for channel, s in search.problem.sigma.items()}
         if self._unseen:  # the noise of Fx is unknown and assumed equal to that of Fy
             self._sigma = {"Fx": self._sigma["Fy"], **self._sigma}
-        assert found.left_by_file is not None
-        self._left, self._at_bound = found.left_by_file, search.at_own_bound
+        self._left, self._at_bound = found.left_by_file or left_by(search), search.at_own_bound
         self._told = told_by_sweeps(self.problem, self._left, self.names)
         self._of_run: dict[str, Told] = {}
         self._direct = DirectProspect(

@@ -21,6 +21,7 @@ from mffit.cli.building import _compare_built, _end
 from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
+from mffit.fleet.information import freed
 from mffit.made import source
 from mffit.output import RECORD, digest
 from mffit.pipeline import many, workers
@@ -277,15 +278,13 @@ def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folde
 
 def test_the_information_of_a_build_peaks_at_its_solution(built):
     """Together with the priors of the fit; eps_gamma has none but the result of the direct method, from the same points."""
-    information = fleet.read(built[0] / "small").information
-    names, spread = information.names, information.spread
-    k = names.index("PECP1")
-    assert np.isinf(spread[k])
-    assert information.expected[k] == information.values[k]  # the build held it there
-    others = [i for i, name in enumerate(names) if name not in ("PECP1", "PECP2")]
-    slope = information.vector - information.matrix @ information.values
-    slope = (slope - (information.values - information.expected) / spread**2)[others]
-    u = np.sqrt(np.diag(np.linalg.inv(information.matrix + np.diag(spread**-2.0))))[others]
+    numbers = freed(fleet.read(built[0] / "small").numbers)
+    k = numbers.names.index("PECP1")
+    assert np.isinf(numbers.spread[k])
+    assert numbers.expected[k] == numbers.values[k]  # the build held it there
+    others = [i for i, name in enumerate(numbers.names) if name not in ("PECP1", "PECP2")]
+    slope = (numbers.score - (numbers.values - numbers.expected) / numbers.spread**2)[others]
+    u = np.sqrt(np.diag(numbers.covariance))[others]
     assert np.max(np.abs(slope * u)) < 0.3  # in units of its uncertainty, no number would move far
 
 

@@ -20,9 +20,9 @@ NEEDS: Mapping[str, frozenset[str]] = {
     "camber": frozenset({"camber", "coupled"}),
     "pressure": frozenset({"pressures", "pressure_loads"}),
     "longitudinal slip": frozenset({"kappa", "combined", "side_force"}),
-    "sideslip": frozenset(),
+    "sideslip": frozenset({"sideslips", "side"}),
 }
-"""By setting, the needs of the coefficients that it determines; sideslip determines the coefficients without needs."""
+"""By setting, the needs of the coefficients that it determines; sideslip also those without needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def _determined_by(setting: str, names: Sequence[str] | Mapping[str, float]) -> 
     """The named coefficients that a setting determines."""
     words = {name: {need.word for need in BY_NAME[name].needs} for name in names}
     needs = NEEDS[setting]
-    return [name for name, own in words.items() if (needs & own if needs else not own)]
+    return [name for name, own in words.items() if needs & own or (setting == "sideslip" and not own)]
 
 
 def correlation_ratio(points: Points, channel: str) -> float:
