@@ -22,7 +22,7 @@ NEEDS: Mapping[str, frozenset[str]] = {
     "longitudinal slip": frozenset({"kappa", "combined", "side_force"}),
     "sideslip": frozenset({"sideslips", "side"}),
 }
-"""By setting, the needs of the coefficients that it determines; sideslip also those without needs."""
+"""By setting, the needs of the coefficients that it determines; sideslip those that need nothing else."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ def _determined_by(setting: str, names: Sequence[str] | Mapping[str, float]) -> 
     """The named coefficients that a setting determines."""
     words = {name: {need.word for need in BY_NAME[name].needs} for name in names}
     needs = NEEDS[setting]
-    return [name for name, own in words.items() if needs & own or (setting == "sideslip" and not own)]
+    return [name for name, own in words.items() if (own <= needs if setting == "sideslip" else needs & own)]
 
 
 def correlation_ratio(points: Points, channel: str) -> float:
