@@ -39,7 +39,12 @@ def classic(value):
 
 
 def into_hdf5(group, name, value, file):
-    """Write as MATLAB does to v7.3: the elements of an array of structures are references."""
+    """Write as MATLAB does to v7.3: the elements of an array of structures are references.
+
+    Their type is named, because an old h5py does not find it in an array of them.
+    """
+    import h5py
+
     if isinstance(value, dict):
         for key, one in value.items():
             into_hdf5(group.require_group(name), key, one, file)
@@ -48,7 +53,9 @@ def into_hdf5(group, name, value, file):
             items = [
                 file.create_dataset(f"#refs#/{key}{k}", data=one[key][None]) for k, one in enumerate(value)
             ]
-            group.require_group(name)[key] = np.array([[item.ref for item in items]])
+            references = group.require_group(name).create_dataset(key, (1, len(items)), h5py.ref_dtype)
+            for k, item in enumerate(items):
+                references[0, k] = item.ref
     else:
         codes = np.array([[ord(c)] for c in value], np.uint16) if isinstance(value, str) else value[None]
         group.create_dataset(name, data=codes).attrs["MATLAB_class"] = (
