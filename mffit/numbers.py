@@ -94,10 +94,6 @@ class Numbers(ReadOnlyArrays, Brief):
         left = self._only(kept)
         return replace(left, information=left.information - moves @ across.T, score=left.score - moves @ pull)
 
-    def plus(self, information: np.ndarray) -> Numbers:
-        """The numbers with further readings that tell ``information`` (k, k) of them and agree with the values."""
-        return replace(self, information=self.information + information)
-
     def renamed(self, names: Sequence[str]) -> Numbers:
         """The same numbers under other names."""
         new = dict(zip(self.names, names, strict=True))
@@ -107,26 +103,27 @@ class Numbers(ReadOnlyArrays, Brief):
         self,
         values: Mapping[str, float],
         covariance: np.ndarray,
-        leans_on: Sequence[str] = (),
-        slope: np.ndarray | None = None,
+        leans_on: Sequence[str],
+        slope: np.ndarray,
     ) -> Numbers:
         """The numbers with further ones (j,), determined by readings of their own with the numbers ``leans_on`` taken as exact.
 
         ``covariance`` (j, j) is theirs under that condition, ``slope`` (j, m) their derivatives by ``leans_on``. Numbers that
         are known already stay as they are.
         """
-        new = [i for i, name in enumerate(values) if name not in self.stderr]
+        new = [i for i, name in enumerate(values) if name not in self.names]
+        names, at = [list(values)[i] for i in new], [list(values.values())[i] for i in new]
         by = np.zeros((len(new), len(self.names)))
-        if slope is not None and len(leans_on):
+        if leans_on:
             by[:, self.rows(leans_on)] = slope[new]
         told = inverse(covariance[np.ix_(new, new)]) if new else np.zeros((0, 0))
         across = -told @ by
         return Numbers(
-            names=(*self.names, *(list(values)[i] for i in new)),
-            values=np.append(self.values, [list(values.values())[i] for i in new]),
+            names=(*self.names, *names),
+            values=np.append(self.values, at),
             information=np.block([[self.information - by.T @ across, across.T], [across, told]]),
             score=np.append(self.score, np.zeros(len(new))),
-            expected=np.append(self.expected, [list(values.values())[i] for i in new]),
+            expected=np.append(self.expected, at),
             spread=np.append(self.spread, np.full(len(new), math.inf)),
             held=self.held,
         )
@@ -134,20 +131,14 @@ class Numbers(ReadOnlyArrays, Brief):
     def moved_by(self) -> dict[str, np.ndarray]:
         """By number with a prior, the change (k,) of the values by one standard deviation of its prior mean."""
         free, held = self._split(self.held)
-        own, out = self._inverse(free), {}
-        by_prior = (
-            own * self._precision(free) * np.where(np.isfinite(self.spread[free]), self.spread[free], 0.0)
-        )
-        by_held = -own @ self.information[np.ix_(free, held)] * self.spread[held]
-        for rows, moves in ((free, by_prior), (held, by_held)):
-            for column, i in enumerate(rows):
-                if math.isfinite(self.spread[i]):
-                    move = np.zeros(len(self.names))
-                    move[free] = moves[:, column]
-                    if rows is held:
-                        move[i] = self.spread[i]
-                    out[self.names[i]] = move
-        return out
+        moves = np.zeros_like(self.information)  # by a unit of prior mean over its variance
+        moves[np.ix_(free, free)] = self._inverse(free)
+        moves[:, held] = self.covariance[:, held]
+        return {
+            name: moves[:, i] / u
+            for i, (name, u) in enumerate(zip(self.names, self.spread.tolist(), strict=True))
+            if 0.0 < u < math.inf
+        }
 
     def strongest_correlations(self, of: Sequence[str], least: float) -> dict[str, tuple[str, float]]:
         """By number ``of`` these, the one that is most correlated with it and the correlation, if it exceeds ``least``."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -106,12 +106,12 @@ def left_by(
     return linearised(problem.points, fitted.simulation, problem.sigma, numbers, without=without, near=near)
 
 
-def priors_of(fitted: Fitted, free: Sequence[FreeNumber] = ()) -> Priors:
-    """The fitted numbers and ``free`` further ones, those held with an uncertainty, and on a disc PECP1 and PECP2."""
+def priors_of(fitted: Fitted) -> Priors:
+    """The fitted numbers, those held with an uncertainty, and on a disc PECP1 and PECP2."""
     held = fitted.taken_as_exact
     if fitted.problem.simulation.turn_slip:
         held = dict.fromkeys((name for name in SPIN if name not in fitted.hand.held), 0.0) | held
-    return Priors.of(fitted.problem, [*map(with_prior, fitted.numbers), *free], held)
+    return Priors.of(fitted.problem, [with_prior(number) for number in fitted.numbers], held)
 
 
 def with_errors_of(fitted: Fitted, left: LinearisedFit) -> Fitted:
