@@ -83,6 +83,12 @@ GROSS_SHARE = Real(0.1, "-", "Error from which known mistakes are tried.")
 IMPLAUSIBLE_SHARE = Real(
     0.5, "-", "Error that is refused without a known mistake, and that undoing one must not leave."
 )
+LARGEST_ERROR_OF_FORMULA = Real(
+    4.0,
+    "-",
+    "Reading over the prediction of a formula, fitted at other loads, that a sound tyre can have: a trail that does not depend "
+    "on the load is 1.3 times too long halfway to the triple load, and 3 halfway to ten times the load.",
+)
 MOST_SUSPECTS = Count(6, "-", "Most suspected sweeps, worst first, without which the fit is repeated.")
 
 # The fitted model

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,6 +41,35 @@ def _sweeps(points: Points) -> Iterator[Group]:
         index = np.flatnonzero(points.sweep == k)
         file = points.files[points.file[index[0]]]
         yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
+
+
+SETTINGS = (
+    ("Fz", "Fz_N", levels.LOAD),
+    ("gamma", "gamma_deg", levels.CAMBER),
+    ("p", "p_kPa", levels.PRESSURE),
+)
+"""Fields of the settings that a test plan repeats, their columns and the tolerances of their levels."""
+
+
+def confirmed_by_others(part: Points, others: Points, columns: Collection[str] = ()) -> bool:
+    """Whether other points were measured at the load, at the camber to either side and at the pressure of a sweep, or at some
+    of these, by their ``columns``.
+
+    If not, only the formula joins them, and how a tyre goes between two loads, cambers or pressures is no law; but between the
+    outer ones of several levels the readings show it.
+    """
+    for name, column, kind in SETTINGS:
+        if columns and column not in columns:
+            continue
+        own, known = (np.abs(getattr(of, name)) for of in (part, others))
+        several = levels.count(known, kind) >= constants.FEWEST
+        own, known = (levels.in_tolerances(values, kind) for values in (own, known))
+        own, known = own[np.isfinite(own)], np.sort(known[np.isfinite(known)])
+        below, above = (np.searchsorted(known, own + shift) for shift in (-1.0, 1.0))
+        measured = (below < above) | (several & (below > 0) & (above < len(known)))
+        if 2 * np.sum(measured) < len(own):
+            return False
+    return True
 
 
 def parts_of_sweeps(points: Points) -> np.ndarray:

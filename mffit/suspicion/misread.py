@@ -16,10 +16,10 @@ from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
+from mffit.suspicion.groups import SETTINGS
 from mffit.suspicion.rereadings import MISTAKES, Away, Mistake, explaining
 from mffit.suspicion.rule import Outcome, When, rule
 
-LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
 """Factors from SI to the unit of the column."""
 
@@ -117,16 +117,19 @@ def misread_sweep(
 
 def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
     """Known mistakes and wrong labels, each with the points of a sweep corrected for it."""
-    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in LABELS)
+    others = points.select(points.sweep != part.sweep[0])
+    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in SETTINGS)
     for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
-        yield mistake, mistake.undone(part, signs)
+        undone = mistake.undone(part, signs)
+        if mistake.certain(undone, others, by_formula=False):
+            yield mistake, undone
 
 
 def _confirmed_labels(
     part: Points, points: Points, signs: Mapping[str, float], others: Sequence[Points]
 ) -> Iterator[tuple[Mistake, Points]]:
     """Wrong labels of those conditions of a sweep at or around which ``others`` confirm the model, with the corrected points."""
-    for label in LABELS:
+    for label in SETTINGS:
         channel, _, kind = label
         here = _held(part, channel)
         alike = [_held(other, channel) for other in others if _differ_only_in(part, other, channel)]
@@ -154,7 +157,7 @@ def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
         return False
     return all(
         abs(_held(part, name) - _held(other, name)) <= _near(kind, _held(part, name))
-        for name, _, kind in LABELS
+        for name, _, kind in SETTINGS
         if name != channel
     )
 

@@ -22,7 +22,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.groups import Group, groups
+from mffit.suspicion.groups import Group, confirmed_by_others, groups
 from mffit.suspicion.rereadings import MISTAKES, Away, Errors, Mistake, explaining, explanation, moved
 from mffit.suspicion.rule import Finding, Outcome, When, rule
 from tir.frozen import ReadOnlyArrays
@@ -77,6 +77,7 @@ class Doubt(ReadOnlyArrays):
     looks: str = ""  #: possible explanation in words; empty if no known cause fits
     mistake: Mistake | None = None  #: recording mistake that explains a gross error
     left: float = 1.0  #: error after undoing the mistake, as a share of the usual size
+    confirmed: bool = True  #: whether other sweeps were measured at its load, camber and pressure
 
     @property
     def channel(self) -> str:
@@ -159,11 +160,17 @@ def doubts(campaign: JudgedSweeps) -> tuple[Doubt, ...]:
     "of its usual size{condition}{looks}",
 )
 def contradicting_sweep(seen: Sequence[Doubt]) -> Iterator[Finding]:
-    """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found."""
+    """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found.
+
+    Where no other sweep was measured at the load, the camber or the pressure, the formula alone contradicts: then only a unit is
+    refused whose factor no formula misses.
+    """
     refused = [d for d in seen if d.mistake is not None] or [
         d
         for d in seen
-        if d.gross.share > constants.IMPLAUSIBLE_SHARE and d.gross.vague < constants.GROSS_SHARE
+        if d.confirmed
+        and d.gross.share > constants.IMPLAUSIBLE_SHARE
+        and d.gross.vague < constants.GROSS_SHARE
     ]
     if not refused:
         return
@@ -270,11 +277,26 @@ def _doubt(campaign: JudgedSweeps, group: Group, size: Mapping[str, float]) -> D
         return None
     part = _part(campaign.points, group, found)
     gross = {e.channel: e.rms for e in errors if e.share > constants.GROSS_SHARE}
-    undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
+    rest = np.delete(np.arange(len(campaign.points)), group.index)
+    others = campaign.points.select(rest, with_table=False)
+    undone = (
+        (mistake, read)
+        for mistake in MISTAKES
+        if gross and mistake.beyond_doubt
+        for read in [mistake.undone(part, campaign.signs)]
+        if mistake.certain(read, others, by_formula=True)
+    )
     away = partial(_away, part, fitted.simulation, found, {name: size[name] * load for name in found})
     best = explaining(undone, gross, away, dict.fromkeys(found, constants.GROSS_SHARE))
     errors.sort(key=lambda e: -e.ratio)
-    doubt = Doubt(group.name, group.file, group.index, tuple(errors), group.whole)
+    doubt = Doubt(
+        group.name,
+        group.file,
+        group.index,
+        tuple(errors),
+        group.whole,
+        confirmed=confirmed_by_others(part, others),
+    )
     if best is not None:
         doubt = replace(doubt, mistake=best.mistake, left=best.left)
     if not doubt.channels:

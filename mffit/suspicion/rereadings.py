@@ -20,6 +20,8 @@ from mffit.quantities import column as heading
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME
 from mffit.rounding import to_uncertainty
+from mffit.suspicion import constants
+from mffit.suspicion.groups import SETTINGS, confirmed_by_others
 from mffit.sweeps.units import factor
 
 if TYPE_CHECKING:
@@ -40,6 +42,20 @@ class Mistake:
     remedy: str  #: how to correct it
     undone: Callable[[Points, Signs], Points]  #: the points corrected for the mistake
     beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost the same
+    factor: float = 1.0  #: of a wrong unit, at least 1
+
+    def certain(self, undone: Points, others: Points, *, by_formula: bool) -> bool:
+        """Whether no formula of a sound tyre is as wrong as this mistake.
+
+        A reading that is out by a small factor can be the tyre's own at a load, camber or pressure of which ``others`` have no
+        readings, and so can any but a large factor ``by_formula``, which is only fitted to them. A wrong setting is certain if
+        others confirm the true one.
+        """
+        if self.factor > 1.0 and any(self.column == column for _, column, _ in SETTINGS):
+            return confirmed_by_others(undone, others, {self.column})
+        if self.factor > constants.LARGEST_ERROR_OF_FORMULA or (self.factor == 1.0 and not by_formula):
+            return True
+        return confirmed_by_others(undone, others)
 
 
 def _negated(points: Points, _: Signs, *, fields: tuple[str, ...]) -> Points:
@@ -52,8 +68,8 @@ def _swapped(points: Points, signs: Signs, *, fields: tuple[str, str]) -> Points
     return points.replace(**{one: sign * getattr(points, other), other: sign * getattr(points, one)})
 
 
-def _converted(points: Points, _: Signs, *, field: str, unit: str, expected: str) -> Points:
-    return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
+def _converted(points: Points, _: Signs, *, field: str, by: float) -> Points:
+    return points.replace(**{field: by * getattr(points, field)})
 
 
 def _reversed(looks: str, column: str, remedy: str, *fields: str, beyond_doubt: bool = True) -> Mistake:
@@ -67,11 +83,13 @@ def _of_sign(field: str, column: str, what: str) -> Mistake:
 
 
 def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) -> Mistake:
+    size = factor(unit, expected)
     return Mistake(
         looks=f"{what} in {unit}",
         column=column,
         remedy=f'write {expected}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
-        undone=partial(_converted, field=field, unit=unit, expected=expected),
+        undone=partial(_converted, field=field, by=size),
+        factor=max(size, 1.0 / size),
     )
 
 

@@ -10,7 +10,9 @@ import pytest
 from mffit.points import Points, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Readings
+from mffit.suspicion.groups import confirmed_by_others
 from mffit.suspicion.misread import misread
+from mffit.suspicion.others import Doubt, Error, contradicting_sweep, doubtful_sweep
 from mffit.suspicion.rereadings import MISTAKES
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
@@ -296,3 +298,49 @@ def test_two_sweeps_that_look_misread_are_no_mistake_of_one():
     one = [*sweeps[:1], in_kilonewtons(sweeps[1]), *sweeps[2:]]
     assert seen(one).sweep == "b"
     assert seen([*one[:4], in_millimetres(one[4]), *one[5:]]) is None
+
+
+def trail_of_one_load(k: int, *more: int) -> list[Points]:
+    """Sweeps of which that at one load has a trail 1.356 times as long as its formula says, and repeats of some sweeps."""
+    sweeps = campaign()
+    sweeps[k] = MADE["its moment in lbf ft"](sweeps[k])
+    return [*sweeps, *(campaign()[other] for other in more)]
+
+
+def test_a_trail_of_its_own_at_one_load_is_no_other_unit():
+    """A trail that does not depend on the load is 4/3 of what MF draws between two loads: no other sweep at 2200 N objects."""
+    assert seen(trail_of_one_load(2)) is None
+
+
+def test_a_moment_in_foot_pounds_is_found_where_another_sweep_was_run():
+    assert seen(trail_of_one_load(2, 2)).looks == "its moment in lbf ft"
+
+
+@pytest.mark.parametrize(
+    ("sweep", "others", "confirmed"),
+    [
+        pytest.param(2, [0, 1, 3, 4], False, id="a load of its own"),
+        pytest.param(2, [0, 1, 2, 3], True, id="a load of others"),
+        pytest.param(3, [0, 1, 2], False, id="a camber of its own"),
+        pytest.param(4, [0, 1, 2], False, id="a pressure of its own"),
+        pytest.param(1, [0, 2], False, id="between two loads"),
+    ],
+)
+def test_a_sweep_is_confirmed_by_sweeps_at_its_settings(sweep, others, confirmed):
+    sweeps = campaign()
+    assert confirmed_by_others(sweeps[sweep], numbered([sweeps[k] for k in others])) == confirmed
+
+
+def test_between_the_outer_ones_of_four_loads_readings_show_the_course():
+    others = numbered([times(Fz=f)(campaign()[0]) for f in (1.0, 1.3, 2.0, 2.6)])
+    assert confirmed_by_others(times(Fz=1.6)(campaign()[0]), others)
+    assert not confirmed_by_others(times(Fz=3.0)(campaign()[0]), others)
+
+
+@pytest.mark.parametrize("confirmed", [True, False])
+def test_only_readings_refuse_a_sweep_and_a_formula_asks(confirmed):
+    """A trail that does not depend on the load vanishes where MF extends it to the triple load: an error of its whole size."""
+    error = Error(channel="Mz", rms=30.0, ratio=40.0, share=1.0, chance=0.0, vague=0.02)
+    doubt = Doubt("c", "c.csv", np.arange(8), (error,), confirmed=confirmed)
+    assert len(list(contradicting_sweep.find([doubt]))) == confirmed
+    assert list(doubtful_sweep.find([doubt])) == [doubt]
