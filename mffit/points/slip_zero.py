@@ -364,8 +364,8 @@ def _not_driven_by(heading: str, drive: float, recorded: bool) -> str:
             "from the speeds of wheel and road"
         )
     return (
-        f"{force}, so the wheel is driven or braked, but no slip was recorded, nor speeds of wheel and road that give it: name "
-        "the column of slip, or leave these readings out"
+        f"{force}, so the wheel is driven or braked, but no slip is known, nor speeds of wheel and road that give it: name its "
+        "column, kappa = \"HEADING\" under [columns] or --column 'kappa=HEADING', or leave these readings out"
     )
 
 
@@ -500,13 +500,22 @@ def _slip(sweep: Sweep, radius: float) -> np.ndarray | None:
     """Slip (n,) of a driven or braked wheel; None if it was recorded, a speed is missing, or the wheel rolled freely."""
     if "kappa" in sweep.table or "V_mps" not in sweep.table:
         return None
-    along = sweep.V * np.cos(sweep.alpha)
-    turning = np.isfinite(sweep.omega) & (along > 0.0) & ~standing(along)
+    return slip_from_speeds(readings_of(sweep), sweep.omega, radius)
+
+
+def slip_from_speeds(of: Driven, omega: np.ndarray, radius: float) -> np.ndarray | None:
+    """Slip (n,) of a driven or braked wheel from its speed (n,) [rad/s] and the road's; None if it rolled freely.
+
+    ``radius`` [m] is that of the unloaded wheel; how much smaller the rolling one is at each load is taken off. NaN at
+    standstill.
+    """
+    along = of.V * np.cos(of.alpha)
+    turning = np.isfinite(omega) & (along > 0.0) & ~standing(along)
     if not np.any(turning):
         return None
-    slip = np.full(len(sweep), np.nan)
-    slip[turning] = np.abs(sweep.omega[turning]) * radius / along[turning] - 1.0
-    rolling = _over_load(slip[turning], sweep.Fz[turning])
+    slip = np.full(len(along), np.nan)
+    slip[turning] = np.abs(omega[turning]) * radius / along[turning] - 1.0
+    rolling = _over_load(slip[turning], np.abs(of.Fz[turning]))
     slip[turning] = (1.0 + slip[turning]) / (1.0 + rolling) - 1.0
     low, high = np.nanpercentile(slip, constants.CORE)
     return slip if high - low >= constants.SMALLEST_SWEEP_OF_SLIP else None

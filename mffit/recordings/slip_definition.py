@@ -9,8 +9,18 @@ import numpy as np
 
 from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_form import ROAD, SlipForm, over_road
-from mffit.points.slip_zero import Driven, SlipZero, form_of, sentence, slip_zero, unexplained_drive
+from mffit.points.slip_zero import (
+    FROM_SPEEDS,
+    Driven,
+    SlipZero,
+    form_of,
+    sentence,
+    slip_from_speeds,
+    slip_zero,
+    unexplained_drive,
+)
 from mffit.recordings.unstated import Choice, FoundChannel, Guess
+from mffit.scatter import finite_median
 from mffit.sweeps.units import converted
 
 SLIP = "kappa"
@@ -39,8 +49,10 @@ def slip_definition(
         else:
             judged.append(_judged(column, found, unit_of))
     known = [(guess, zero, why) for guess, zero, why in judged if zero is not None]
+    if not judged:
+        return SlipColumn(None, tuple(remarks), _force_reversed(found, unit_of))
     if not known:
-        return SlipColumn(judged[0][0] if judged else None, tuple(remarks))
+        return SlipColumn(judged[0][0], tuple(remarks))
     chosen, nearest, force_reversed = min(known, key=lambda one: one[1].largest)
     remarks += [
         f"{chosen.heading} is taken, not {guess.heading}: in the latter Fx = 0 lies at slip {zero.said}"
@@ -50,6 +62,23 @@ def slip_definition(
     said = sentence(chosen.heading, chosen.against, nearest)
     chosen = chosen._replace(why="; ".join(filter(None, (chosen.why, said))))
     return SlipColumn(chosen, tuple(remarks), force_reversed)
+
+
+def _force_reversed(found: Mapping[str, FoundChannel], unit_of: Callable[[str], str]) -> str:
+    """Why Fx has the other sign in a file without a column of slip; "" if it has not, or the speeds do not show it."""
+    if not {"Fx_N", "omega_radps", "V_mps"} <= found.keys():
+        return ""
+    readings = _readings(np.zeros(len(found["Fx_N"].values)), found, unit_of)
+    if readings is None:
+        return ""
+    omega = converted(found["omega_radps"].values, unit_of("omega_radps"), "rad/s")
+    rolls = readings.V > 0.0
+    turns = finite_median(np.abs(omega[rolls]) / readings.V[rolls])
+    if not turns > 0.0:
+        return ""
+    slip = slip_from_speeds(readings, omega, 1.0 / turns)
+    zero = None if slip is None else slip_zero(readings._replace(kappa=slip))
+    return f"Fx falls with {FROM_SPEEDS}" if zero is not None and zero.slope < 0.0 else ""
 
 
 def _no_slip(

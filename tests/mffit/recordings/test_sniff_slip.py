@@ -90,6 +90,24 @@ def test_a_force_of_the_other_sign_is_told_by_the_speeds_from_a_slip_of_the_othe
     assert (without["kappa"].scale, without["Fx_N"].scale) == (-1.0, 1.0)
 
 
+@pytest.mark.parametrize("without", [["SL", "SR"], ["SR"]], ids=["no slip", "dead slip"])
+def test_a_force_of_the_other_sign_is_told_by_the_speeds_alone(table, tmp_path, without):
+    both = [
+        (table.assign(SL=0.0, FX=sign * table["FX"]).drop(columns=without), name, scale)
+        for sign, name, scale in ((1.0, "right", 1.0), (-1.0, "other", -1.0))
+    ]
+    found = []
+    for recorded, name, scale in both:
+        _, written = pipeline.init_from(
+            [write_mat73(recorded, tmp_path / f"{name}.mat")], tmp_path / name, **GIVEN
+        )
+        columns = tomllib.loads(written[0].read_text())["columns"]
+        assert columns["Fx_N"] == ("FX" if scale > 0.0 else {"column": "FX", "scale": -1})
+        found.append(points.read(configuration.load(written[0])).points)
+    assert found[1].Fx == pytest.approx(found[0].Fx)
+    assert np.ptp(found[1].kappa) > 0.2
+
+
 def test_the_speed_of_a_wheel_that_is_braked_to_a_stop_is_kept(table, tmp_path):
     """Most of the time it turns more slowly than any wheel of its size that rolls."""
     slip = np.where(table["SL"] < 0.14, -0.9, table["SL"])
@@ -146,7 +164,7 @@ def test_a_channel_that_stands_still_while_the_wheel_is_driven_is_no_slip(table,
 
 def test_driven_readings_without_any_slip_are_not_taken_for_free_rolling(table, tmp_path):
     blind = table.drop(columns=["SL", "SR", "N"], errors="ignore")
-    with pytest.raises(InputError, match="driven or braked, but no slip was recorded"):
+    with pytest.raises(InputError, match=r"driven or braked, but no slip is known.*--column 'kappa=HEADING'"):
         sniff([write_mat73(blind, tmp_path / "a.mat")])
 
 
