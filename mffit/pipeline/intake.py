@@ -223,7 +223,8 @@ def _check_recordings(sniffed: Sniffed, stated: Stated) -> None:
         path, why = asked[0] if asked else (first, nothing)
         raise InputError(f"{why}{'; or give' * bool(asked)} --nominal-pressure KPA", file=path)
     if not len(sniffed.points):
-        raise InputError(sniffed.reading.warnings[-1], file=first)
+        of_force = [said for r in sniffed.recordings for said in r.remarks if "known to be Fx_N" in said]
+        raise InputError("; ".join([sniffed.reading.warnings[-1], *of_force[:1]]), file=first)
     if sniffed.of_two_tyres:
         raise InputError(sniffed.reading.warnings[-1])
     if not sniffed.axes and stated.axes is None:

@@ -160,9 +160,14 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
     reasons: dict[str, float] = {}
     for note in (note for part in reduced for note in part.stretches if note.dropped):
         reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
-    most = f" (most of the time: {max(reasons, key=lambda reason: reasons[reason])})" if reasons else ""
     if not any(part.stretches for part in reduced):
         return f"there is no point left: all are {DRIVEN}"
+    longest = max(reasons, key=lambda reason: reasons[reason], default="")
+    if longest == DRIVEN:
+        return (
+            f'no sweep is left: the readings are {DRIVEN}; name its column, Fx_N = "HEADING" under [columns]'
+        )
+    most = f" (most of the time: {longest})" if longest else ""
     remedy = "hold every set-point for some seconds"
     if DRIVEN not in reasons:
         remedy += ", or leave out column time_s to take each row for a finished point"

@@ -159,6 +159,8 @@ def slip_zero(of: Driven) -> SlipZero | None:
     every = np.isfinite(of.kappa) & np.isfinite(force)
     if in_steps:  # too few readings for the slope at zero: take sign and size from the whole curve
         driven = every & (np.abs(force) > some)
+        if not np.any(driven):
+            return None
         inverse = float(np.median((of.kappa - _conditions(of, middle) @ found)[driven] / force[driven]))
     if inverse * float(np.mean(of.kappa[every] * force[every])) < 0.0:
         return None  # the line through few points near zero contradicts the whole curve

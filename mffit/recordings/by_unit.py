@@ -1,7 +1,7 @@
-"""Columns under unknown headings, by the unit that the file states for them.
+"""Columns under unknown headings, by the unit that the file states for them, and by words in the heading.
 
 A unit of pressure, of speed or of time leaves one channel: the only column in it is taken, with a question. Other units leave
-several channels, or several columns, and only the question.
+several channels, or several columns, and only the question, which proposes a column whose words fit.
 """
 
 from __future__ import annotations
@@ -27,6 +27,24 @@ ONE_CHANNEL = ("kPa", "m/s", "s")
 """Units that leave one channel; a temperature may be that of the air or the track instead."""
 NOT_THE_TYRES = re.compile(r"amb|umgeb|baro|atmos|hydr|air|wind", re.IGNORECASE)
 """Words in headings of pressures and speeds that are not the tyre's."""
+FORCE, MOMENT = "force|kraft", "moment|torque|couple"
+WORDS = {
+    "Fx_N": ("brak|brems|driv|antrieb|tracti|vortrieb|zug|longitud|längs|laengs|umfang", FORCE),
+    "Fy_N": ("side|lateral|corner|seite|quer", FORCE),
+    "Fz_N": ("vertical|vertikal|normal|wheel|rad|aufstand", f"{FORCE}|load|last"),
+    "Mz_Nm": ("align|rückstell|rueckstell|steer|lenk", MOMENT),
+    "Mx_Nm": ("overturn|kipp", MOMENT),
+    "My_Nm": ("roll", f"{MOMENT}|resist|widerstand"),
+    "alpha_deg": ("slip|side|schräg|schraeg", "angle|winkel"),
+    "gamma_deg": ("camber|inclin|sturz|neig", ""),
+    "p_kPa": ("infl|tyre|tire|reifen|füll|fuell|innen", "press|druck"),
+    "V_mps": ("belt|road|drum|track|bahn|band|trommel", "speed|veloc|geschw"),
+    "T_degC": ("tread|tyre|tire|surface|reifen|lauf|oberfl", "temp"),
+    "omega_radps": ("wheel|rad", "speed|rotat|rpm|dreh"),
+}
+"""By channel, words that say which one a heading names, and words of its kind, in which a heading without a unit has one, too."""
+BRAKING = re.compile("brak|brems", re.IGNORECASE)
+"""Words in the heading of a force that is positive when braking."""
 ANGLE = re.compile(r"deg|rad|°")
 
 
@@ -87,27 +105,46 @@ def taken_for(column: FoundChannel) -> str:
     )
 
 
+def named_alike(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[str]:
+    """The headings of numbers that are not taken and whose words fit the channel, in a unit of its kind or named as of it."""
+    if channel.name not in WORDS:
+        return []
+    which, kind = (re.compile(words, re.IGNORECASE) for words in WORDS[channel.name])
+    in_unit = in_unit_of(channel, raw, taken)
+    return [
+        heading
+        for heading in raw.headings
+        if heading not in taken
+        and which.search(heading)
+        and (heading in in_unit or (not raw.unit(heading) and kind.search(which.sub(" ", heading))))
+        and np.any(np.isfinite(numbers(raw.column(heading))))
+    ]
+
+
 def questions(raw: RawTable, found: Collection[str], taken: Collection[str]) -> list[str]:
-    """A question for every kind of unit with unused columns and missing channels."""
-    asked = []
+    """Questions about missing channels: for those that words of unused columns fit, and for every kind of unit of the others."""
+    asked, proposed = [], set(taken)
+    missing = [c for c in SWEEP_CHANNELS if c.name not in (*found, *UNCERTAINTIES, "t_s")]
+    for channel in list(missing):
+        if near := named_alike(channel, raw, proposed):
+            asked.append(question([channel], near, raw, "with such words in the heading"))
+            missing.remove(channel)
+            proposed.update(near)
     for unit, kind in KINDS.items():
-        missing = [
-            channel
-            for channel in SWEEP_CHANNELS
-            if channel.unit == unit and channel.name not in (*found, *UNCERTAINTIES, "t_s")
-        ]
-        near = in_unit_of(missing[0], raw, taken) if missing else []
+        rest = [channel for channel in missing if channel.unit == unit]
+        near = in_unit_of(rest[0], raw, proposed) if rest else []
         if near:
-            asked.append(question(missing, near, raw, kind))
+            asked.append(question(rest, near, raw, f"in a unit of {kind}"))
     return asked
 
 
-def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, kind: str) -> str:
-    """Which of the columns ``near`` is which of the missing channels of this kind, and how to say so."""
+def question(missing: Sequence[Channel], near: Sequence[str], raw: RawTable, alike: str) -> str:
+    """Which of the columns ``near``, ``alike`` in some way, is which of the missing channels, and how to say so."""
     names = [f"{channel.name} ({channel.description})" for channel in missing]
-    columns = ", ".join(f'"{heading}" [{raw.unit(heading)}]' for heading in near)
+    columns = ", ".join(f'"{heading}" [{raw.unit(heading)}]'.removesuffix(" []") for heading in near)
     name, heading = missing[0].name, near[0]
+    sign = ", with scale = -1 if braking is positive in it" if name == "Fx_N" else ""
     return (
-        f"no heading is known to be {' or '.join(names)}; unused columns in a unit of {kind}: {columns}; is it one of them? Then "
-        f"give --column '{name}={heading}', or write {name} = \"{heading}\" under [columns]"
+        f"no heading is known to be {' or '.join(names)}; unused columns {alike}: {columns}; is it one of them? Then give "
+        f"--column '{name}={heading}', or write {name} = \"{heading}\" under [columns]{sign}"
     )

@@ -17,7 +17,7 @@ from mffit.as_json import keys
 from mffit.errors import InputError, meant
 from mffit.points.clock import spread
 from mffit.points.steady import gaps
-from mffit.recordings.by_unit import KINDS, in_unit_of
+from mffit.recordings.by_unit import KINDS, in_unit_of, named_alike
 from mffit.recordings.guess import ColumnChoice, corrected, guesses
 from mffit.recordings.tyre_constants import StatedByFile, stated_by
 from mffit.recordings.unstated import Guess
@@ -171,11 +171,13 @@ def _unrecognised(missing: Sequence[Channel], raw: RawTable, taken: Collection[s
 
 
 def _near(channel: Channel, raw: RawTable, taken: Collection[str]) -> list[str]:
-    """Columns that are not taken, in a unit of a channel, else with its name and an ending such as that of a wheel."""
+    """Columns that are not taken: with a channel's name and an ending such as that of a wheel, else with words that fit, else
+    in its unit.
+    """
     names = "|".join(re.escape(name) for name in (channel.name, *channel.aliases))
     with_ending = re.compile(rf"(?:{names})(?:[\W_\d].*|[lr])", re.IGNORECASE)
     by_name = [heading for heading in raw.headings if heading not in taken and with_ending.fullmatch(heading)]
-    return by_name or in_unit_of(channel, raw, taken)
+    return by_name or named_alike(channel, raw, taken) or in_unit_of(channel, raw, taken)
 
 
 class _Clock(NamedTuple):

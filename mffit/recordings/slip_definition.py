@@ -19,6 +19,7 @@ from mffit.points.slip_zero import (
     slip_zero,
     unexplained_drive,
 )
+from mffit.recordings.by_unit import BRAKING
 from mffit.recordings.unstated import Choice, FoundChannel, Guess
 from mffit.scatter import finite_median
 from mffit.sweeps.units import converted
@@ -135,8 +136,10 @@ def _judged(
     force_reversed = ""
     if zero.slope < 0.0:
         zero = zero.reversed
-        if form is not None and form.over is not None:
-            force_reversed = f"Fx falls with {column.heading}, which the recorded speeds confirm"
+        confirmed = form is not None and form.over is not None
+        if confirmed or BRAKING.search(found["Fx_N"].heading):
+            force_reversed = f"Fx falls with {column.heading}"
+            force_reversed += ", which the recorded speeds confirm" if confirmed else ", as a braking force"
             in_form = None if in_form is None else in_form.reversed
         else:
             why = "braking is positive in the file, as Fx falls with it"

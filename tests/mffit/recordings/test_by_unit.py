@@ -96,6 +96,34 @@ def test_a_unit_that_leaves_several_channels_is_only_asked_about(tmp_path):
     assert 'T_degC = "Temp A" under [columns]' in of_temperature
 
 
+@pytest.mark.parametrize(
+    ("heading", "channel"),
+    [
+        ("brake force [N]", "Fx_N"),
+        ("Bremskraft [kN]", "Fx_N"),
+        ("Bremskraft", "Fx_N"),
+        ("driving force", "Fx_N"),
+        ("Antriebskraft [N]", "Fx_N"),
+        ("Kippen [N m]", "Mx_Nm"),
+        ("Rollwiderstand [N m]", "My_Nm"),
+        ("tire surface temp", "T_degC"),
+    ],
+)
+def test_a_column_whose_words_fit_a_channel_is_proposed_for_it(tmp_path, heading, channel):
+    other = {"Kolbenkraft [N]": 0.0 * ALPHA + 3.0}
+    found = only(table(tmp_path / "a.csv", **other, **{heading: 0.0 * ALPHA + 0.5}))
+    name = heading.partition(" [")[0]
+    assert channel not in found.guesses
+    (asked,) = (remark for remark in found.remarks if f"--column '{channel}={name}'" in remark)
+    assert "Kolbenkraft" not in asked
+
+
+@pytest.mark.parametrize("heading", ["brake pressure [bar]", "Bremse", "drive", "Zugfahrzeug [-]"])
+def test_a_word_of_a_channel_in_another_kind_proposes_nothing(tmp_path, heading):
+    found = only(table(tmp_path / "a.csv", **{heading: 0.0 * ALPHA + 30.0}))
+    assert not any("Fx_N=" in remark for remark in found.remarks)
+
+
 @pytest.mark.parametrize(("times", "is_time"), [(np.arange(21.0), True), (np.arange(21.0)[::-1], False)])
 def test_a_column_in_seconds_is_the_time_if_it_only_rises(tmp_path, times, is_time):
     found = only(table(tmp_path / "a.csv", **{"Zähler [ms]": times}))
@@ -107,6 +135,12 @@ def test_a_share_is_no_angle(tmp_path):
     with pytest.raises(InputError, match="known to be gamma_deg") as refused:
         sniff([path])
     assert "gamma_deg may be" not in str(refused.value)
+
+
+def test_of_a_required_channel_the_heading_with_its_words_is_proposed(tmp_path):
+    more = {"Kraft 3 [kN]": 0.0 * ALPHA + 1.5, "Reifennormalkraft [kN]": 0.0 * ALPHA + 1.5}
+    with pytest.raises(InputError, match=r"give --column 'Fz_N=Reifennormalkraft'"):
+        sniff([table(tmp_path / "a.csv", without=["Radlast [N]"], **more)])
 
 
 def test_a_required_channel_under_an_unknown_heading_can_be_named(tmp_path):

@@ -90,6 +90,16 @@ def test_a_force_of_the_other_sign_is_told_by_the_speeds_from_a_slip_of_the_othe
     assert (without["kappa"].scale, without["Fx_N"].scale) == (-1.0, 1.0)
 
 
+def test_a_braking_force_under_an_unknown_heading_is_asked_for_and_then_taken_with_its_sign(table, tmp_path):
+    """Without speeds: braking is negative slip and a positive force."""
+    recorded = table.assign(FX=-table["FX"]).rename(columns={"FX": "Bremskraft"}).drop(columns=["SR", "N"])
+    recorded.to_csv(tmp_path / "a.csv", index=False)
+    with pytest.raises(InputError, match=r"Fx was not measured; name its column.*--column 'Fx_N=Bremskraft'"):
+        pipeline.init_from([tmp_path / "a.csv"], tmp_path / "p", **GIVEN)
+    named = sniff([tmp_path / "a.csv"], headings={"Fx_N": "Bremskraft"}).recordings[0].guesses
+    assert (named["kappa"].scale, named["Fx_N"].scale) == (1.0, -1.0)
+
+
 @pytest.mark.parametrize("without", [["SL", "SR"], ["SR"]], ids=["no slip", "dead slip"])
 def test_a_force_of_the_other_sign_is_told_by_the_speeds_alone(table, tmp_path, without):
     both = [
