@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import errno
 import hashlib
 import io
@@ -14,7 +13,6 @@ import re
 import shutil
 import sys
 import tempfile
-import time
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
@@ -31,6 +29,8 @@ DISK_FULL = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
 """Errors of a full or read-only disk."""
 
 ELSEWHERE = "name another folder with --out"
+BEYOND_ANY_END = 1 << 30
+"""Place of the lock of a file [bytes]."""
 
 
 class OutputEntry(NamedTuple):
@@ -324,153 +324,52 @@ class ChangedMeanwhile(Exception):
 
 
 def save_over(path: Path, before: bytes, after: bytes) -> None:
-    """Replace the content ``before`` of a user's own file in one step.
+    """Write a user's own file anew where it lies, so that its links, owner, permissions and attributes stay.
 
-    A link stays one; permissions, owner and extended attributes stay. Where a new file could not have them, or the old one has
-    other names (hard links), or the folder takes no new file, the old one is written over: not in one step if it is longer than
-    a page of memory (4 kB), but :func:`finish_save` ends what a kill divides, unless the folder takes no file.
+    Windows of mffit save one after the other. Where the disk does not take the new content, the old one stays.
 
     Raises
     ------
     ChangedMeanwhile
-        The file has another content, and keeps it. It is compared at the replacement, where no other process of mffit saves.
+        The file has another content than ``before``, and keeps it: it is compared just before it is written, and a file that
+        another program puts in its place meanwhile stays.
     InputError
         The file cannot be written.
     """
     try:
-        path = path.resolve(strict=True)
-        with _alone(path.parent), _new_like(path, after) as new:
-            with path.open("r+b", buffering=0) as old:  # refuses a file that the user may not write
-                if (now := old.read()) != before:
-                    raise ChangedMeanwhile(now)
-                if new is None:
-                    with _journal(path, before, after):
-                        _write_over(old, before, after)
-            if new is not None:
-                _put(new, path, before, after)
+        with path.open("r+b", buffering=0) as file:
+            _lock(file.fileno())
+            file.seek(0)
+            if (now := file.read()) != before:
+                raise ChangedMeanwhile(now)
+            _write_over(file, before, after)
+            if not os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                raise ChangedMeanwhile(path.read_bytes())
     except OSError as error:
         is_full = error.errno in DISK_FULL - {errno.EROFS}
         remedy = "free some space" if is_full else "check the permissions of file and folder"
         raise InputError(f"cannot be written ({error.strerror}); {remedy}", file=path) from None
 
 
-def _write_over(old: io.FileIO, before: bytes, after: bytes) -> None:
-    # In one call, which a kill divides between pages at most; what is too long is blank until it is cut off.
+def _write_over(file: io.FileIO, before: bytes, after: bytes) -> None:
+    """Write in one call; what is too long is blank until it is cut off."""
     longer = after.ljust(len(before), b"\n")
-    if old.seek(0) + old.write(longer) < len(longer):
-        old.seek(0)
-        old.truncate(old.write(before))
+    if file.seek(0) + file.write(longer) < len(longer):
+        file.seek(0)
+        file.truncate(file.write(before))
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    old.truncate(len(after))
+    file.truncate(len(after))
 
 
-def finish_save(path: Path) -> None:
-    """End a :func:`save_over` that a kill has divided, if the file holds the parts of both contents and nothing else."""
-    path = path.resolve()
-    journal = _journal_of(path)
-    try:
-        if sys.platform != "win32" and journal.lstat().st_uid != os.geteuid():
-            return  # of another user, who may not say what is written here
-        head, _, both = journal.read_bytes().partition(b"\n")
-        with _alone(path.parent), path.open("r+b", buffering=0) as old:
-            lengths, now = [int(n) for n in head.split()], old.read()
-            before, after = both[: lengths[0]], both[lengths[0] :]
-            longer = after.ljust(len(before), b"\n")
-            ends = min(len(now), len(longer))
-            same = next((k for k in range(ends) if now[k] != longer[k]), ends)
-            if len(both) == sum(lengths) and now != before and now[same:] == before[same:]:
-                _write_over(old, now, after)
-        journal.unlink()
-    except (OSError, ValueError, IndexError):
-        return  # there is none, or it was not complete before anything was written
-
-
-@contextmanager
-def _journal(path: Path, before: bytes, after: bytes) -> Iterator[None]:
-    """Within this block both contents of a file lie beside it, if its folder takes files, for :func:`finish_save`."""
-    journal, ours = _journal_of(path), False
-    try:
-        with contextlib.suppress(PermissionError, FileExistsError), journal.open("xb") as stream:
-            ours = True
-            stream.write(b"%d %d\n%b%b" % (len(before), len(after), before, after))
-        yield
-    finally:
-        if ours:
-            journal.unlink(missing_ok=True)
-
-
-def _journal_of(path: Path) -> Path:
-    return path.with_name(f".{path.name}.saving")
-
-
-def _put(new: str, path: Path, before: bytes, after: bytes) -> None:
-    """Put a new file in the place of another; where the two can be exchanged, what comes out is compared once more."""
-    expected, placed = before, after
-    while _exchanged(new, path):
-        came_out = Path(new).read_bytes()
-        if came_out == expected:
-            if placed != after:
-                raise ChangedMeanwhile(placed)
-            return
-        expected, placed = placed, came_out  # saved by another program since: it goes back
-    os.replace(new, path)
-
-
-def _exchanged(new: str, path: Path) -> bool:
-    """Whether two files exchanged their names in one step, which not every system can do."""
-    names = [os.fsencode(name) for name in (new, path)]
-    try:
-        libc = ctypes.CDLL(None)
-        if sys.platform == "linux":
-            here, exchange = -100, 2
-            return bool(libc.renameat2(here, names[0], here, names[1], exchange) == 0)
-        return sys.platform == "darwin" and bool(libc.renamex_np(*names, 2) == 0)
-    except (AttributeError, OSError, TypeError):
-        return False
-
-
-@contextmanager
-def _new_like(path: Path, content: bytes) -> Iterator[str | None]:
-    """A complete file beside ``path`` that may take its place; None if it cannot have its owner or all its names."""
-    old, new, whole = path.stat(), "", False
-    try:
-        if old.st_nlink == 1:
-            with contextlib.suppress(PermissionError):
-                handle, new = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-                with os.fdopen(handle, "wb") as stream:
-                    stream.write(content)
-                if sys.platform != "win32":
-                    os.chown(new, old.st_uid, old.st_gid)
-                shutil.copystat(path, new)
-                os.utime(new)
-                whole = True
-        yield new if whole else None
-    finally:
-        if new:
-            Path(new).unlink(missing_ok=True)
-
-
-@contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Within this block, no other process of mffit is in its block for the same folder; no file is left there."""
+def _lock(handle: int) -> None:
+    """Wait until no other process of mffit writes the open file; it is free again when it is closed."""
     if sys.platform == "win32":
         import msvcrt
 
-        name = f"mffit-{hashlib.sha256(os.fsencode(folder)).hexdigest()}.lock"
-        with (Path(tempfile.gettempdir()) / name).open("wb") as lock:
-            msvcrt.locking(lock.fileno(), msvcrt.LK_LOCK, 1)
-            yield
+        os.lseek(handle, BEYOND_ANY_END, os.SEEK_SET)  # others may not read what is locked
+        msvcrt.locking(handle, msvcrt.LK_LOCK, 1)
         return
     import fcntl
 
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        for _ in range(100):  # another user could hold it for ever; the comparison of contents is left then
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except OSError:  # held, or a network folder that knows no locks
-                time.sleep(0.01)
-        yield
-    finally:
-        os.close(handle)
+    with contextlib.suppress(OSError):  # a network folder that knows no locks
+        fcntl.flock(handle, fcntl.LOCK_EX)

@@ -17,7 +17,7 @@ from mffit.config.lines import ExcludeTable
 from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
-from mffit.output import ChangedMeanwhile, digest, finish_save, save_over
+from mffit.output import ChangedMeanwhile, digest, save_over
 from mffit.pipeline.inputs import check_named_files, input_names
 from mffit.recordings.disc import files_of_folder
 from mffit.sweeps import formats
@@ -60,7 +60,6 @@ class ProjectFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()  # a link lies in its own folder, with the files that it names
-        finish_save(self.path)
         self.steps: list[Step] = []
         self._lines: dict[tuple[Path, int], np.ndarray] = {}  #: (n,) of the rows of a file, by path and time
         self._shown: dict[str, bytes] = {}  #: contents that windows may have seen, by digest
