@@ -97,12 +97,12 @@ def test_the_reader_refuses_a_damaged_file_in_one_sentence(examples, tmp_path, t
 
 def test_the_picture_is_drawn_where_it_appears_and_its_numbers_are_the_readings(examples, tmp_path):
     view = view_of(made_result())
-    picture = page.draw(tmp_path, examples["LOAD_ORDER"], view)
+    picture = page.picture(tmp_path, "loads", examples["loads"](view))
     assert (tmp_path / "plots" / "loads.png").stat().st_size > 1000
     rows = list(csv.DictReader(io.StringIO(picture.table)))
     assert [float(row["y"]) for row in rows] == pytest.approx(view.points.Fz)
     alike = view.points.replace(Fz=np.full(len(view.points), 900.0))
-    assert page.draw(tmp_path, examples["LOAD_ORDER"], dataclasses.replace(view, points=alike)) is None
+    assert page.picture(tmp_path, "loads", examples["loads"](dataclasses.replace(view, points=alike))) is None
 
 
 def test_the_command_prints_text_or_json(examples):

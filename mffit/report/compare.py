@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,6 @@ from mffit.fit.plan import channels_of
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, page, style
 from mffit.report.build_view import ChannelRow, Overlay
-from mffit.report.catalogue import Picture, of_channels
 from mffit.report.curves import curves, model_lines
 from mffit.report.drawing.records import (
     NOTHING,
@@ -79,34 +80,24 @@ def differences(found: Comparison) -> Sheet:
     return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
 
 
-COMPARISON: tuple[Picture[Comparison], ...] = (
-    *of_channels(
-        "curves",
-        title="{word} of both over sideslip and camber, or over slip",
-        shows="{word} on a straight path, with the other angle zero. Shaded areas are 95 % bands, if a build states them.",
-        section="curves",
-        draw=curves_of_both,
-    ),
-    Picture(
-        name="differences",
-        title="Ranked differences in units of their uncertainty",
-        shows="Differences over their standard uncertainties, the largest first. Those beyond the dashed lines are significant.",
-        draw=differences,
-    ),
-)
+COMPARISON: Mapping[str, Callable[[Comparison], Sheet]] = {
+    "differences": differences,
+    **{f"curves_{name}": partial(curves_of_both, channel=name) for name in CHANNELS},
+}
 """Pictures of two files."""
 
 
 def write_comparison(found: Comparison, folder: Path) -> None:
     """Write the pictures and ``compare.html`` of a comparison to an existing folder."""
-    pictures: tuple[Picture[Comparison], ...] = COMPARISON
-    view = _overlay(found)
-    if view is not None:
-        pictures += tuple(_of_overlay(view, one) for one in fit.OF_CHANNELS)
+    drawn, overlay = dict(COMPARISON), _overlay(found)
+    if overlay is not None:
+        drawn |= {
+            name: partial(_over_readings, overlay, sheet_of) for name, sheet_of in fit.OF_CHANNELS.items()
+        }
     page.write(
         "compare.html.j2",
         folder / "compare.html",
-        pictures,
+        drawn,
         found,
         found=found,
         say=wording,
@@ -115,10 +106,8 @@ def write_comparison(found: Comparison, folder: Path) -> None:
     )
 
 
-def _of_overlay(view: Overlay, one: Picture[Overlay]) -> Picture[Comparison]:
-    return Picture(
-        name=one.name, title=one.title, shows=one.shows, section="curves", draw=lambda _: one.draw(view)
-    )
+def _over_readings(overlay: Overlay, sheet_of: Callable[[Overlay], Sheet], found: Comparison) -> Sheet:
+    return sheet_of(overlay)
 
 
 def _overlay(found: Comparison) -> Overlay | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,6 @@ from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import COMPARED, DIRECT
 from mffit.report import constants, labels, page, style
-from mffit.report.catalogue import Picture
 from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.text.many import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
@@ -77,23 +76,7 @@ def _names(found: Fleet, columns: int = 1) -> Axis:
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
 """Coefficients of spin and camber stiffness that the page shows of a population; fleet.json holds all."""
 
-NAMED = "Every bar is one standard uncertainty; tyres are named, or numbered as in the table if the names do not fit."
-FLEET: tuple[Picture[Fleet], ...] = (
-    Picture(
-        name="epsilon_gamma",
-        title="Camber reduction factor of every tyre by three estimates, with bars of one standard uncertainty",
-        shows=f"{NAMED} The direct method uses the forces at zero of each tyre alone, and an error of the rig moves all results "
-        "alike. The joint estimate uses all points of a tyre and fits the errors of the rig, too. All tyres together determine "
-        "the rig best.",
-        draw=epsilon_of_all,
-    ),
-    Picture(
-        name="numbers",
-        title="Stiffnesses and peaks of every tyre with bars of one standard uncertainty",
-        shows=NAMED,
-        draw=numbers_of_all,
-    ),
-)
+FLEET: Mapping[str, Callable[[Fleet], Sheet]] = {"epsilon_gamma": epsilon_of_all, "numbers": numbers_of_all}
 """Every picture of the page."""
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import base64
 import io
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from mffit import rounding
 from mffit.constants import NAMED_IN_SENTENCE
@@ -17,24 +17,23 @@ from mffit.errors import shortened
 from mffit.made import COMPUTING, libraries, made
 from mffit.points.left_out import together
 from mffit.report import constants, numbers, typeset
-from mffit.report.catalogue import Picture, View
-from mffit.report.drawing.records import with_fewer_rows
+from mffit.report.drawing.records import Sheet, with_fewer_rows
 from mffit.templates import environment
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+View = TypeVar("View")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PagePicture:
-    """A picture in the page."""
+    """A picture in the page, whose template has its title and caption."""
 
     name: str  #: file stem of its PNG
-    title: str
-    caption: str
-    section: str
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
+    remark: str  #: what the caption says of these data only
 
     @property
     def link(self) -> str:
@@ -46,11 +45,13 @@ class PagePicture:
 
 
 def write(
-    template: str, path: Path, catalogue: Iterable[Picture[View]], view: View, **content: object
+    template: str, path: Path, drawn: Mapping[str, Callable[[View], Sheet]], view: View, **content: object
 ) -> None:
-    """Draw the pictures of a view, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
-    drawn = {one.name: draw(path.parent, one, view) for one in catalogue}
-    pictures = {name: picture for name, picture in drawn.items() if picture is not None}
+    """Draw the pictures of a view, fill a template of ``templates/`` with them and the content, and write the page as UTF-8.
+
+    ``drawn`` has by name, the file stem of the PNG, what makes the sheet of a picture.
+    """
+    pictures = {name: picture(path.parent, name, sheet_of(view)) for name, sheet_of in drawn.items()}
     filled = _environment().get_template(template)
     known = made()
     foot = {
@@ -65,25 +66,17 @@ def write(
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(folder: Path, picture: Picture[View], view: View) -> PagePicture | None:
-    """Draw a picture into ``folder/plots/<name>.png``, and as it stands in the page; None if these data give it no panel."""
+def picture(folder: Path, name: str, whole: Sheet) -> PagePicture | None:
+    """Draw a sheet into ``folder/plots/<name>.png``, and as it stands in the page; None if it has no panel."""
     from mffit.report.drawing import pictures
 
-    whole = picture.draw(view)
     if not whole.panels:
         return None
     (folder / "plots").mkdir(parents=True, exist_ok=True)
     sheet = with_fewer_rows(whole, int(constants.MOST_PANELS))
     drawing = pictures.draw(sheet)
-    (folder / "plots" / f"{picture.name}.png").write_bytes(drawing.png)
-    return PagePicture(
-        name=picture.name,
-        title=picture.title,
-        caption=f"{picture.shows} {sheet.remark}".strip(),
-        section=picture.section or picture.name,
-        drawing=drawing.markup,
-        table=numbers.table(whole),
-    )
+    (folder / "plots" / f"{name}.png").write_bytes(drawing.png)
+    return PagePicture(name=name, drawing=drawing.markup, table=numbers.table(whole), remark=sheet.remark)
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import constants, page, style
-from mffit.report.catalogue import Picture
 from mffit.report.drawing.records import NOTHING, Axis, Bars, Note, Panel, Sheet, listed
 
 
@@ -44,12 +44,8 @@ def u_against_runs(plan: Plan) -> Sheet:
     return Sheet(rows=[[panel]], height=0.28 * len(values) + 0.1)
 
 
-PLAN: Picture[Plan] = Picture(
-    name="plan",
-    title="Uncertainty of the goal now and after every run of the list",
-    shows="What the plan makes smaller, now and after each added run; an uncertainty is one standard deviation.",
-    draw=u_against_runs,
-)
+PLAN: Mapping[str, Callable[[Plan], Sheet]] = {"plan": u_against_runs}
+"""The picture of the page."""
 
 
 def write_plan(plan: Plan, folder: Path) -> None:
@@ -57,7 +53,7 @@ def write_plan(plan: Plan, folder: Path) -> None:
     page.write(
         "plan.html.j2",
         folder / "plan.html",
-        (PLAN,),
+        PLAN,
         plan,
         plan=plan,
         say=wording,

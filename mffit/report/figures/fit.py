@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from mffit.quantities import CHANNELS
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow, Overlay
-from mffit.report.catalogue import Picture, of_channels
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
@@ -54,17 +55,13 @@ def model_against_points(view: Overlay, channel: ChannelRow) -> Sheet:
     return Sheet(rows=in_rows(*groups), height=1.6, key=key, remark=remark)
 
 
-def _of_channel(view: Overlay, name: str) -> Sheet:
+def _of_channel(view: Overlay, *, name: str) -> Sheet:
     return next((model_against_points(view, c) for c in view.channels if c.name == name), NOTHING)
 
 
-OF_CHANNELS: tuple[Picture[Overlay], ...] = of_channels(
-    "fit",
-    title="Model and points of {word} at every load, pressure and camber",
-    shows="{channel}: points, and the model as lines. The colour is the camber or sideslip that is held.",
-    section="fit",
-    draw=_of_channel,
-)
+OF_CHANNELS: Mapping[str, Callable[[Overlay], Sheet]] = {
+    f"fit_{name}": partial(_of_channel, name=name) for name in CHANNELS
+}
 """Pictures of a fit, and of a file over readings."""
 
 

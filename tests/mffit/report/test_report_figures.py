@@ -264,18 +264,18 @@ def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
     config = view.build.config.model_copy(update={"tyre": tyre})
     renamed = dataclasses.replace(view, build=dataclasses.replace(view.build, config=config))
     with pictures._settings():
-        for one in build.pictures_of(renamed):
-            sheet = one.draw(renamed)
+        for one, draw in build.BUILD.items():
+            sheet = draw(renamed)
             figure = pictures.figure_of(sheet)
             figure.draw_without_rendering()
             width = figure.bbox.width / sheet.columns
             everything = [boxes(axes) for axes in figure.axes]
-            assert crossing([box for found in everything for box in found]) == [], one.name
+            assert crossing([box for found in everything for box in found]) == [], one
             for axes, found in zip(figure.axes, everything, strict=True):
                 box = axes.get_window_extent()
                 left = width * np.floor(0.5 * (box.x0 + box.x1) / width)
                 right = figure.bbox.width if sheet.scale and axes is figure.axes[0] else left + width
-                assert outside(found, left, right) == [], one.name
+                assert outside(found, left, right) == [], one
 
 
 def boxes(axes):

@@ -73,7 +73,7 @@ def test_of_a_long_series_every_so_many_points_are_listed(monkeypatch):
 def test_a_table_is_packed_and_the_same_table():
     """Bytes do not depend on when it was packed."""
     numbers = "x,y\n" + "1.25,3.5\n" * 10_000
-    picture = page.PagePicture(name="fit", title="", caption="", section="", drawing="", table=numbers)
+    picture = page.PagePicture(name="fit", drawing="", table=numbers, remark="")
     address, _, packed = picture.link.partition(",")
     assert address == "data:application/zip;base64"
     assert len(packed) < len(numbers) / 20

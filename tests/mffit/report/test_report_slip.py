@@ -12,6 +12,7 @@ from mffit import parts
 from mffit.fit.agreement import with_points
 from mffit.fit.coverage import coverage
 from mffit.numbers import Numbers
+from mffit.quantities import CHANNELS
 from mffit.report import build, constants, page
 from mffit.report.build_view import view_of
 from mffit.report.figures import fit, residuals, slip
@@ -114,20 +115,19 @@ def test_maps_hold_every_reading_inside_their_axes(view):
 
 def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
     monkeypatch.setattr(constants, "MOST_PANELS", 5)
-    wanted = next(one for one in build.BUILD if one.name == "fit_Fx")
-    sheet = wanted.draw(view)
-    picture = page.draw(tmp_path, wanted, view)
+    sheet = build.BUILD["fit_Fx"](view)
+    picture = page.picture(tmp_path, "fit_Fx", sheet)
     assert picture.drawing.count("<img") == 1 + 5  # with the key
     said = f"{len(sheet.panels) - 5} more panels are not drawn, for lack of room; the numbers have them."
-    assert said in picture.caption
+    assert said in picture.remark
     assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves)
     macro = page._environment().get_template("macros.html.j2").module
-    assert said in macro.figure(picture)
+    assert said in macro.fit_of_every_channel({"fit_Fx": picture}, CHANNELS)
 
 
 def test_whatever_a_picture_shows_can_be_seen(view, result):
     """A line has a width, a mark a size, an area some colour."""
-    sheets = [one.draw(built) for built in (view, view_of(result)) for one in build.BUILD]
+    sheets = [draw(built) for built in (view, view_of(result)) for draw in build.BUILD.values()]
     looks = [s.look for sheet in sheets for panel in sheet.panels for s in panel.series if hasattr(s, "look")]
     assert all(look.line or look.marker or look.opacity > 0.0 for look in looks)
     assert min(look.width for look in looks if look.line) > 0.3  # pt
