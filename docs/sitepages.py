@@ -12,7 +12,7 @@ from docutils import nodes
 from docutils.parsers.rst import Directive
 from docutils.utils.math.latex2mathml import tex2mathml
 
-from mffit.reference import constants
+from mffit import reference
 from tir.parameters import TABLE, Parameter
 
 SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
@@ -28,7 +28,7 @@ def adapted(app: Any, page: str, source: list[str]) -> None:
     if page == "index":
         text = text + "\n" + navigation(text)
     elif page == "constants":
-        text = text + constants.tables()
+        text = text + reference.page("constants.md")
     if "/" not in page:
         # The site contains docs/ only; a link to another file of the repository becomes its path.
         text = OUTSIDE.sub(r"\1 (`\2` in the repository)", text)

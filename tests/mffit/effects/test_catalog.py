@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mffit import reference
 from mffit.effects import CATALOG, NEEDS
-from mffit.reference import rig_errors
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
 
@@ -53,7 +53,7 @@ def test_freed_numbers_exist_and_can_be_started_from(effect):
 
 
 def test_numbers_of_the_rig_are_all_described():
-    rows = [line.replace(r"\|", "|") for line in rig_errors.page().splitlines()]
+    rows = [line.replace(r"\|", "|") for line in reference.page("rig-errors.md").splitlines()]
     for error in RIG_ERRORS.values():
         assert any(
             row.startswith(f"| `{error.name}`") and f"| {error.unit} | {error.meaning} |" in row

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from pathlib import Path
 
-from mffit.reference.suspicion import page
+from mffit import reference
 from mffit.suspicion import RULES
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -17,4 +17,4 @@ def test_every_rule_has_a_name_of_its_own():
 
 def test_the_page_is_current():
     written = (DOCS / "suspicion.md").read_text(encoding="utf-8")
-    assert written == page(), "run: python -m mffit.reference docs"
+    assert written == reference.page("suspicion.md"), "run: python -m mffit.reference docs"
