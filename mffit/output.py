@@ -285,10 +285,12 @@ def _alive(pid: int) -> bool:
 
 
 def must_be_new(folder: Path, names: Iterable[str]) -> None:
-    """Raise if the folder has a file of one of the names."""
+    """Raise if the folder has something of one of the names."""
     for name in names:
-        if (folder / name).exists():
-            raise InputError("is there already; move it away or name another folder", file=folder / name)
+        if os.path.lexists(folder / name):
+            raise InputError(
+                "is there already; move it away, or choose another name or folder", file=folder / name
+            )
 
 
 def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Awaitable, Callable, Mapping, MutableMapping
+from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any
+
+from starlette.datastructures import MutableHeaders
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, PlainTextResponse
 
 HOSTS = ("127.0.0.1", "localhost")
 HEADERS = {
-    b"cache-control": b"no-store",
-    b"cross-origin-opener-policy": b"same-origin",
-    b"cross-origin-resource-policy": b"same-origin",
-    b"referrer-policy": b"no-referrer",
-    b"x-content-type-options": b"nosniff",
-    b"x-frame-options": b"DENY",
+    "cache-control": "no-store",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "referrer-policy": "no-referrer",
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
 }
 Scope = MutableMapping[str, Any]
 App = Callable[[Scope, Callable[[], Awaitable[Any]], Callable[[Any], Awaitable[None]]], Awaitable[None]]
-
-
 COOKIE = "mffit"
+GO_ON = '<!doctype html><meta http-equiv="refresh" content="0; url={0}"><a href="{0}">Open the window</a>'
+REFUSAL = "Refused: open an address that `mffit open` shows in its terminal; each opens one browser."
 
 
 class Entrance:
@@ -73,50 +77,34 @@ class Guard:
 
         async def with_headers(message: Any) -> None:
             if message["type"] == "http.response.start":
-                given = {name for name, _ in message.get("headers", [])}
-                added = [(name, value) for name, value in HEADERS.items() if name not in given]
-                message = {**message, "headers": [*message.get("headers", []), *added]}
+                headers = MutableHeaders(scope=message)
+                for name, value in HEADERS.items():
+                    headers.setdefault(name, value)
             await send(message)
 
-        headers = {name.decode("latin-1").lower(): one.decode("latin-1") for name, one in scope["headers"]}
-        if self._is_meant(scope["method"], headers):
-            here = scope["path"].startswith(self._entrance.home)
-            if here and self._entrance.knows(headers.get("cookie", "")):
-                return await self._app(scope, receive, with_headers)
-            if scope["method"] == "GET" and self._entrance.enter(scope["path"]):
-                return await self._let_in(with_headers)
-        return await _send(with_headers, 403, "text/plain", REFUSAL)
+        request, path = Request(scope), scope["path"]
+        answer: App = PlainTextResponse(REFUSAL, 403)
+        if self._is_meant(request):
+            home = self._entrance.home
+            if path.startswith(home) and self._entrance.knows(request.headers.get("cookie", "")):
+                answer = self._app
+            elif request.method == "GET" and self._entrance.enter(path):
+                # A page, because browsers keep the cookie from requests to which another site, or a file, redirects.
+                cookie = f"{COOKIE}={self._entrance.secret}; Path={home}; HttpOnly; SameSite=Strict"
+                more = {"set-cookie": cookie, "content-security-policy": "default-src 'none'"}
+                answer = HTMLResponse(GO_ON.format(home), headers=more)
+        await answer(scope, receive, with_headers)
 
-    def _is_meant(self, method: str, headers: Mapping[str, str]) -> bool:
+    def _is_meant(self, request: Request) -> bool:
         """Whether a request comes from this window, or from somebody who opens an address of it."""
-        host, origin, site = headers.get("host", ""), headers.get("origin"), headers.get("sec-fetch-site")
+        given, method = request.headers, request.method
+        host, origin, site = given.get("host", ""), given.get("origin"), given.get("sec-fetch-site")
+        # Somebody follows a link to the page, as from a terminal within a browser; frames are refused by a header.
+        fetched = given.get("sec-fetch-mode"), given.get("sec-fetch-dest")
+        followed = method == "GET" and fetched == ("navigate", "document")
         return (
             host in self._hosts
             and (origin is None or origin == f"http://{host}")
-            and (site is None or site in ("same-origin", "none") or _followed(method, headers))
+            and (site is None or site in ("same-origin", "none") or followed)
             and (method in ("GET", "HEAD") or origin is not None)
         )
-
-    async def _let_in(self, send: Any) -> None:
-        """Give the cookie; a page, because browsers keep it from requests to which another site, or a file, redirects."""
-        home = self._entrance.home
-        cookie = f"{COOKIE}={self._entrance.secret}; Path={home}; HttpOnly; SameSite=Strict"
-        more = ((b"set-cookie", cookie.encode()), (b"content-security-policy", b"default-src 'none'"))
-        await _send(send, 200, "text/html", GO_ON.format(home), *more)
-
-
-GO_ON = '<!doctype html><meta http-equiv="refresh" content="0; url={0}"><a href="{0}">Open the window</a>'
-REFUSAL = "Refused: open an address that `mffit open` shows in its terminal; each opens one browser."
-
-
-def _followed(method: str, headers: Mapping[str, str]) -> bool:
-    """Whether somebody follows a link to the page, as from a terminal within a browser; frames are refused by a header."""
-    wanted = {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
-    return method == "GET" and all(headers.get(name) == value for name, value in wanted.items())
-
-
-async def _send(send: Any, status: int, kind: str, text: str, *more: tuple[bytes, bytes]) -> None:
-    body = text.encode()
-    headers = [(b"content-type", f"{kind}; charset=utf-8".encode()), (b"content-length", b"%d" % len(body))]
-    await send({"type": "http.response.start", "status": status, "headers": [*headers, *more]})
-    await send({"type": "http.response.body", "body": body})

@@ -14,7 +14,7 @@ from mffit import config
 from mffit.config import Config
 from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
-from mffit.output import digest
+from mffit.output import digest, new_files
 from mffit.pipeline.intake import STRETCHES, project_of, written_project
 from mffit.points import Points, levels
 from mffit.points.loading import read
@@ -30,7 +30,6 @@ from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
-from mffit.sweeps.raw_table import RawTable
 from mffit.viewer.controls import in_si
 from mffit.window.edits import add_recordings
 
@@ -47,32 +46,14 @@ class RecordingsFolder:
 
     def __init__(self, folder: Path, project: Path | None = None) -> None:
         self.folder, self.project = folder.resolve(), project
-        self._seen: object = None
-        self._apart: tuple[list[Path], tuple[SummaryRow, ...]] = [], ()
 
-    @property
-    def files(self) -> list[Path]:
-        """The recordings that are in the folder now; a link to a file elsewhere is none."""
-        return self._parted()[0]
-
-    @property
-    def summaries(self) -> tuple[SummaryRow, ...]:
-        """The summaries of tests that are in the folder now."""
-        return self._parted()[1]
-
-    def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...]]:
+    def _parted(self) -> tuple[list[Path], tuple[SummaryRow, ...], list[Path]]:
+        """What is in the folder and not listed: recordings, the rows of summaries about them, and links to files elsewhere."""
         listed = self._listed
-        found = [path for path in self._named(listed) if path.resolve().is_relative_to(self.folder)]
-        now = listed, [(path, path.stat().st_mtime_ns) for path in found]
-        if now != self._seen:
-            with formats.reading_once():
-                self._seen, self._apart = now, apart(_tables(found, listed))
-        return self._apart
-
-    def _named(self, listed: Collection[Path]) -> list[Path]:
-        """Everything in the folder with the name of a recording that is not listed."""
-        found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
-        return [path for path in found if path.resolve() not in listed]
+        named = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        new = [path for path in named if path.resolve() not in listed]
+        here = [path for path in new if path.resolve().is_relative_to(self.folder)]
+        return *apart(_tables(here, listed)), [path for path in new if path not in here]
 
     @property
     def _listed(self) -> set[Path]:
@@ -93,35 +74,25 @@ class RecordingsFolder:
             raise InputError(
                 f'"{shortened(name)}" is not the name of a recording ({", ".join(formats.ENDINGS)}); rename the file'
             )
-        path = self.folder / name
-        try:
-            with path.open("xb") as stream:  # never over a file that is there
-                try:
-                    stream.write(content)
-                    stream.flush()
-                except OSError:
-                    path.unlink()
-                    raise
-        except FileExistsError:
-            raise InputError("exists already in this folder; rename the new one", file=path) from None
-        except OSError as error:
-            raise InputError(
-                f"cannot be written ({error.strerror}); free space or choose another folder", file=path
-            ) from None
-        return path
+        return new_files(self.folder, {name: content})[0]
 
+    @formats.reading_once()
     def table(self) -> dict[str, Any]:
         """What is recognised: files in groups of equal headings, channels to choose from, and what else the files say."""
-        files = self.files
-        with formats.reading_once():
-            groups, problems = self._groups(files)
-            readable = {file["name"] for group in groups for file in group["files"]}
-            problems += [
-                str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
-                for path in self._named(self._listed)
-                if not path.resolve().is_relative_to(self.folder)
-            ]
-            found, problem = self._sniffed([path for path in files if path.name in readable])
+        files, summaries, links = self._parted()
+        groups, problems = _groups(files)
+        readable = {file["name"] for group in groups for file in group["files"]}
+        problems += [
+            str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
+            for path in links
+        ]
+        found = None
+        try:
+            found = sniff([path for path in files if path.name in readable]) if readable else None
+        except InputError as error:
+            problems.append(str(error))
+        problems += [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(summaries)]
+        problems += filter(None, [two_specimens(summaries)])
         known = tyre_found(found, self.folder) if found else Stated(name=slug(self.folder))
         return {
             "folder": self.folder.name,
@@ -129,19 +100,14 @@ class RecordingsFolder:
                 {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
             ],
             "groups": groups,
-            "problems": [*problems, *([problem] if problem else []), *self._of_summaries()],
+            "problems": problems,
             "tyre": {key: value for key, value in known._asdict().items() if value},
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
             "seen": digest(self.project) if self.project else "",
         }
 
-    def _of_summaries(self) -> list[str]:
-        """What a summary of the test says of the recordings."""
-        left_out = [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(self.summaries)]
-        two = two_specimens(self.summaries)
-        return [*left_out, *([two] if two else [])]
-
+    @formats.reading_once()
     def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
         """What the recordings hold if they are read as chosen.
 
@@ -151,8 +117,7 @@ class RecordingsFolder:
             They cannot be read so.
         """
         chosen = self._chosen_config(choice)
-        with formats.reading_once():
-            reading = read(chosen, may_be_empty=True)
+        reading = read(chosen, may_be_empty=True)
         warnings = [*reading.notes, *reading.warnings]
         axes: tuple[str, ...] = ()
         wrong: tuple[str, ...] = ()
@@ -212,7 +177,7 @@ class RecordingsFolder:
 
     def _chosen_files(self, choice: Mapping[str, Any]) -> dict[Path, ChosenFile]:
         """The files that are used, with what the page says of them; only files of this folder."""
-        known = {path.name: path for path in self.files}
+        known = {path.name: path for path in self._parted()[0]}
         return {
             known[file["name"]]: _chosen(known[file["name"]], group["columns"], bool(file.get("backward")))
             for group in choice["groups"]
@@ -233,45 +198,6 @@ class RecordingsFolder:
             disc = DiscPath(float(of_rig["path_radius"]), str(of_rig.get("path_centre", "left")))
         return Stated(**given, axes=of_rig.get("axes"), disc=disc, belt=disc is None)
 
-    def _groups(self, files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
-        """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""
-        groups: dict[tuple[Any, ...], dict[str, Any]] = {}
-        problems = []
-        for path in files:
-            try:
-                raw = formats.read(path)
-                found, remarks = guesses(raw)
-            except InputError as error:
-                problems.append(str(error))
-                continue
-            guessed = {guess.heading: guess for guess in found.values()}
-            key = (
-                raw.headings,
-                raw.units,
-                tuple((g.heading, g.channel.name, g.unit) for g in guessed.values()),
-            )
-            group = groups.setdefault(
-                key,
-                {
-                    "files": [],
-                    "columns": [_column(raw, heading, guessed.get(heading)) for heading in raw.headings],
-                    "remarks": list(remarks),
-                },
-            )
-            for row in group["columns"]:
-                row["range"] = _joined(row["range"], _range(raw, row["heading"]))
-            group["files"].append({"name": path.name, "rows": len(raw), "backward": rolls_backward(path)})
-        return list(groups.values()), problems
-
-    def _sniffed(self, files: Sequence[Path]) -> tuple[Sniffed | None, str]:
-        """What the recognised recordings hold together, or why it is not known yet."""
-        if not files:
-            return None, ""
-        try:
-            return sniff(files), ""
-        except InputError as error:
-            return None, str(error)
-
 
 @contextmanager
 def _complete() -> Iterator[None]:
@@ -282,30 +208,43 @@ def _complete() -> Iterator[None]:
         raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
 
 
-def _column(raw: RawTable, heading: str, guess: Guess | None) -> dict[str, Any]:
-    return {
-        "heading": heading,
-        "stated": raw.unit(heading),
-        "range": _range(raw, heading),
-        "channel": guess.channel.name if guess else "",
-        "unit": guess.unit if guess else "",
-        "why": guess.why if guess else "",
-        "minus": guess is not None and guess.scale < 0.0,
-    }
+def _groups(files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
+    """Files with equal headings and units, each with the guessed columns; and why the others cannot be read."""
+    groups: dict[tuple[Any, ...], dict[str, Any]] = {}
+    problems = []
+    for path in files:
+        try:
+            raw = formats.read(path)
+            found, remarks = guesses(raw)
+        except InputError as error:
+            problems.append(str(error))
+            continue
+        guessed = {guess.heading: guess for guess in found.values()}
+        key = raw.headings, raw.units, tuple((*_offered(one, guessed),) for one in raw.headings)
+        columns = [
+            {
+                **_offered(heading, guessed)._asdict(),
+                "stated": raw.unit(heading),
+                "range": None,
+                "why": guessed[heading].why if heading in guessed else "",
+            }
+            for heading in raw.headings
+        ]
+        group = groups.setdefault(key, {"files": [], "columns": columns, "remarks": list(remarks)})
+        for column in group["columns"]:
+            readings = numbers(raw.column(column["heading"]))
+            seen = np.append(readings[np.isfinite(readings)], column["range"] or [])
+            column["range"] = [float(seen.min()), float(seen.max())] if len(seen) else None
+        group["files"].append({"name": path.name, "rows": len(raw), "backward": rolls_backward(path)})
+    return list(groups.values()), problems
 
 
-def _range(raw: RawTable, heading: str) -> list[float] | None:
-    """Lowest and highest reading of a column; None if it has no numbers."""
-    values = numbers(raw.column(heading))
-    seen = values[np.isfinite(values)]
-    return [float(seen.min()), float(seen.max())] if len(seen) else None
-
-
-def _joined(one: list[float] | None, other: list[float] | None) -> list[float] | None:
-    """The range that holds both."""
-    if one is None or other is None:
-        return one or other
-    return [min(one[0], other[0]), max(one[1], other[1])]
+def _offered(heading: str, guessed: Mapping[str, Guess]) -> ColumnChoice:
+    """What a column is taken for, by the guesses by heading."""
+    if heading not in guessed:
+        return ColumnChoice(heading, "", "", False)
+    guess = guessed[heading]
+    return ColumnChoice(heading, guess.channel.name, guess.unit, guess.scale < 0.0)
 
 
 def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> ChosenFile:
@@ -322,7 +261,7 @@ def _chosen(path: Path, rows: Sequence[Mapping[str, Any]], backward: bool) -> Ch
         if one.channel in taken:
             raise InputError(f"{one.channel} is given by two columns; choose one of them")
         taken.update({one.channel} - {""})
-        if one != _choice(_column(raw, one.heading, guessed.get(one.heading))):
+        if one != _offered(one.heading, guessed):
             chosen.append(one)
     return ChosenFile(tuple(chosen), backward)
 

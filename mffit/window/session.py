@@ -6,14 +6,14 @@ import contextlib
 import difflib
 import hashlib
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, TypeVar
 
 import numpy as np
 
 from mffit.config import Config
-from mffit.config.lines import ExcludeTable
 from mffit.config.loading import TYRE_TOML, checked
 from mffit.config.toml_file import tables_of
 from mffit.errors import InputError
@@ -28,13 +28,6 @@ from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 from mffit.window.settings import settings
 
 BOM = b"\xef\xbb\xbf"
-
-
-class Step(NamedTuple):
-    """A saved change: the bytes before and after it."""
-
-    before: bytes
-    after: bytes
 
 
 class ChangedElsewhere(InputError):
@@ -60,8 +53,7 @@ class ProjectFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()  # a link lies in its own folder, with the files that it names
-        self.steps: list[Step] = []
-        self._lines: dict[tuple[Path, int], np.ndarray] = {}  #: (n,) of the rows of a file, by path and time
+        self.steps: list[tuple[bytes, bytes]] = []  #: contents before and after each saved change
         self._shown: dict[str, bytes] = {}  #: contents that windows may have seen, by digest
 
     @property
@@ -98,7 +90,7 @@ class ProjectFile:
             after = self._changed(before, change)
             if after == before:
                 return
-            self._refuse_lines(self._checked(after), self._excluded(before))
+            self._checked(after)
             refusal = self._refusal(after)
             if refusal is not None and str(refusal) != str(self._refusal(before)):
                 raise refusal
@@ -106,7 +98,7 @@ class ProjectFile:
         except ChangedMeanwhile as error:
             shown = self._shown.get(seen, before)
             raise ChangedElsewhere(self.path, shown, error.now, self._changed(shown, change)) from None
-        self.steps = [*self.steps[1 - constants.MOST_UNDONE :], Step(before, after)]
+        self.steps = [*self.steps[1 - constants.MOST_UNDONE :], (before, after)]
 
     def _changed(self, before: bytes, change: Callable[[str], str]) -> bytes:
         """The content after a change."""
@@ -126,7 +118,7 @@ class ProjectFile:
         """
         try:
             step = self.steps.pop()
-            save_over(self.path, step.after, step.before)
+            save_over(self.path, *reversed(step))
         except (IndexError, ChangedMeanwhile):
             self.steps = []
             raise InputError("has no change of this window to undo", file=self.path) from None
@@ -137,7 +129,7 @@ class ProjectFile:
     @property
     def can_undo(self) -> bool:
         """Whether the last change of the window can be taken back."""
-        return bool(self.steps) and digest_of(self.steps[-1].after) == self.digest
+        return bool(self.steps) and digest_of(self.steps[-1][1]) == self.digest
 
     def _bytes(self) -> bytes:
         try:
@@ -150,31 +142,43 @@ class ProjectFile:
         return checked(tables, path=self.path, folder=self.path.parent, lines=lines)
 
     def _refusal(self, content: bytes) -> InputError | None:
-        """Why a build refuses the files that a content names beside the recordings; None if it does not."""
+        """Why a build refuses a content, or the files and lines that it names beside the recordings; None if it does not."""
         try:
-            check_named_files(self._checked(content))
+            config = self._checked(content)
+            check_named_files(config)
+            for file in {one.file for one in config.fit.exclude}:
+                lines = _of_file(_lines, config.folder / file)
+                if lines is not None:
+                    check_excluded(config, file, lines)
         except InputError as error:
             return error
         return None
 
-    def _excluded(self, content: bytes) -> Sequence[ExcludeTable]:
-        """The entries of ``[fit] exclude``; none if the file is wrong elsewhere."""
-        try:
-            return self._checked(content).fit.exclude
-        except InputError:
-            return ()
 
-    def _refuse_lines(self, config: Config, known: Sequence[ExcludeTable]) -> None:
-        """Refuse new entries of ``[fit] exclude`` that a build would refuse, if their file can be read."""
-        for file in {one.file for one in config.fit.exclude if one not in known}:
-            path = config.folder / file
-            try:
-                key = (path, path.stat().st_mtime_ns)
-                if key not in self._lines:
-                    self._lines[key] = np.asarray(formats.read(path).lines)
-            except (OSError, InputError):  # a build will say why
-                continue
-            check_excluded(config, file, self._lines[key])
+def _lines(path: Path) -> np.ndarray | None:
+    """The lines (n,) of the rows of a recording; None if a build says why it cannot be read."""
+    try:
+        return np.asarray(formats.read(path).lines)
+    except InputError:
+        return None
+
+
+Found = TypeVar("Found")
+
+
+def _of_file(question: Callable[[Path], Found], path: Path) -> Found | None:
+    """The answer for a file, asked again only if it has changed; None if it is gone."""
+    try:
+        stat = path.stat()
+        found: Found = _answer(question, path, stat.st_size, stat.st_mtime_ns)
+        return found
+    except OSError:
+        return None
+
+
+@lru_cache
+def _answer(question: Callable[[Path], Any], path: Path, size: int, time: int) -> Any:
+    return question(path)
 
 
 def digest_of(content: bytes) -> str:
@@ -192,7 +196,6 @@ class Session:
         self.last: RunOutcome | None = None  #: of the last run
         self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
-        self._digests: dict[Path, tuple[tuple[int, int], str]] = {}  #: of its inputs, by size and time [ns]
         self._run: Run | None = None
         self._news: dict[str, Any] | None = None  #: what new recordings say, for the page
         self._reading: Run | None = None  #: by which they are read
@@ -298,19 +301,8 @@ class Session:
 
     def _is_of(self, config: Config) -> bool:
         """Whether the last fit was made of the files that the configuration names, as they are now."""
-        now = {name: self._digest_of(config.folder / name) for name in input_names(config)}
+        now = {name: _of_file(digest, config.folder / name) or "" for name in input_names(config)}
         return self.data is not None and now == self.data["inputs"]
-
-    def _digest_of(self, path: Path) -> str:
-        """Digest of a file, read again only if it has changed; empty if it is gone."""
-        try:
-            stat = path.stat()
-            signature = stat.st_size, stat.st_mtime_ns
-            if path not in self._digests or self._digests[path][0] != signature:
-                self._digests[path] = signature, digest(path)
-        except OSError:
-            return ""
-        return self._digests[path][1]
 
     def _unlisted_news(self, config: Config | None) -> dict[str, Any] | None:
         """What new recordings say, ``unlisted`` those that tyre.toml still lacks."""
