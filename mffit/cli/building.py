@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -37,7 +37,13 @@ FEWEST_TYRES_TO_COMPARE = 2
     help="Set a coefficient as [coefficients] does, instead of the entry there: PCY1=1.3 holds it, RBX1=base too; "
     "'PEY1={min=-3, max=0.5}' bounds it. May be repeated.",
 )
-@click.option("--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries.")
+@click.option(
+    "--no-report",
+    "with_report",
+    is_flag=True,
+    callback=lambda context, option, left_out: not left_out,
+    help="Write neither report.html nor plots, for quick tries.",
+)
 @click.option(
     "--explain", is_flag=True, help="Print everything that is said about the result, not one screen of it."
 )
@@ -45,50 +51,38 @@ FEWEST_TYRES_TO_COMPARE = 2
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
 @voiced
-def build(
-    tyre_tomls: tuple[Path, ...],
-    out: Path | None,
-    ensemble: int,
-    coefficients: tuple[str, ...],
-    no_report: bool,
-    explain: bool,
-    strict: bool,
-    jobs: int,
-    dask: str | None,
-    voice: Voice,
-) -> None:
+def build(tyre_tomls: tuple[Path, ...], jobs: int, dask: str | None, **asked: Any) -> None:
     """Make the property file from the sweeps.
 
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
     if len(tyre_tomls) > 1 or dask:
-        if coefficients:
-            raise click.UsageError(
-                "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
-            )
-        _build_many(tyre_tomls, out, ensemble, not no_report, strict, jobs, dask, voice)
+        _build_many(tyre_tomls, jobs=jobs, dask=dask, **asked)
     else:
-        _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, explain, strict, voice)
+        _build(tyre_tomls[0], **asked)
 
 
 def _build(
     tyre_toml: Path,
     out: Path | None,
-    ensemble: int,
+    voice: Voice,
+    *,
     coefficients: tuple[str, ...],
-    with_report: bool,
     explain: bool,
     strict: bool,
-    voice: Voice,
+    **asked: Any,
 ) -> None:
+    """Build one tyre; what is ``asked`` for besides goes to :func:`mffit.pipeline.build`."""
     from mffit import config, pipeline
     from mffit.report import text
 
     out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
         settings = config.load(tyre_toml, coefficients=coefficients)
-        result = pipeline.build(settings, out, ensemble=ensemble, with_report=with_report, progress=show)
-    tables = "report.html, result.json, points.csv, plots" if with_report else "result.json, points.csv"
+        result = pipeline.build(settings, out, progress=show, **asked)
+    tables = (
+        "report.html, result.json, points.csv, plots" if asked["with_report"] else "result.json, points.csv"
+    )
     drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
     whole = explain or voice.quiet or voice.json
     voice.warn(result.warnings if whole else text.few(result.warnings))
@@ -105,16 +99,21 @@ def _build(
 def _build_many(
     tyre_tomls: tuple[Path, ...],
     out: Path | None,
-    ensemble: int,
-    with_report: bool,
-    strict: bool,
-    jobs: int,
-    dask: str | None,
     voice: Voice,
+    *,
+    coefficients: tuple[str, ...],
+    explain: bool,
+    strict: bool,
+    **asked: Any,
 ) -> None:
+    """Build several tyres; what is ``asked`` for besides goes to :func:`mffit.pipeline.build_many`."""
     from mffit import pipeline
     from mffit.report import text
 
+    if coefficients:
+        raise click.UsageError(
+            "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
+        )
     finished: list[BuildOutcome] = []
     interrupted = False
     with voice.progress() as show:
@@ -126,10 +125,7 @@ def _build_many(
 
         show(f"building {len(tyre_tomls)} tyres")
         try:
-            ordered = pipeline.build_many(
-                tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, with_report=with_report, done=done
-            )
-            finished = list(ordered)
+            finished = list(pipeline.build_many(tyre_tomls, out, done=done, **asked))
         except KeyboardInterrupt:
             interrupted = True
     if finished:
@@ -195,6 +191,4 @@ def fleet(folders: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 
     with voice.progress() as show:
         found = pipeline.fleet(folders, out, progress=show)
-    voice.say(text.fleet_summary(found))
-    voice.written(out, "fleet.html", "fleet.json", "fleet.csv")
-    voice.give(found)
+    voice.answer(found, text.fleet_summary(found), out, "fleet.html", "fleet.json", "fleet.csv")

@@ -65,6 +65,12 @@ class Voice:
 
             click.echo(as_json.text(content), nl=False)
 
+    def answer(self, found: object, text: str, out: Path | None = None, *files: str) -> None:
+        """Print a result as text with the files that were written, or as JSON."""
+        self.say(text)
+        self.written(out, *files)
+        self.give(found)
+
     def tell(self, sentence: str) -> None:
         """Print a line about the progress to stderr."""
         if not self.quiet:

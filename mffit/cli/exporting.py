@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
 from mffit.cli.console import Voice, told, voiced
-from mffit.cli.options import code_options, out_option, tir_file, transient, turn_slip_option, tyre_toml
+from mffit.cli.options import (
+    code_options,
+    export_folder,
+    names_of_programs,
+    out_option,
+    tir_file,
+    transient,
+    turn_slip_option,
+    tyre_toml,
+)
 from mffit.errors import InputError
 
 
@@ -37,6 +48,13 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
     voice.give({"written": names, "turn_slip": on, **more})
 
 
+def _code(write: Callable[..., Any], ending: str, file: Path, out: Path, voice: Voice, **asked: Any) -> None:
+    """Write code by a function of :mod:`mffit.export`, with the options that were ``asked`` for, and say so."""
+    with told(voice):
+        written = write(file, _folder(out, ending), **asked)
+    _report(voice, written if isinstance(written, list) else [written], file, asked["turn_slip"])
+
+
 @click.group()
 def export() -> None:
     """Export a property file as C code, FMU, MATLAB functions or for another program, or points as TYDEX."""
@@ -49,33 +67,14 @@ def export() -> None:
     "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
 )
 @voiced
-def c(
-    file: Path,
-    out: Path,
-    name: str | None,
-    turn_slip: bool | None,
-    limits: bool,
-    transient: bool,
-    tunable: bool,
-    voice: Voice,
-) -> None:
+def c(**asked: Any) -> None:
     """Export a property file as C99 code.
 
     Writes one header and one source in double precision, without memory allocation or state.
     """
     from mffit.export import write_c
 
-    with told(voice):
-        written = write_c(
-            file,
-            _folder(out, ".c"),
-            name=name,
-            turn_slip=turn_slip,
-            limits=limits,
-            tunable=tunable,
-            transient=transient,
-        )
-    _report(voice, written, file, turn_slip)
+    _code(write_c, ".c", **asked)
 
 
 @export.command()
@@ -94,62 +93,35 @@ def c(
     help="Without a binary: the importing program compiles the sources (Simulink: fmudialog.compileFMUSources).",
 )
 @voiced
-def fmu(
-    file: Path,
-    out: Path,
-    name: str | None,
-    turn_slip: bool | None,
-    limits: bool,
-    fmi: str,
-    transient: bool,
-    sources_only: bool,
-    voice: Voice,
-) -> None:
+def fmu(fmi: str, **asked: Any) -> None:
     """Export a property file as an FMU (functional mock-up unit).
 
     For model exchange and co-simulation, with C sources and a binary for this machine.
     """
     from mffit.export import write_fmu
 
-    with told(voice):
-        written = write_fmu(
-            file,
-            _folder(out, ".fmu"),
-            fmi=int(fmi),
-            name=name,
-            turn_slip=turn_slip,
-            limits=limits,
-            transient=transient,
-            sources_only=sources_only,
-        )
-    _report(voice, [written], file, turn_slip)
+    _code(write_fmu, ".fmu", fmi=int(fmi), **asked)
 
 
 @export.command()
 @code_options
 @voiced
-def matlab(
-    file: Path, out: Path, name: str | None, turn_slip: bool | None, limits: bool, voice: Voice
-) -> None:
+def matlab(**asked: Any) -> None:
     """Export a property file as MATLAB functions of arrays.
 
     Writes NAME.m, and NAME_mfeval.m with the columns of MFeval. Scaling factors are arguments. Octave runs them too.
     """
     from mffit.export import write_matlab
 
-    with told(voice):
-        written = write_matlab(file, _folder(out, ".m"), name=name, turn_slip=turn_slip, limits=limits)
-    _report(voice, written, file, turn_slip)
+    _code(write_matlab, ".m", **asked)
 
 
 @export.command("tir")
 @tir_file
-@click.option(
-    "--for", "targets", required=True, metavar="NAMES", help="Programs to write it for: mfeval,simscape,..."
-)
-@out_option("Folder to write to.", default="export", show_default=True)
+@names_of_programs("Programs to write it for: mfeval,simscape,...", required=True)
+@export_folder
 @voiced
-def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
+def property_file(file: Path, targets: list[str], out: Path, voice: Voice) -> None:
     """Export a property file for other programs.
 
     Writes one complete file for each, FILE-NAME.tir, with the keys, order and line ends that the program needs. Numbers stay.
@@ -163,25 +135,41 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     from tir.targets import TARGETS
     from tir.tyre import interpret
 
-    names = list(filter(None, (name.strip() for name in targets.split(","))))
-    if not names:
+    if not targets:
         raise InputError("names no program: write, for example, --for mfeval,simscape", key="--for")
     tyre = tir.read(file)
-    made = {name: interpret(parse_document(tyre.text(name))) for name in names}
-    found = [problem.sentence for name in made for problem in target_problems(made[name], TARGETS[name])]
-    lacking = {key for other in made.values() for key in other.present} - tyre.present
+    texts = {f"{file.stem}-{name}.tir": tyre.text(name) for name in targets}
+    made = [interpret(parse_document(text)) for text in texts.values()]
+    lacking = {key for other in made for key in other.present} - tyre.present
     shown = [row.name for row in TABLE if row.name in lacking]
     with output_folder(_folder(out, ".tir", named=False), by="export", protected=[file]) as folder:
-        for name in names:
-            tyre.write(folder / f"{file.stem}-{name}.tir", target=name)
-    written = [str(out / f"{file.stem}-{name}.tir") for name in names]
-    voice.warn(found)
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="ascii", newline="")
+    written = [str(out / name) for name in texts]
+    for other, name in zip(made, targets, strict=True):
+        voice.warn(problem.sentence for problem in target_problems(other, TARGETS[name]))
     voice.say(f"written: {', '.join(written)}")
     if shown:
         voice.say(
             f"{counted(len(shown), 'key')} that {file} lacks got the default, marked as not measured: {some(shown)}"
         )
     voice.give({"written": written, "defaults": shown})
+
+
+def _ranges(
+    context: click.Context, option: click.Parameter, given: tuple[str, ...]
+) -> dict[str, tuple[float, float]]:
+    found = {}
+    for text in given:
+        name, _, ends = text.partition("=")
+        try:
+            low, high = map(float, ends.split(":"))
+        except ValueError:
+            raise InputError(
+                "is not NAME=LOW:HIGH; write, for example, --range alpha_deg=-12:12", key=f"--range {text}"
+            ) from None
+        found[name] = low, high
+    return found
 
 
 @export.command()
@@ -193,68 +181,41 @@ def property_file(file: Path, targets: str, out: Path, voice: Voice) -> None:
     type=click.Choice(["csv", "mat"]),
     help="Form: CSV or MATLAB.",
 )
-@out_option("Folder to write to.", default="export", show_default=True)
+@export_folder
 @turn_slip_option
 @click.option(
     "--range",
     "ranges",
     multiple=True,
     metavar="NAME=LOW:HIGH",
+    callback=_ranges,
     help="Narrower range of Fz_N, alpha_deg, gamma_deg or kappa; may be repeated.",
 )
 @click.option("--error", type=float, default=0.5, show_default=True, metavar="PERCENT", help="Largest error.")
 @voiced
-def table(
-    file: Path,
-    form: str,
-    out: Path,
-    turn_slip: bool | None,
-    ranges: tuple[str, ...],
-    error: float,
-    voice: Voice,
-) -> None:
+def table(file: Path, out: Path, error: float, voice: Voice, **asked: Any) -> None:
     """Export a property file as lookup tables.
 
     Linear interpolation between their nodes misses the tyre by less than 0.5 % of the largest force.
     """
     from mffit.export import write_table
 
+    folder = _folder(out, f".{asked['form']}", named=False)
     with told(voice), voice.progress() as progress:
-        made = write_table(
-            file,
-            _folder(out, f".{form}", named=False),
-            form=form,
-            turn_slip=turn_slip,
-            error=error / 100.0,
-            ranges=dict(map(_range, ranges)),
-            progress=progress,
-        )
+        made = write_table(file, folder, error=error / 100.0, progress=progress, **asked)
     voice.warn(made.warnings)
     for one in made.tables:
         voice.say(one.sentence)
-    _report(voice, made.written, file, turn_slip, tables=[one.keys() for one in made.tables])
-
-
-def _range(text: str) -> tuple[str, tuple[float, float]]:
-    name, _, ends = text.partition("=")
-    try:
-        low, high = map(float, ends.split(":"))
-    except ValueError:
-        raise InputError(
-            "is not NAME=LOW:HIGH; write, for example, --range alpha_deg=-12:12", key=f"--range {text}"
-        ) from None
-    return name, (low, high)
+    _report(voice, made.written, file, asked["turn_slip"], tables=[one.keys() for one in made.tables])
 
 
 @export.command()
 @tyre_toml
-@out_option("Folder to write to [default: out/tydex/ beside TYRE_TOML].")
+@out_option("Folder to write to", beside="out/tydex")
 @voiced
-def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
+def tydex(tyre_toml: Path, out: Path, voice: Voice) -> None:
     """Export the points of a project as TYDEX 1.3, one file per sweep."""
     from mffit import pipeline
 
-    written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")
-    names = [str(path) for path in written]
-    voice.say(f"written: {', '.join(names)}")
-    voice.give({"written": names})
+    names = [str(path) for path in pipeline.write_tydex(tyre_toml, out)]
+    voice.answer({"written": names}, f"written: {', '.join(names)}")

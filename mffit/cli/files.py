@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mffit.cli.console import NOT_TRUSTED, Voice, voiced
-from mffit.cli.options import PATH, given, out_option, tir_file
+from mffit.cli.options import PATH, given, names_of_programs, out_option, tir_file
 
 if TYPE_CHECKING:
     from tir import Problem
@@ -17,16 +17,10 @@ if TYPE_CHECKING:
 
 @click.command()
 @tir_file
-@click.option(
-    "--for",
-    "targets",
-    default="",
-    metavar="NAMES",
-    help="Programs that must be able to read it: mftyre,simscape,...",
-)
+@names_of_programs("Programs that must be able to read it: mftyre,simscape,...", default="")
 @given
 @voiced
-def check(file: Path, targets: str, given: dict[str, float], voice: Voice) -> None:
+def check(file: Path, targets: list[str], given: dict[str, float], voice: Voice) -> None:
     """Check a property file.
 
     Looks at units, missing and unknown keys, and physics over the ranges of the file. A file of PAC2002 is checked for programs
@@ -35,11 +29,10 @@ def check(file: Path, targets: str, given: dict[str, float], voice: Voice) -> No
     import tir
     from tir.errors import LEVELS, counted
 
-    names = [*filter(None, (name.strip() for name in targets.split(",")))]
-    found = _of_old(file, names, given)
+    found = _of_old(file, targets, given)
     if found is None:
         tyre = tir.read(file, **given)
-        found = [*tyre.problems, *tir.check(tyre, names)]
+        found = [*tyre.problems, *tir.check(tyre, targets)]
     problems = sorted(found, key=lambda problem: LEVELS.index(problem.level))
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
@@ -82,8 +75,7 @@ def show(
     if out is None:
         stem = page.names[0] if files[0].suffix == ".toml" else files[0].stem
         out = page.write(Path(f"{stem}.html"))
-    voice.say(f"written to {out}: {', '.join(page.names)}")
-    voice.give({"written": [str(out)]})
+    voice.answer({"written": [str(out)]}, f"written to {out}: {', '.join(page.names)}")
     if open_it:
         click.launch(str(out))
 
@@ -98,11 +90,12 @@ def show(
 @click.option(
     "--fittyp",
     type=click.Choice(["5", "6", "21"]),
+    callback=lambda context, option, word: None if word is None else int(word),
     help="Version of the file, if its own FITTYP is wrong or missing.",
 )
 @voiced
 def convert(
-    file: Path, out: Path, to: str | None, given: dict[str, float], fittyp: str | None, voice: Voice
+    file: Path, out: Path, to: str | None, given: dict[str, float], fittyp: int | None, voice: Voice
 ) -> None:
     """Convert a property file of MF 5.2 or PAC2002 to MF 6.2, or with --to one of MF 6.2 back.
 
@@ -112,16 +105,11 @@ def convert(
     from mffit.conversion import wording
     from mffit.report import text
 
-    found: conversion.Conversion | conversion.OldConversion
-    if to is not None:
-        found = conversion.to_old(file, to, given)
-    else:
-        found = conversion.convert(file, given, fittyp=None if fittyp is None else int(fittyp))
+    found = conversion.to_old(file, to, given) if to else conversion.convert(file, given, fittyp=fittyp)
     conversion.write(found, out)
     voice.warn(problem.sentence for problem in found.problems)
-    voice.say(text.conversion_summary(found))
-    voice.say(f"written to {out}")
-    voice.give({"file": found.path, "written": out, **as_json.document(found)})
+    answer = {"file": found.path, "written": out, **as_json.document(found)}
+    voice.answer(answer, f"{text.conversion_summary(found)}\nwritten to {out}")
     if wording.reasons(found):
         raise SystemExit(NOT_TRUSTED)
 

@@ -67,29 +67,46 @@ turn_slip_option = click.option(
 )
 
 
-def out_option(help_text: str, *, is_file: bool = False, **settings: Any) -> Callable[[Command], Command]:
-    """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work."""
+def out_option(
+    help_text: str, *, beside: str = "", is_file: bool = False, **settings: Any
+) -> Callable[[Command], Command]:
+    """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work.
+
+    ``beside`` is the default, relative to the folder of TYRE_TOML.
+    """
 
     def usable(context: click.Context, option: click.Parameter, out: Path | None) -> Path | None:
         from mffit.output import refuse_unusable
 
-        if out is not None and not context.resilient_parsing:
+        if context.resilient_parsing:
+            return out
+        if out is not None:
             refuse_unusable(out, is_file=is_file)
+        elif beside:
+            return Path(context.params["tyre_toml"].parent, beside)
         return out
 
+    if beside:
+        help_text += f" [default: {beside}/ beside TYRE_TOML]."
     return click.option("--out", type=PATH, help=help_text, callback=usable, **settings)
 
 
+export_folder = out_option("Folder to write to.", default="export", show_default=True)
+
+
 def code_options(command: Command) -> Command:
-    """The arguments and options of all exports to code."""
-    for option in reversed(
-        (
-            tir_file,
-            out_option("Folder to write to.", default="export", show_default=True),
-            click.option("--name", help="Name in the code [default: made from the file's name]."),
-            turn_slip_option,
-            click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
-        )
-    ):
+    """The arguments and options of all exports to code, by the names that the functions of :mod:`mffit.export` have for them."""
+    name = click.option("--name", help="Name in the code [default: made from the file's name].")
+    limits = click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file.")
+    for option in (limits, turn_slip_option, name, export_folder, tir_file):
         command = option(command)
     return command
+
+
+def names_of_programs(help_text: str, **settings: Any) -> Callable[[Command], Command]:
+    """The option ``--for``: names of programs with commas between them."""
+
+    def listed(context: click.Context, option: click.Parameter, text: str) -> list[str]:
+        return list(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+
+    return click.option("--for", "targets", metavar="NAMES", help=help_text, callback=listed, **settings)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -30,8 +30,7 @@ def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> No
     with voice.progress() as show:
         show("reading recordings")
         found = recordings.sniff(files, headings=headings)
-    voice.say(text.sniff_summary(found))
-    voice.give(found)
+    voice.answer(found, text.sniff_summary(found))
     voice.say("\n" + recordings.project_text(found, Path()), end="")
 
 
@@ -62,19 +61,7 @@ def sniff(files: tuple[Path, ...], headings: dict[str, str], voice: Voice) -> No
 @click.option("--name", help="With --from: of the output files [default: the recording's, or the folder's].")
 @column
 @voiced
-def init(
-    paths: tuple[Path, ...],
-    recorded: bool,
-    sample: str | None,
-    name: str | None,
-    disc: bool,
-    path_radius: float | None,
-    path_centre: str | None,
-    belt: bool,
-    headings: dict[str, str],
-    voice: Voice,
-    **tyre: float | None,
-) -> None:
+def init(paths: tuple[Path, ...], recorded: bool, sample: str | None, voice: Voice, **asked: Any) -> None:
     """Write a commented tyre.toml and empty CSV templates, with --from a project for recordings, or a sample."""
     from mffit.init_project import copy_sample, init_project
 
@@ -82,37 +69,35 @@ def init(
     if recorded and sample is not None:
         raise InputError("--from and --sample exclude each other; give one of them")
     if recorded:
-        from mffit import pipeline
-        from mffit.report import text
-
-        if not files:
-            raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
-        if folder.is_file():
-            rest = " ".join(map(str, (folder, *files[1:], files[0])))
-            raise InputError(f"the folder comes last, behind the recordings: mffit init --from {rest}")
-        with voice.progress() as show:
-            show("reading recordings")
-            found, written = pipeline.init_from(
-                files,
-                folder,
-                name=name,
-                headings=headings,
-                disc=_disc(disc, path_radius, path_centre, belt),
-                belt=belt,
-                **tyre,
-            )
-        voice.say(text.sniff_summary(found))
+        written = _init_from(files, folder, voice, **asked)
     elif files:
         raise InputError(
             f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}"
         )
-    elif sample is not None:
-        written = copy_sample(sample, folder)
     else:
-        written = init_project(folder)
-    for path in written:
-        voice.say(f"written {path}")
-    voice.give({"written": [str(path) for path in written]})
+        written = init_project(folder) if sample is None else copy_sample(sample, folder)
+    answer = {"written": [str(path) for path in written]}
+    voice.answer(answer, "\n".join(f"written {path}" for path in written))
+
+
+def _init_from(
+    files: list[Path], folder: Path, voice: Voice, *, disc: bool, path_radius: float | None, **asked: Any
+) -> list[Path]:
+    """Write a project for recordings with what was ``asked`` for; returns the files."""
+    from mffit import pipeline
+    from mffit.report import text
+
+    if not files:
+        raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
+    if folder.is_file():
+        rest = " ".join(map(str, (folder, *files[1:], files[0])))
+        raise InputError(f"the folder comes last, behind the recordings: mffit init --from {rest}")
+    with voice.progress() as show:
+        show("reading recordings")
+        path = _disc(disc, path_radius, asked.pop("path_centre"), asked["belt"])
+        found, written = pipeline.init_from(files, folder, disc=path, **asked)
+    voice.say(text.sniff_summary(found))
+    return written
 
 
 def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
@@ -145,5 +130,4 @@ def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
     with voice.progress() as show:
         show("simulating")
         truth = virtual_rig.simulate(rig_toml, out, seed=seed)
-    voice.written(out, "sweeps", "tyre.toml", "truth.json")
-    voice.give(truth.to_json())
+    voice.answer(truth.to_json(), f"written to {out}: sweeps, tyre.toml, truth.json")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -13,9 +14,9 @@ from mffit.errors import InputError, check_readable
 
 @click.command()
 @tyre_toml
-@out_option("Folder to write to [default: out/ beside TYRE_TOML].")
+@out_option("Folder to write to", beside="out")
 @voiced
-def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
+def spin(tyre_toml: Path, out: Path, voice: Voice) -> None:
     """Measure eps_gamma directly.
 
     Checks the alignment and applies the direct method, without a fit; prints eps_gamma with its uncertainty budget. Exit code 3
@@ -24,14 +25,11 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     from mffit import pipeline
     from mffit.report import text
 
-    out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
         show("measuring")
         measured = pipeline.spin(tyre_toml, out)
-    voice.say(text.spin_summary(measured))
     voice.warn(measured.warnings)
-    voice.written(out, "spin.json")
-    voice.give(measured)
+    voice.answer(measured, text.spin_summary(measured), out, "spin.json")
     if not measured.trusted:
         voice.distrust("the measurement is not to be trusted: see above")
 
@@ -42,11 +40,11 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     "--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a CSV file without a tyre.toml."
 )
 @path_centre
-@click.option("--resolution", type=float, metavar="DEG", help="Smallest step of the steering axis.")
+@click.option(
+    "--resolution", "resolution_deg", type=float, metavar="DEG", help="Smallest step of the steering axis."
+)
 @voiced
-def align(
-    source: Path, axes: str | None, path_centre: str | None, resolution: float | None, voice: Voice
-) -> None:
+def align(source: Path, voice: Voice, **asked: Any) -> None:
     """Compute the next steering correction.
 
     Uses forward and backward points at zero angles; the correction is in degrees of the rig's axis.
@@ -56,24 +54,22 @@ def align(
 
     if source.suffix != ".toml":
         check_readable(source)
-        if axes is None or path_centre is None:
+        if asked["axes"] is None or asked["path_centre"] is None:
             raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
-    finest = {} if resolution is None else {"resolution_deg": resolution}
-    alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
-    voice.say(text.alignment_table(alignment))
+    alignment = pipeline.align(source, **{name: x for name, x in asked.items() if x is not None})
     voice.warn(alignment.warnings)
-    voice.give(alignment)
+    voice.answer(alignment, text.alignment_table(alignment))
 
 
 @click.command()
 @tyre_toml
 @click.option("--model", type=PATH, help="The simulation's .tir [default: that of the last build].")
-@out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
+@out_option("Folder to write to", beside="out/diagnosis")
 @click.option(
     "--repair-all", is_flag=True, help="Correct the model for uncertain effects too (confidence below 50 %)."
 )
 @voiced
-def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: bool, voice: Voice) -> None:
+def diagnose(tyre_toml: Path, model: Path | None, out: Path, repair_all: bool, voice: Voice) -> None:
     """Find effects that a simulation lacks.
 
     Shows where simulation and measurement disagree, names the effects that explain it, and corrects the model.
@@ -81,12 +77,10 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
     from mffit import pipeline
     from mffit.report import text
 
-    out = out or tyre_toml.parent / "out" / "diagnosis"
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
-    voice.say(text.diagnosis_summary(diagnosis))
-    voice.written(out, "diagnosis.html", "diagnosis.json", *text.models_written(diagnosis))
-    voice.give(diagnosis)
+    files = ("diagnosis.html", "diagnosis.json", *text.models_written(diagnosis))
+    voice.answer(diagnosis, text.diagnosis_summary(diagnosis), out, *files)
     if not diagnosis.trusted:
         voice.distrust(f"{diagnosis.model_after} is not to be trusted: see above")
 
@@ -98,13 +92,12 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: 
 @click.option(
     "--turn-slip",
     type=click.Choice(["on", "off"]),
+    callback=lambda context, option, word: None if word is None else word == "on",
     help="Evaluate both files with turn slip on or off [default: each as intended].",
 )
 @given
 @voiced
-def compare(
-    first: Path, second: Path, out: Path | None, turn_slip: str | None, given: dict[str, float], voice: Voice
-) -> None:
+def compare(first: Path, second: Path, out: Path | None, voice: Voice, **asked: Any) -> None:
     """Compare two property files, a file and data, or two builds.
 
     Ranks the differences of curves, stiffnesses, peaks, trail and eps_gamma.
@@ -112,12 +105,9 @@ def compare(
     from mffit import pipeline
     from mffit.report import text
 
-    both = None if turn_slip is None else turn_slip == "on"
     with voice.progress() as show:
-        found = pipeline.compare(first, second, turn_slip=both, given=given, out=out, progress=show)
-    voice.say(text.comparison_table(found))
-    voice.written(out, "compare.html", "compare.json")
-    voice.give(found)
+        found = pipeline.compare(first, second, out=out, progress=show, **asked)
+    voice.answer(found, text.comparison_table(found), out, "compare.html", "compare.json")
 
 
 @click.command()
@@ -134,16 +124,10 @@ def compare(
 @click.option(
     "--without", multiple=True, metavar="KIND", help="Kind of run that the rig cannot make; may be repeated."
 )
-@out_option("Folder to write to [default: out/plan/ beside TYRE_TOML].")
+@out_option("Folder to write to", beside="out/plan")
 @voiced
 def plan(
-    tyre_toml: Path,
-    goal: str | None,
-    coefficient: str | None,
-    runs: int,
-    without: tuple[str, ...],
-    out: Path | None,
-    voice: Voice,
+    tyre_toml: Path, goal: str | None, coefficient: str | None, out: Path, voice: Voice, **asked: Any
 ) -> None:
     """Plan the most informative further runs.
 
@@ -154,14 +138,10 @@ def plan(
 
     if goal and coefficient:
         raise InputError("--goal and --coefficient exclude each other; give only one")
-    out = out or tyre_toml.parent / "out" / "plan"
     with voice.progress() as show:
-        found = pipeline.plan(
-            tyre_toml, coefficient or goal, runs=runs, without=without, out=out, progress=show
-        )
-    voice.say(text.plan_summary(found))
-    voice.written(out, "plan.html", "plan.json", *(["runs (sheets to fill in)"] if found.steps else []))
-    voice.give(found)
+        found = pipeline.plan(tyre_toml, coefficient or goal, out=out, progress=show, **asked)
+    sheets = ["runs (sheets to fill in)"] if found.steps else []
+    voice.answer(found, text.plan_summary(found), out, "plan.html", "plan.json", *sheets)
 
 
 @click.command()
@@ -182,5 +162,5 @@ def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     with told(voice):
         found = pipeline.predict(folder, conditions)
     write_table(found, out, conditions)
-    voice.say(text.prediction_summary(found, out))
-    voice.give({"written": [str(out)], "conditions": len(found)})
+    answer = {"written": [str(out)], "conditions": len(found)}
+    voice.answer(answer, text.prediction_summary(found, out))
