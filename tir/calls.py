@@ -21,8 +21,9 @@ from tir.codegen.cpython.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches, refuse_zero_divisors
 from tir.codegen.replay import Replay, replay
 from tir.equations.forces import Forces, State
+from tir.equations.normalise import OperatingCondition
 from tir.errors import TirError
-from tir.evaluate import OperatingCondition, unchecked
+from tir.evaluate import unchecked
 from tir.record import TyreRecord
 
 if TYPE_CHECKING:

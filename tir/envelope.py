@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,14 +13,15 @@ from tir.equations import aligning, lateral, longitudinal, normalise, stiffness
 from tir.errors import Problem
 from tir.record import TyreRecord
 
-RANGES = (
-    ("FZMIN", "FZMAX"),
-    ("CAMMIN", "CAMMAX"),
-    ("PRESMIN", "PRESMAX"),
-    ("ALPMIN", "ALPMAX"),
-    ("KPUMIN", "KPUMAX"),
-)
-"""The ranges searched, in the order of :data:`tir.constants.VALUES_PER_SEARCHED_RANGE`."""
+SEARCHED: Mapping[str, tuple[str, str]] = {
+    "Fz": ("FZMIN", "FZMAX"),
+    "gamma": ("CAMMIN", "CAMMAX"),
+    "pressure": ("PRESMIN", "PRESMAX"),
+    "alpha": ("ALPMIN", "ALPMAX"),
+    "kappa": ("KPUMIN", "KPUMAX"),
+}
+"""The inputs searched with the keys of their ranges, in the order of :data:`tir.constants.VALUES_PER_SEARCHED_RANGE`."""
+RANGES = (*SEARCHED.values(),)
 SLIGHT, FRICTION = constants.NEGLIGIBLE_SHARE, constants.CREDIBLE_FRICTION
 
 Measure = Callable[[Any, normalise.Inputs], Any]
@@ -205,10 +206,9 @@ def worst(tyre: TyreRecord, measure: Measure, box: np.ndarray) -> tuple[float, n
 
 
 def _measured(tyre: TyreRecord, measure: Measure, points: np.ndarray) -> Any:
-    Fz, gamma, pressure, alpha, kappa = points
+    at = normalise.OperatingCondition(**dict(zip(SEARCHED, points, strict=True)))
     with np.errstate(all="ignore"):
-        q = normalise.inputs(tyre.p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
-        return measure(tyre.p, q)
+        return measure(tyre.p, normalise.inputs(tyre.p, at))
 
 
 def box(tyre: TyreRecord) -> np.ndarray:

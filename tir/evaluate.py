@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from numbers import Real
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tir.constants import PRESSURE_RANGE, SMALLEST_LOAD
 from tir.equations import forces, normalise, vertical
 from tir.equations.elementary import select
-from tir.equations.forces import Forces, Loads, State
+from tir.equations.forces import Forces, State, Wheel
+from tir.equations.normalise import OperatingCondition, Switches
 from tir.errors import TirError
 from tir.parameters import TABLE
 
@@ -20,55 +21,17 @@ DIVISORS = tuple(row.name for row in TABLE if row.divisor)
 NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), PRESSURE_RANGE[0]
 
 
-class OperatingCondition(NamedTuple):
-    """The inputs of the model, SI and radians, as :func:`evaluate` explains them; scalars or arrays that broadcast."""
-
-    Fz: Any
-    alpha: Any
-    gamma: Any
-    kappa: Any
-    phi_t: Any
-    Vx: Any
-    pressure: Any
-
-
-class Switches(NamedTuple):
-    """Options of the model; each combination has a program of its own."""
-
-    turn_slip: bool = False
-    star: bool = False
-    limits: bool = False
-
-
 def evaluate(
-    p: Any,
-    Fz: Any,
-    alpha: Any = 0.0,
-    gamma: Any = 0.0,
-    kappa: Any = 0.0,
-    phi_t: Any = 0.0,
-    Vx: Any = None,
-    pressure: Any = None,
-    *,
-    turn_slip: bool = False,
-    star: bool = False,
-    limits: bool = False,
+    p: Any, *inputs: Any, turn_slip: bool = False, star: bool = False, limits: bool = False, **more: Any
 ) -> tuple[Forces, State]:
     """Evaluate MF 6.2 in steady state (ISO-W, SI, radians).
 
     Parameters
     ----------
     p : any object with the file's parameter names as attributes, e.g. ``tyre.p``
-    Fz : vertical load [N], scalar or (n,); loads <= 0 give zero forces, NaN gives NaN
-    alpha : sideslip angle atan(Vsy/Vx) [rad]; rolling backwards it stays the reading of the rig's axis
-    gamma : camber [rad], > 0 with the top of the wheel to -y
-    kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
-    phi_t : turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
-    Vx : speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
-    pressure : inflation pressure [Pa]; default INFLPRES; in My not below PRESSURE_RANGE, where QSY8 < 0 leads to infinity
-    turn_slip : let spin act (zeta factors); otherwise phi_t is ignored
-    star : tan(alpha) and sin(gamma) as inputs instead of the angles
-    limits : hold the inputs to the file's ranges and the curvature factors to <= 1
+    inputs, more : those of an :class:`OperatingCondition`, in its order or by name; pressures below PRESSURE_RANGE count as its
+        lower end in My, where QSY8 < 0 leads to infinity
+    turn_slip, star, limits : see :class:`Switches`
 
     Returns
     -------
@@ -82,10 +45,11 @@ def evaluate(
     """
     for name in zero_divisors(p):
         raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
-    Vx = p.LONGVL if Vx is None else Vx
-    pressure = p.INFLPRES if pressure is None else pressure
-    at = OperatingCondition(Fz, alpha, gamma, kappa, phi_t, Vx, pressure)
-    return unchecked(p, at, Switches(turn_slip, star, limits))
+    at = OperatingCondition(*inputs, **more)
+    Vx, pressure = (
+        default if x is None else x for x, default in ((at.Vx, p.LONGVL), (at.pressure, p.INFLPRES))
+    )
+    return unchecked(p, at._replace(Vx=Vx, pressure=pressure), Switches(turn_slip, star, limits))
 
 
 def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
@@ -98,22 +62,17 @@ def unchecked(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Force
 
 def forwards(p: Any, at: OperatingCondition, switches: Switches) -> tuple[Forces, State]:
     """The model of a wheel that rolls forwards, ``Vx`` >= 0."""
-    Fz, alpha, gamma, kappa, phi_t, Vx, pressure = at
-    turn_slip, star, limits = switches
-    unloaded = np.real(Fz) <= 0.0
-    Fz_given, kappa_given = select(unloaded, NEARLY_UNLOADED, Fz), kappa
-    Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
-    if limits:
-        Fz = _clip(Fz_given, None, p.FZMAX)
-        kappa = _clip(kappa, p.KPUMIN, p.KPUMAX)
-        alpha = _clip(alpha, p.ALPMIN, p.ALPMAX)
-        gamma = _clip(gamma, p.CAMMIN, p.CAMMAX)
-        pressure = _clip(pressure, p.PRESMIN, p.PRESMAX)
-        Fz_moment, loads = _loads_below_range(p, Fz, Fz_given)
-    q = normalise.inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits)
-    q = q._replace(pressure=select(np.real(pressure) < NEARLY_FLAT, NEARLY_FLAT, pressure))
-    Re = normalise.effective_radius(p, Fz_given, kappa_given, Vx, q.dpi)
-    out, state = forces.evaluate(p, q, loads, kappa_given, Vx, Re, turn_slip)
+    unloaded = np.real(at.Fz) <= 0.0
+    given = held = at._replace(Fz=select(unloaded, NEARLY_UNLOADED, at.Fz))
+    Fz_moment = overturning = rolling = given.Fz
+    if switches.limits:
+        held = _held(p, given)
+        Fz_moment, overturning, rolling = _loads_below_range(p, held.Fz, given.Fz)
+    q = normalise.inputs(p, held, switches, Fz_moment)
+    q = q._replace(pressure=select(np.real(held.pressure) < NEARLY_FLAT, NEARLY_FLAT, held.pressure))
+    Re = normalise.effective_radius(p, given.Fz, given.kappa, given.Vx, q.dpi)
+    wheel = Wheel(overturning, rolling, given.kappa, given.Vx, Re)
+    out, state = forces.evaluate(p, q, wheel, switches.turn_slip)
     return Forces(*(select(unloaded, 0.0, f) for f in out)), state
 
 
@@ -133,7 +92,7 @@ def loaded_radius(p: Any, at: OperatingCondition, out: Forces, state: State) -> 
     """Loaded radius [m] of a wheel with these forces and this state at an operating condition."""
     rim_speed = np.abs(state.omega) * p.UNLOADED_RADIUS / p.LONGVL
     dpi = at.pressure / p.NOMPRES - 1.0
-    return vertical.loaded_radius(p, at.Fz, out.Fx, out.Fy, at.gamma, rim_speed, dpi)
+    return vertical.loaded_radius(p, at.Fz, vertical.Rolling(out.Fx, out.Fy, at.gamma, rim_speed, dpi))
 
 
 def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
@@ -149,17 +108,28 @@ def zero_divisors(p: Any) -> list[str]:
     return [name for name in DIVISORS if isinstance(value := getattr(p, name), Real) and value == 0.0]
 
 
+def _held(p: Any, at: OperatingCondition) -> OperatingCondition:
+    """The condition within the ranges of the file; a load below its range is not."""
+    return at._replace(
+        Fz=_clip(at.Fz, None, p.FZMAX),
+        kappa=_clip(at.kappa, p.KPUMIN, p.KPUMAX),
+        alpha=_clip(at.alpha, p.ALPMIN, p.ALPMAX),
+        gamma=_clip(at.gamma, p.CAMMIN, p.CAMMAX),
+        pressure=_clip(at.pressure, p.PRESMIN, p.PRESMAX),
+    )
+
+
 def _clip(x: Any, lower: Any, upper: Any) -> Any:
     if lower is not None:
         x = select(np.real(x) < lower, lower, x)
     return select(np.real(x) > upper, upper, x)
 
 
-def _loads_below_range(p: Any, Fz: Any, Fz_given: Any) -> tuple[Any, Loads]:
-    """Loads for the moments: below FZMIN these fall faster than the load, so that an unloaded wheel has no moment."""
+def _loads_below_range(p: Any, Fz: Any, Fz_given: Any) -> tuple[Any, Any, Any]:
+    """Loads for Mz, Mx and My: below FZMIN these fall faster than the load, so that an unloaded wheel has no moment."""
     below = np.real(Fz) < p.FZMIN
     floor = select(p.FZMIN > 0.0, p.FZMIN, 1.0)
     Fz_moment = select(below, p.FZMIN, Fz)
     overturning = select(below, Fz * (Fz / floor) ** 2, Fz)
     rolling = select(below, Fz_given**2 / floor, Fz_given)
-    return Fz_moment, Loads(overturning, rolling)
+    return Fz_moment, overturning, rolling

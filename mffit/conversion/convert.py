@@ -82,7 +82,7 @@ def convert(
 def _camber_stiffness(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """PKY6 and PKY7 nearest to the old camber stiffness of the upright wheel over load."""
     Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
+    q = normalise.inputs(p, normalise.OperatingCondition(Fz))
     force = p.PHY3 * stiffness.cornering_stiffness(p, q, 0.0)
     force = force + lateral.camber_force(p, q, 1.0)
     scale = p.LKYC or 1.0
@@ -94,7 +94,7 @@ def _camber_stiffness(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
 def _carcass(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
     """Carcass stiffnesses over load that give the old relaxation lengths; the table's defaults where the file has none."""
     Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
+    q = normalise.inputs(p, normalise.OperatingCondition(Fz))
     slip = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
     out: dict[str, float] = {}
     sides = (("LONGITUDINAL_STIFFNESS", "PCFX"), ("LATERAL_STIFFNESS", "PCFY"))

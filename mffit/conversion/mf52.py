@@ -60,7 +60,8 @@ def forces(p: SimpleNamespace, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kapp
 
     ``p`` is from :func:`in_terms_of_62`; loads are > 0, scalar or (n,) as the other inputs.
     """
-    q = normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, p.INFLPRES, False, limits=True)
+    at = normalise.OperatingCondition(Fz, alpha, gamma, kappa)
+    q = normalise.inputs(p, at, normalise.Switches(limits=True))
     K_xk, K_ya = (
         stiffness.longitudinal_slip_stiffness(p, q),
         stiffness.cornering_stiffness(p, q, q.gamma),
@@ -70,11 +71,11 @@ def forces(p: SimpleNamespace, Fz: Any, alpha: Any = 0.0, gamma: Any = 0.0, kapp
     # Shifted by camber through PHY3 alone: 6.2's own term of camber is switched off and its rest is taken back.
     by_camber = p.PHY3 * q.gamma + lateral.camber_force(p, q, q.gamma) / away_from_zero(K_ya)
     shifts = turn_slip.NO_SPIN._replace(zeta0=0.0, shift=by_camber)
-    side = lateral.pure(p, q, q.gamma, shifts, K_ya, 0.0, mu_y)  # (46) to (56)
+    side = lateral.pure(p, q, q.gamma, shifts, stiffness.SideGrip(K_ya, 0.0, mu_y))  # (46) to (56)
     weighted = lateral.combined_weight(p, q) * side.Fy
     Fy = weighted + lateral.longitudinal_shift(p, q, mu_y, 1.0)
     trail = aligning.trail(p, q, turn_slip.NO_SPIN, K_xk, K_ya)  # (58), (59), (64) to (68)
-    torque = (turn_slip.NO_SPIN, turn_slip.NO_SPIN_TORQUE, side, K_xk, K_ya)
+    torque = (turn_slip.NO_SPIN, turn_slip.NO_SPIN_TORQUE, side, K_xk)
     residual = aligning.residual_torque(p, q, *torque)  # (60) to (62), (69), (70)
     Mz = -trail * weighted + residual + aligning.longitudinal_arm(p, q, Fy) * Fx  # (57)
     return OldForces(Fx, Fy, overturning.moment(p, q, Fz, Fy), Mz)

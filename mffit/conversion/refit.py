@@ -64,7 +64,7 @@ def excess(
     ``p`` has the coefficients as attributes, plain or traced; ``by`` are the m traced ones.
     """
     Fz, gamma = (axis.ravel() for axis in np.meshgrid(loads(reach), camber))
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, p.INFLPRES, False, False)
+    q = normalise.inputs(p, normalise.OperatingCondition(Fz, gamma=gamma))
     rows = [row - 1.0 for factor in factors for row in factor.at_loads(p, q, reach.alpha)]
     value = np.concatenate([np.broadcast_to(plain(row), Fz.shape) for row in rows])
     if not by:

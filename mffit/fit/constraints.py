@@ -33,7 +33,7 @@ class Envelope(NamedTuple):
 
 def characteristics(p: Any, Fz: np.ndarray, gamma: np.ndarray, pressure: np.ndarray) -> list[np.ndarray]:
     """Friction and stiffness over load [-], lateral and, if the file has them, longitudinal."""
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
+    q = normalise.inputs(p, normalise.OperatingCondition(Fz, gamma=gamma, pressure=pressure))
     found = (
         stiffness.lateral_friction(p, q, gamma),
         stiffness.cornering_stiffness(p, q, gamma) / Fz,
@@ -70,7 +70,7 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     longitudinal slip was run, the limits of :func:`_longitudinal` and :func:`_under_slip` follow.
     """
     Fz, gamma, pressure = grid(envelope)
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
+    q = normalise.inputs(p, normalise.OperatingCondition(Fz, gamma=gamma, pressure=pressure))
     B_t = aligning.slope_factor(p, q)
     rows = [
         constants.LEAST_FRICTION - stiffness.lateral_friction(p, q, gamma),
@@ -151,7 +151,7 @@ def _with_slips(
     """Inputs of every condition (load, camber and pressure, (n,) each) at every pair of longitudinal slip and sideslip [rad]."""
     Fz, gamma, pressure = (np.tile(x, len(slips)) for x in conditions)
     kappa, alpha = (np.repeat(x, len(conditions[0])) for x in zip(*slips, strict=True))
-    return normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
+    return normalise.inputs(p, normalise.OperatingCondition(Fz, alpha, gamma, kappa, pressure=pressure))
 
 
 @lru_cache(maxsize=8)

@@ -23,7 +23,7 @@ def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: Any) -> tup
 def upright(values: Mapping[str, Any], loads: Any, pressure: Any) -> tuple[SimpleNamespace, Inputs]:
     """Coefficients and normalised inputs of the upright wheel without slip, for the equations."""
     p = SimpleNamespace(**values)
-    return p, normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
+    return p, normalise.inputs(p, normalise.OperatingCondition(loads, pressure=pressure))
 
 
 def nearest(

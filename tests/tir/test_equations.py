@@ -53,7 +53,7 @@ def tyre() -> tir.Tyre:
 
 
 def condition(tyre, gamma=0.2, Fz=1800.0):
-    return normalise.inputs(tyre.p, Fz, Fz, 0.0, 0.05, gamma, 0.0, 250e3, False, False)
+    return normalise.inputs(tyre.p, normalise.OperatingCondition(Fz, 0.05, gamma, pressure=250e3))
 
 
 def test_vertical_shift_is_that_of_the_state(tyre):

@@ -11,12 +11,13 @@ import numpy as np
 
 from tir.codegen.cpython import SCALARS
 from tir.codegen.graph import INPUT, PARAMETER, Graph
-from tir.codegen.program import NUMBERS, Program, Switches, program_of
+from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, program_of
 from tir.codegen.replay import Replay, replayed
 from tir.codegen.single import MATH, Run, constants, with_defaults
 from tir.codegen.source import conditions, preparation
 from tir.equations import contact
-from tir.evaluate import OperatingCondition, either_way
+from tir.equations.normalise import OperatingCondition
+from tir.evaluate import either_way
 from tir.record import TyreRecord
 from tir.tuning import tunables, warm
 
@@ -95,13 +96,13 @@ def _programs(
 ) -> tuple[Program, Program]:
     parameters = SimpleNamespace(**p)
     given = {name: graph.symbol(name, INPUT) for name in (*LAG_INPUTS, *LAGGING, "dt")}
-    Fz, Vx, Vsx, Vsy, gamma, phi_t, pressure, damping = (given[name] for name in LAG_INPUTS)
+    motion = contact.Motion(*(given[name] for name in contact.Motion._fields))
     deflection = contact.Deflection(*(given[name] for name in LAGGING))
-    backwards = Vx < 0.0
-    rolling = OperatingCondition(Fz, 0.0, gamma, 0.0, phi_t, Vx, pressure)
+    backwards = motion.Vx < 0.0
+    rolling = OperatingCondition(**{name: given[name] for name in INPUTS if name in given})
     _, state = either_way(parameters, backwards, rolling, switches)
-    moved = contact.after(parameters, state, deflection, given["dt"], Fz, Vx, Vsx, Vsy)
-    kappa, alpha = contact.slips(parameters, state, deflection, Vx, Vsx, Vsy, damping)
+    moved = contact.after(parameters, state, deflection, given["dt"], motion)
+    kappa, alpha = contact.slips(parameters, state, deflection, motion, given["damping"])
     slipping = rolling._replace(alpha=alpha, kappa=kappa)
     forces, here = either_way(parameters, backwards, slipping, switches)
     outputs = {**forces._asdict(), **{name: getattr(here, name) for name in states}}

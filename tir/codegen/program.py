@@ -9,9 +9,10 @@ from types import SimpleNamespace
 from typing import Any
 
 from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
+from tir.equations.normalise import OperatingCondition
+from tir.equations.normalise import Switches as Switches
 from tir.errors import TirError, some
-from tir.evaluate import OperatingCondition, either_way, loaded_radius, zero_divisors
-from tir.evaluate import Switches as Switches
+from tir.evaluate import either_way, loaded_radius, zero_divisors
 from tir.parameters import TABLE
 
 INPUTS = OperatingCondition._fields

@@ -56,9 +56,9 @@ def curvature(p, q: Inputs, B, alpha_t):
     return load * (1.0 + (p.QEZ4 + p.QEZ5 * q.gamma) * side)  # 4.E44
 
 
-def residual_torque(p, q: Inputs, spin: Spin, spin_torque: SpinTorque, side: SideForce, K_xk, K_ya):
+def residual_torque(p, q: Inputs, spin: Spin, spin_torque: SpinTorque, side: SideForce, K_xk):
     """Residual torque Mzr [Nm]; 4.E36, with the turn-slip moment in the sign of z-up axes."""
-    alpha_r = q.alpha + side.S_H + side.S_V / away_from_zero(K_ya)  # 4.E37, 4.E38
+    alpha_r = q.alpha + side.S_H + side.S_V / away_from_zero(side.K_ya)  # 4.E37, 4.E38
     B = (p.QBZ9 * p.LKY / p.LMUY + p.QBZ10 * side.B * side.C) * spin.zeta6  # 4.E45
     C = spin_torque.zeta7  # 4.E46
     constant = (p.QDZ6 + p.QDZ7 * q.dfz) * p.LRES * spin.zeta2
@@ -66,7 +66,7 @@ def residual_torque(p, q: Inputs, spin: Spin, spin_torque: SpinTorque, side: Sid
     slope = slope + (p.QDZ10 + p.QDZ11 * q.dfz) * absolute(q.gamma)
     size = q.Fz_moment * p.UNLOADED_RADIUS * p.LMUY * q.cos_alpha
     D = size * (constant + slope * q.gamma * p.LKZC * spin.zeta0) - (spin_torque.zeta8 - 1.0)  # 4.E47
-    return D * cos(C * arctan(B * equivalent_slip(alpha_r, K_xk, K_ya, q.kappa)))  # 4.E36
+    return D * cos(C * arctan(B * equivalent_slip(alpha_r, K_xk, side.K_ya, q.kappa)))  # 4.E36
 
 
 def longitudinal_arm(p, q: Inputs, Fy):

@@ -23,8 +23,18 @@ class Deflection(NamedTuple):
     v: Any
 
 
-def after(p, state, before: Deflection, dt, Fz, Vx, Vsx, Vsy) -> Deflection:
+class Motion(NamedTuple):
+    """Load [N] and speeds [m/s] of a wheel."""
+
+    Fz: Any
+    Vx: Any  #: along the wheel
+    Vsx: Any  #: longitudinal slip speed
+    Vsy: Any  #: lateral slip speed
+
+
+def after(p, state, before: Deflection, dt, motion: Motion) -> Deflection:
     """The deflection after ``dt`` [s], for speeds that are constant within it; ``state`` is that at no slip."""
+    Fz, Vx, Vsx, Vsy = motion
     rolling, slow = absolute(Vx), absolute(Vx) < p.VXLOW
     u = dragged(before.u, -Vsx, rolling, state.sigma_x, dt)
     v = dragged(before.v, Vsy, rolling, state.sigma_y, dt)
@@ -33,8 +43,9 @@ def after(p, state, before: Deflection, dt, Fz, Vx, Vsx, Vsy) -> Deflection:
     return Deflection(select(Fz <= 0.0, 0.0, u), select(Fz <= 0.0, 0.0, v))
 
 
-def slips(p, state, of: Deflection, Vx, Vsx, Vsy, damping) -> tuple[Any, Any]:
+def slips(p, state, of: Deflection, motion: Motion, damping) -> tuple[Any, Any]:
     """kappa' [-] and alpha' [rad] of a deflected contact, with ``damping`` [Ns/m] that fades out towards VXLOW."""
+    _, Vx, Vsx, Vsy = motion
     way = sign(Vx)  # rolling backwards, slips are relative to the backward speed
     share = way * damping * fading(Vx, p.VXLOW)
     kappa = way * ratio(of.u, state.sigma_x) - ratio(share * Vsx, state.K_xk)

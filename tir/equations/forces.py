@@ -50,23 +50,24 @@ class State(NamedTuple):
     zeta8: Any
 
 
-class Loads(NamedTuple):
-    """The load as Mx, My and Re see it: limits change them differently from the Magic Formula proper."""
+class Wheel(NamedTuple):
+    """What limits do not change, or change otherwise than in the Magic Formula proper."""
 
-    overturning: Any  #: [N]
-    rolling: Any  #: [N]
+    overturning: Any  #: load for Mx [N]
+    rolling: Any  #: load for My [N]
+    kappa: Any  #: longitudinal slip [-]
+    Vx: Any  #: speed [m/s], > 0
+    Re: Any  #: effective rolling radius [m]
 
 
-def evaluate(p, q: Inputs, loads: Loads, kappa, Vx, Re, with_turn_slip: bool) -> tuple[Forces, State]:
+def evaluate(p, q: Inputs, wheel: Wheel, with_turn_slip: bool) -> tuple[Forces, State]:
     """Steady-state MF 6.2 of a wheel that rolls forwards.
 
     Parameters
     ----------
     p : object with the parameter names of the file as attributes
     q : normalised inputs, inside the limits
-    loads : load for the overturning and rolling-resistance moments [N]
-    kappa, Vx : longitudinal slip [-] and speed [m/s, > 0] before limits, for the rolling resistance
-    Re : effective rolling radius [m]
+    wheel : what the moments of overturning and rolling resistance and the speed of rotation take
     with_turn_slip : whether spin acts through the zeta factors (design of USE_MODE's units digit 5) or not at all
     """
     K_xk = stiffness.longitudinal_slip_stiffness(p, q)
@@ -78,33 +79,33 @@ def evaluate(p, q: Inputs, loads: Loads, kappa, Vx, Re, with_turn_slip: bool) ->
 
     spin = turn_slip.NO_SPIN
     if with_turn_slip:
-        spin = turn_slip.spin(p, q, total_spin(q, eps_gamma, Re), eps_gamma, K_ya0, K_yg0)
+        spin = turn_slip.spin(p, q, total_spin(q, eps_gamma, wheel.Re), eps_gamma, K_ya0, K_yg0)
     K_ya = stiffness.cornering_stiffness(p, q, q.gamma, spin.zeta3)
 
     G_xa = longitudinal.combined_weight(p, q)
     G_yk = lateral.combined_weight(p, q)
-    side = lateral.pure(p, q, q.gamma, spin, K_ya, K_yg0, mu_y)
+    side = lateral.pure(p, q, q.gamma, spin, stiffness.SideGrip(K_ya, K_yg0, mu_y))
     Fx = G_xa * longitudinal.pure(p, q, spin, K_xk, mu_x)  # 4.E50
     Fy = G_yk * side.Fy + lateral.longitudinal_shift(p, q, mu_y, spin.zeta2)  # 4.E58
 
     spin_torque = turn_slip.NO_SPIN_TORQUE
     if with_turn_slip:
-        K_z = stiffness.residual_torque_stiffness(p, q)
-        spin_torque = turn_slip.torque(p, q, spin.phi, eps_gamma, mu_y, K_z, G_yk)
+        spin_torque = turn_slip.torque(p, q, spin.phi, eps_gamma, mu_y, G_yk)
     trail = aligning.trail(p, q, spin, K_xk, K_ya)
-    Mzr = aligning.residual_torque(p, q, spin, spin_torque, side, K_xk, K_ya)
-    upright = lateral.pure(p, q, 0.0, turn_slip.NO_SPIN, K_ya0, K_yg0, stiffness.lateral_friction(p, q, 0.0))
+    Mzr = aligning.residual_torque(p, q, spin, spin_torque, side, K_xk)
+    grip = stiffness.SideGrip(K_ya0, K_yg0, stiffness.lateral_friction(p, q, 0.0))
+    upright = lateral.pure(p, q, 0.0, turn_slip.NO_SPIN, grip)
     Mz = -trail * G_yk * upright.Fy + Mzr + aligning.longitudinal_arm(p, q, Fy) * Fx  # 4.E71, 4.E74
-    Mx = overturning.moment(p, q, loads.overturning, Fy)
-    My = rolling.moment(p, q, loads.rolling, Fx, kappa, Vx)
+    Mx = overturning.moment(p, q, wheel.overturning, Fy)
+    My = rolling.moment(p, q, wheel.rolling, Fx, wheel.kappa, wheel.Vx)
 
     zeta4 = 1.0 + spin.shift - side.S_V_gamma / K_ya if with_turn_slip else 1.0  # 4.E84
     state = State(
         K_xk=K_xk, K_ya=K_ya, K_yg0=K_yg0, mu_x=mu_x, mu_y=mu_y,
         sigma_x=absolute(K_xk / carcass_stiffness(p.LONGITUDINAL_STIFFNESS, p.PCFX1, p.PCFX2, p.PCFX3, q)),
         sigma_y=absolute(K_ya / carcass_stiffness(p.LATERAL_STIFFNESS, p.PCFY1, p.PCFY2, p.PCFY3, q)),
-        Re=Re, omega=(1.0 + kappa) * Vx / Re, trail=trail, residual_torque=Mzr, S_Hy=side.S_H, S_Vy=side.S_V,
-        eps_gamma=eps_gamma, phi=spin.phi, S_Hyphi=spin.shift, zeta0=spin.zeta0, zeta1=spin.zeta1,
+        Re=wheel.Re, omega=(1.0 + wheel.kappa) * wheel.Vx / wheel.Re, trail=trail, residual_torque=Mzr,
+        S_Hy=side.S_H, S_Vy=side.S_V, eps_gamma=eps_gamma, phi=spin.phi, S_Hyphi=spin.shift, zeta0=spin.zeta0, zeta1=spin.zeta1,
         zeta2=spin.zeta2, zeta3=spin.zeta3, zeta4=zeta4, zeta5=spin.zeta5, zeta6=spin.zeta6,
         zeta7=spin_torque.zeta7, zeta8=spin_torque.zeta8,
     )  # fmt: skip

@@ -15,6 +15,7 @@ from tir.equations.elementary import (
     sin,
 )
 from tir.equations.normalise import Inputs, WeightFactors
+from tir.equations.stiffness import SideGrip
 from tir.equations.turn_slip import Spin
 
 
@@ -22,6 +23,7 @@ class SideForce(NamedTuple):
     """Pure side force and the factors that the moments use again."""
 
     Fy: Any  #: [N]
+    K_ya: Any  #: cornering stiffness [N/rad]
     S_H: Any  #: horizontal shift [rad]
     S_V: Any  #: vertical shift [N]
     S_V_gamma: Any  #: its camber part [N]
@@ -29,8 +31,9 @@ class SideForce(NamedTuple):
     C: Any
 
 
-def pure(p, q: Inputs, gamma, spin: Spin, K_ya, K_yg0, mu_y) -> SideForce:
+def pure(p, q: Inputs, gamma, spin: Spin, grip: SideGrip) -> SideForce:
     """Fy at zero longitudinal slip [N], at the camber and spin given; 4.E19."""
+    K_ya, K_yg0, mu_y = grip
     S_V_gamma = camber_force(p, q, gamma, spin.zeta2)
     from_camber = (K_yg0 * gamma * spin.zeta0 - S_V_gamma) / away_from_zero(K_ya)
     S_H = (p.PHY1 + p.PHY2 * q.dfz) * p.LHY + from_camber + spin.shift  # 4.E27 with zeta4 of 4.E84
@@ -41,7 +44,7 @@ def pure(p, q: Inputs, gamma, spin: Spin, K_ya, K_yg0, mu_y) -> SideForce:
     E = curvature(p, q, gamma, sign(alpha_y))
     B = K_ya / away_from_zero(C * D)  # 4.E26
     Fy = D * sin(magic_angle(B, C, at_most_one(E, q.limits), alpha_y)) + S_V  # 4.E19
-    return SideForce(Fy, S_H, S_V, S_V_gamma, B, C)
+    return SideForce(Fy, K_ya, S_H, S_V, S_V_gamma, B, C)
 
 
 def camber_force(p, q: Inputs, gamma, zeta2=1.0):

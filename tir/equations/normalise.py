@@ -7,8 +7,37 @@ from typing import Any, NamedTuple
 from tir.equations.elementary import arctan, away_from_zero, cos, sin, tan
 
 
+class OperatingCondition(NamedTuple):
+    """The inputs of the model in ISO-W, SI and radians; scalars or arrays that broadcast."""
+
+    Fz: Any  #: vertical load [N]; loads <= 0 give zero forces, NaN gives NaN
+    alpha: Any = (
+        0.0  #: sideslip angle atan(Vsy/Vx) [rad]; rolling backwards it stays the reading of the rig's axis
+    )
+    gamma: Any = 0.0  #: camber [rad], > 0 with the top of the wheel to -y
+    kappa: Any = 0.0  #: longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
+    phi_t: Any = (
+        0.0  #: turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
+    )
+    Vx: Any = (
+        None  #: speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
+    )
+    pressure: Any = None  #: inflation pressure [Pa]; default INFLPRES
+
+
+class Switches(NamedTuple):
+    """Options of the model; each combination has a program of its own."""
+
+    turn_slip: bool = False  #: spin acts (zeta factors); otherwise phi_t is ignored
+    star: bool = False  #: tan(alpha) and sin(gamma) as inputs instead of the angles
+    limits: bool = False  #: inputs held to the file's ranges and curvature factors to <= 1
+
+
+PLAIN = Switches()
+
+
 class Inputs(NamedTuple):
-    """One operating condition; every field a scalar or an array, all broadcasting together."""
+    """One operating condition as the formulae use it; every field a scalar or an array, all broadcasting together."""
 
     Fz: Any  #: vertical load inside the limits, > 0 [N]
     Fz_moment: Any  #: load used by the trail and residual torque, at least FZMIN with limits [N]
@@ -46,23 +75,25 @@ def relative_load(p, Fz):
     return (Fz - Fz0) / Fz0  # 4.E2a
 
 
-def inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits) -> Inputs:
-    """Collect the normalised inputs; angles in rad, pressure in Pa, load in N, turn slip in 1/m."""
+def inputs(p, at: OperatingCondition, switches: Switches = PLAIN, Fz_moment=None) -> Inputs:
+    """The normalised inputs; ``Fz_moment`` is the load [N] of trail and residual torque, by default that of the condition."""
+    Fz, alpha, gamma, _, _, _, pressure = at
+    pressure = p.INFLPRES if pressure is None else pressure
     return Inputs(
         Fz=Fz,
-        Fz_moment=Fz_moment,
-        kappa=kappa,
-        alpha=tan(alpha) if star else alpha,  # 4.E3
-        gamma=sin(gamma) if star else gamma,  # 4.E4
+        Fz_moment=Fz if Fz_moment is None else Fz_moment,
+        kappa=at.kappa,
+        alpha=tan(alpha) if switches.star else alpha,  # 4.E3
+        gamma=sin(gamma) if switches.star else gamma,  # 4.E4
         sin_gamma=sin(gamma),
         cos_alpha=cos(alpha),  # 4.E6
         tan_alpha=tan(alpha),
-        phi_t=phi_t,
+        phi_t=at.phi_t,
         pressure=pressure,
         dfz=relative_load(p, Fz),
         dpi=(pressure - p.NOMPRES) / p.NOMPRES,  # 4.E2b
         Fz0=nominal_load(p),
-        limits=limits,
+        limits=switches.limits,
     )
 
 

@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from tir.equations.elementary import absolute, arctan, exp, sin
 from tir.equations.normalise import Inputs
+
+
+class SideGrip(NamedTuple):
+    """What the side force is built of, at the camber and spin of interest."""
+
+    K_ya: Any  #: cornering stiffness [N/rad]
+    K_yg0: Any  #: camber stiffness at zero camber [N/rad]
+    mu_y: Any  #: friction coefficient [-]
 
 
 def longitudinal_slip_stiffness(p, q: Inputs):

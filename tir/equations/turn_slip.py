@@ -22,6 +22,7 @@ from tir.equations.elementary import (
     sqrt,
 )
 from tir.equations.normalise import Inputs
+from tir.equations.stiffness import residual_torque_stiffness
 
 
 class Spin(NamedTuple):
@@ -75,9 +76,9 @@ def side_force_shift(p, q: Inputs, R0_phi, eps_gamma, K_ya0, K_yg0):
     return D * sin(magic_angle(B, C, E, R0_phi))  # 4.E80
 
 
-def torque(p, q: Inputs, phi, eps_gamma, mu_y, K_z, Gyk) -> SpinTorque:
+def torque(p, q: Inputs, phi, eps_gamma, mu_y, Gyk) -> SpinTorque:
     """Turn-slip moment and its decay with sideslip; 4.E92-4.E103."""
-    R0 = p.UNLOADED_RADIUS
+    R0, K_z = p.UNLOADED_RADIUS, residual_torque_stiffness(p, q)
     M_inf = p.QCRP1 * absolute(mu_y) * R0 * q.Fz_moment * sqrt(q.Fz_moment / q.Fz0) * p.LMP  # 4.E95
     M_90 = M_inf * 2.0 / pi * arctan(p.QCRP2 * R0 * absolute(q.phi_t)) * Gyk  # 4.E103
     C = p.QDRP1  # 4.E96

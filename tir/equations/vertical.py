@@ -5,17 +5,27 @@ Q_CAM is the stiffness over camber of older versions; the equations of 6.2 have 
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from tir.equations.elementary import TINY, absolute, real, select, sqrt, tan
 
 STEPS = 5
 """Newton's steps to a loaded radius, from that of the upright wheel without other forces."""
 
 
-def load(p, RL, Fx, Fy, gamma, rim_speed, dpi):
-    """Vertical load [N] of a wheel at the loaded radius RL [m], and its derivative [N/m] by the radius.
+class Rolling(NamedTuple):
+    """A wheel on its way, without load and radius."""
 
-    Fx, Fy [N] and gamma [rad] in ISO-W; ``rim_speed`` is the speed of rotation times R0 over LONGVL [-].
-    """
+    Fx: Any  #: [N], ISO-W
+    Fy: Any  #: [N]
+    gamma: Any  #: camber [rad]
+    rim_speed: Any  #: speed of rotation times R0 over LONGVL [-]
+    dpi: Any  #: pressure above the nominal one, over it [-]
+
+
+def load(p, RL, rolling: Rolling):
+    """Vertical load [N] of a wheel at the loaded radius RL [m], and its derivative [N/m] by the radius."""
+    Fx, Fy, gamma, rim_speed, dpi = rolling
     free, lean, R0 = free_radius(p, rim_speed), absolute(gamma), p.UNLOADED_RADIUS
     tread = (1.075 - 0.5 * p.ASPECT_RATIO) * p.WIDTH  # reference width
     whole = p.Q_CAM1 * free + p.Q_CAM2 * free**2
@@ -39,11 +49,12 @@ def load(p, RL, Fx, Fy, gamma, rim_speed, dpi):
     return stiffer * over, stiffer * over_slope + stiffer_slope * over
 
 
-def loaded_radius(p, Fz, Fx, Fy, gamma, rim_speed, dpi):
+def loaded_radius(p, Fz, rolling: Rolling):
     """Loaded radius [m] of a wheel under the load Fz [N]: the inverse of :func:`load`."""
-    RL = free_radius(p, rim_speed) - deflection(p, Fz / (1.0 + p.Q_V2 * rim_speed), dpi)
+    rim_speed = rolling.rim_speed
+    RL = free_radius(p, rim_speed) - deflection(p, Fz / (1.0 + p.Q_V2 * rim_speed), rolling.dpi)
     for _ in range(STEPS):
-        carried, slope = load(p, RL, Fx, Fy, gamma, rim_speed, dpi)
+        carried, slope = load(p, RL, rolling)
         RL = RL - (carried - Fz) / slope
     return RL
 

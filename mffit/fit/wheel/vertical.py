@@ -157,11 +157,12 @@ def radius(values: Mapping[str, Any], at: RadiusReadings, channel: str) -> Any:
     p = SimpleNamespace(**values)
     if channel == "RL":
         rim_speed = at.rim_speed(float(values["UNLOADED_RADIUS"])) / float(values["LONGVL"])
-        conditions = at.Fx, at.Fy, at.gamma, rim_speed, at.p / float(values["NOMPRES"]) - 1.0
+        dpi = at.p / float(values["NOMPRES"]) - 1.0
+        rolling = vertical.Rolling(at.Fx, at.Fy, at.gamma, rim_speed, dpi)
         known = SimpleNamespace(**{name: plain(value) for name, value in values.items()})
-        found = vertical.loaded_radius(known, at.Fz, *conditions)
+        found = vertical.loaded_radius(known, at.Fz, rolling)
         # One Newton step at the given load gives the radius its derivatives by the traced values.
-        load, slope = vertical.load(p, found, *conditions)
+        load, slope = vertical.load(p, found, rolling)
         return found - (load - at.Fz) / plain(slope)
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 

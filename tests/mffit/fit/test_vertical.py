@@ -125,12 +125,12 @@ def test_wheel_speed_alone_gives_the_rolling_radius():
 
 def test_vertical_stiffness_is_the_slope_at_the_nominal_load():
     p = tir.Tyre.from_values({}).replace(**TRUTH, UNLOADED_RADIUS=R0, FNOMIN=FNOMIN).p
-    upright = (0.0, 0.0, 0.0, 1.0, 0.0)
-    RL = float(vertical.loaded_radius(p, FNOMIN, *upright))
-    carried, slope = vertical.load(p, RL, *upright)
+    upright = vertical.Rolling(0.0, 0.0, 0.0, 1.0, 0.0)
+    RL = float(vertical.loaded_radius(p, FNOMIN, upright))
+    carried, slope = vertical.load(p, RL, upright)
     assert float(carried) == pytest.approx(FNOMIN, rel=1e-12)
     assert -float(slope) == pytest.approx(STIFFNESS, rel=1e-9)
-    two = [float(vertical.load(p, RL + step, *upright)[0]) for step in (-1e-6, 1e-6)]
+    two = [float(vertical.load(p, RL + step, upright)[0]) for step in (-1e-6, 1e-6)]
     assert (two[0] - two[1]) / 2e-6 == pytest.approx(STIFFNESS, rel=1e-6)
 
 
@@ -158,9 +158,9 @@ def test_the_load_follows_the_published_formula_under_every_force():
     )
     Q_FZ1 = np.sqrt((STIFFNESS * R0 / FNOMIN) ** 2 - 4.0 * Q_FZ2)
     Fz = f_corr * (1.0 + PFZ1 * dpi) * (Q_FZ1 * rho / R0 + Q_FZ2 * (rho / R0) ** 2) * FNOMIN
-    conditions = (Fx, Fy, gamma, rim, dpi)
-    assert float(vertical.load(p, RL, *conditions)[0]) == pytest.approx(Fz, rel=1e-12)
-    assert float(vertical.loaded_radius(p, Fz, *conditions)) == pytest.approx(RL, rel=1e-12)
+    rolling = vertical.Rolling(Fx, Fy, gamma, rim, dpi)
+    assert float(vertical.load(p, RL, rolling)[0]) == pytest.approx(Fz, rel=1e-12)
+    assert float(vertical.loaded_radius(p, Fz, rolling)) == pytest.approx(RL, rel=1e-12)
 
 
 def on_the_rig(offset=0.0, seed=3, **differing: float) -> Points:
