@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import tir
 from mffit.effects import NEEDS
 from mffit.effects.effect import Effect
 from mffit.errors import InputError
@@ -71,6 +72,25 @@ def test_the_reader_reads(examples, tmp_path):
     assert table.headings == ("alpha_deg", "Fy_N")
     np.testing.assert_array_equal(table.column("Fy_N"), [3.1, -240.5])
     assert examples["FORMATS"][-1].read is examples["read_json"]
+
+
+def test_the_exporter_writes_the_tyre(examples):
+    """Its lines are Python's too, once the words of the language are defined there."""
+    tyre = tir.read(SAMPLE)
+    code = examples["export_julia"](tyre, name="front")
+    assert "turn slip on" in code.splitlines()[0]
+    body = re.search(r"function (.*\n(?s:.*))^end", code, re.MULTILINE)[1].replace("^", "**")
+    head, _, rest = body.partition("\n")
+    namespace = {
+        "ifelse": np.where, "atan": np.arctan, "acos": np.arccos, "true": True, "false": False, "Inf": np.inf, "NaN": np.nan,
+        **{name: getattr(np, name) for name in ("sqrt", "exp", "sin", "cos", "tan", "abs")},
+    }  # fmt: skip
+    exec(f"def {head}:\n{rest}", namespace)
+    given = (1400.0, 0.05, 0.3, 0.02, 0.0, 10.0, 2.2e5)
+    wanted = tyre(*given)
+    np.testing.assert_allclose(namespace["front"](*given), wanted, rtol=1e-12)
+    with pytest.raises(tir.TirError, match="taken in Julia"):
+        examples["export_julia"](tyre, name="end")
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import tir
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
 from tir.codegen.program import INPUTS, ORDER, called
 from tir.equations.forces import Forces
-from tir.tuning import INPUT_TEXTS, OUTPUT_TEXTS, STATES, tunables
+from tir.exporting import INPUT_TEXTS, OUTPUT_TEXTS, STATES, tunables
 
 NAMES = {"Fz": "Fz_out"}
 """Outputs with another name than in C: the load is input and output."""

@@ -18,9 +18,9 @@ from tir.codegen.lag import LAG_INPUTS
 from tir.codegen.program import INPUTS, Switches
 from tir.equations.forces import Forces
 from tir.evaluate import evaluate
+from tir.exporting import STATES
 from tir.parameters import TABLE
 from tir.transient import Contact, step
-from tir.tuning import STATES
 
 VECTORS = Path(__file__).parent / "vectors"
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)

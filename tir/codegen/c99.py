@@ -6,21 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING, lag_programs
-from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, called, refuse_zero_divisors, trace
+from tir.codegen.program import INPUTS, Program, called
 from tir.codegen.source import COMMON, SourceDialect, assignments
 from tir.equations.forces import Forces
-from tir.errors import TirError
+from tir.exporting import INPUT_TEXTS, OUTPUT_TEXTS, STATES, ExportedTyre, exported, refuse_name
 from tir.record import TyreRecord
-from tir.tuning import (
-    INPUT_TEXTS,
-    OUTPUT_TEXTS,
-    STATES,
-    exported,
-    opening,
-    refuse_name,
-    trace_tuned,
-    tunables,
-)
 
 WORDS = {
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum",
@@ -50,6 +40,10 @@ C = SourceDialect(
     flag="const int {} = {};",
     inline=False,
 )
+
+
+KINDS = {"forces": ("evaluate", Forces._fields), "state": ("evaluate_state", STATES)}
+"""Functions of the operating condition and the fields of their records, by the name of the record."""
 
 
 class Code(NamedTuple):
@@ -95,43 +89,18 @@ def export_c(
         If the name is invalid or reserved in C, a value is not finite, or a value by which the equations divide is 0.
     """
     refuse_name(name, "C", taken)
-    switches = exported(tyre, turn_slip, star, limits)
-    refuse_zero_divisors(tyre.p, switches, (*Forces._fields, *STATES))
-    values = {key: float(tyre[key]) for key in NUMBERS}
-    broken = [key for key, value in values.items() if value - value != 0.0]
-    if broken:
-        raise TirError(
-            f"{broken[0]} is {values[broken[0]]}, which C code cannot hold; give a finite number",
-            name=broken[0],
-        )
-    text = _Text(name, *_openings(name, switches, tyre))
-    kinds = {"forces": Forces._fields, "state": STATES}
-    heads = {"forces": f"{name}_evaluate", "state": f"{name}_evaluate_state"}
-    for kind, fields in kinds.items():
+    outputs = [field for _, fields in KINDS.values() for field in fields]
+    made = exported(tyre, outputs, turn_slip=turn_slip, star=star, limits=limits)
+    text = _Text(name, *_openings(name, made))
+    for kind, (_, fields) in KINDS.items():
         text.record(kind, {field: OUTPUT_TEXTS[field] for field in fields})
-    for kind, fields in kinds.items():
-        text.function(heads[kind], kind, trace(switches, fields, values), INPUTS)
+    for kind, (function, fields) in KINDS.items():
+        text.function(function, kind, made.program(fields, tuned=False), INPUTS)
     text.header.append("")
     if tunable or lag:
-        turned = tunables(tyre)
-        text.record("tuning", {one.name: one.description for one in turned})
-        text.header.append(f"{name}_tuning {name}_as_in_file(void);")
-        text.source.extend(
-            [
-                f"{name}_tuning {name}_as_in_file(void)",
-                "{",
-                f"    {name}_tuning out = {{{', '.join(C.literal(one.start) for one in turned)}}};",
-                "    return out;",
-                "}",
-                "",
-            ]
-        )
-        for kind, fields in kinds.items():
-            program = trace_tuned(tyre, switches, fields)
-            text.function(f"{heads[kind]}_tuned", kind, program, INPUTS, tuned=True)
-        text.header.append("")
+        _add_tuning(text, made)
     if lag:
-        _add_lag(text, lag_programs(tyre, switches, STATES))
+        _add_lag(text, lag_programs(made.parameters, made.switches, STATES))
     end = ["#ifdef __cplusplus", "}", "#endif", "#endif", ""]
     return Code("\n".join([*text.header, *end]), "\n".join(text.source))
 
@@ -153,6 +122,7 @@ class _Text(NamedTuple):
         self, function: str, kind: str, program: Program, inputs: Sequence[str], *, tuned: bool = False
     ) -> None:
         """Declare and define a function that returns a record."""
+        function = f"{self.name}_{function}"
         given = [f"const {self.name}_tuning *tuning"] * tuned + [f"double {called(x)}" for x in inputs]
         head = f"{self.name}_{kind} {function}({', '.join(given)})"
         lines, results = assignments((*program.per_tyre, *program.per_point), program.outputs.values(), C)
@@ -175,6 +145,18 @@ class _Text(NamedTuple):
         )
 
 
+def _add_tuning(text: _Text, made: ExportedTyre) -> None:
+    """What can be turned, its values in the file, and the functions that take it."""
+    text.record("tuning", {one.name: one.description for one in made.turned})
+    head = f"{text.name}_tuning {text.name}_as_in_file(void)"
+    text.header.append(f"{head};")
+    starts = ", ".join(C.literal(one.start) for one in made.turned)
+    text.source.extend([head, "{", f"    {text.name}_tuning out = {{{starts}}};", "    return out;", "}", ""])
+    for kind, (function, fields) in KINDS.items():
+        text.function(f"{function}_tuned", kind, made.program(fields), INPUTS, tuned=True)
+    text.header.append("")
+
+
 def _add_lag(text: _Text, programs: tuple[Program, Program]) -> None:
     """The deflection after a step, and forces and states of a deflection."""
     texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
@@ -191,7 +173,7 @@ def _add_lag(text: _Text, programs: tuple[Program, Program]) -> None:
     )
     for (function, kind, first), program in zip(functions, programs, strict=True):
         inputs = (*first, *LAGGING, *LAG_INPUTS)
-        text.function(f"{text.name}_{function}", kind, program, inputs, tuned=True)
+        text.function(function, kind, program, inputs, tuned=True)
     text.header.append("")
 
 
@@ -200,10 +182,10 @@ def taken(name: str) -> bool:
     return name in WORDS or name.lower() in HEADERS
 
 
-def _openings(name: str, switches: Switches, tyre: TyreRecord) -> tuple[list[str], list[str]]:
+def _openings(name: str, made: ExportedTyre) -> tuple[list[str], list[str]]:
     """What header and source begin with."""
     guard = f"{name.upper()}_H"
-    first, second = opening(switches, tyre)
+    first, second = made.opening
     header = [
         f"/* {first}",
         f"   {second}",

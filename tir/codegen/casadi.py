@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
-from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS, called, refuse_zero_divisors
+from tir.codegen.graph import OPERATORS
+from tir.codegen.program import INPUTS, called, computed
+from tir.codegen.source import FUNCTIONS
 from tir.equations.forces import Forces
 from tir.errors import TirError
+from tir.exporting import exported
 from tir.record import TyreRecord
-from tir.tuning import chosen, exported, trace_tuned
 
-OPERATORS = {
-    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
-    "negative": operator.neg, "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
-    "greater_equal": operator.ge,
-}  # fmt: skip
-NAMES = {"absolute": "fabs", "where": "if_else", "both": "logic_and"}
+NAMES = {"where": "if_else", "both": "logic_and"}
 """Functions that have another name in CasADi."""
 GUARDED = {"sqrt": (0.0, 0.0), "arccos": (1.0, 0.0)}
 """Functions with an infinite slope at the end of their range: that end, and the value there. At it the slope is taken as 0."""
@@ -57,39 +53,29 @@ def casadi_function(
         import casadi
     except ImportError:
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
-    switches = exported(tyre, turn_slip, star, limits)
-    refuse_zero_divisors(tyre.p, switches, outputs)
-    name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
-    factors = {one.name: one.start for one in chosen(tyre, tunable)}
-    turned = [*factors]
-    program = trace_tuned(tyre, switches, outputs, turned)
-    inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *turned)}
-    known: dict[int, Any] = {}
-
-    def of(x: Any) -> Any:
-        return known[x.number] if isinstance(x, Node) else float(x)
-
-    for node in (*program.per_tyre, *program.per_point):
-        if node.operation == "symbol":
-            known[node.number] = inputs[node.name]
-            continue
-        if node.operation in GUARDED:
-            end, there = GUARDED[node.operation]
-            known[node.number] = _guarded(casadi, node.operation, of(node.arguments[0]), end, there)
-            continue
-        word = NAMES.get(node.operation, node.operation)
-        operation: Any = OPERATORS[word] if word in OPERATORS else getattr(casadi, word)
-        known[node.number] = operation(*map(of, node.arguments))
-    results = [casadi.SX(of(x)) for x in program.outputs.values()]
+    made = exported(tyre, outputs, tunable, turn_slip=turn_slip, star=star, limits=limits)
+    program = made.program(outputs)
+    factors = {one.name: one.start for one in made.turned}
+    inputs = {key: casadi.SX.sym(called(key)) for key in (*INPUTS, *factors)}
+    nodes = (*program.per_tyre, *program.per_point)
+    results = computed(nodes, program.outputs.values(), _operations(casadi), inputs, {})
     usual = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"], **factors}
     options: dict[str, Any] = {
         "allow_duplicate_io_names": True,  # Fz is an input, and an output within the limits
         "default_in": [float(usual.get(key, 0.0)) for key in inputs],
     }
-    return casadi.Function(name, [*inputs.values()], results, [*map(called, inputs)], [*outputs], options)
+    name = name or ("tyre_turn_slip" if made.switches.turn_slip else "tyre")
+    given = [*map(called, inputs)]
+    return casadi.Function(name, [*inputs.values()], [*map(casadi.SX, results)], given, [*outputs], options)
 
 
-def _guarded(casadi: Any, word: str, x: Any, end: float, there: float) -> Any:
+def _operations(casadi: Any) -> dict[str, Callable[..., Any]]:
+    named = {name: getattr(casadi, NAMES.get(name, name)) for name in (*FUNCTIONS, *NAMES)}
+    guarded = {name: partial(_guarded, casadi, name, *ends) for name, ends in GUARDED.items()}
+    return {**OPERATORS, **named, **guarded}
+
+
+def _guarded(casadi: Any, word: str, end: float, there: float, x: Any) -> Any:
     """The function with slope 0 at the end of its range: an infinite slope times the 0 behind it would be NaN."""
     at_end = x == end
     return casadi.if_else(at_end, there, getattr(casadi, word)(casadi.if_else(at_end, 0.5, x)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +15,12 @@ OPERATIONS: dict[Any, str] = {
     np.greater: "greater", np.greater_equal: "greater_equal", np.bitwise_and: "both",
 }  # fmt: skip
 UFUNCS = {name: ufunc for ufunc, name in OPERATIONS.items()}
+OPERATORS: dict[str, Callable[..., Any]] = {
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
+    "negative": operator.neg, "absolute": abs, "less": operator.lt, "less_equal": operator.le,
+    "greater": operator.gt, "greater_equal": operator.ge, "both": operator.and_,
+}  # fmt: skip
+"""Operations that Python itself has for numbers of any kind."""
 CONSTANT, PARAMETER, INPUT = 0, 1, 2
 """What a number depends on: nothing, the tyre alone, or the operating condition."""
 INTEGER_POWERS = (2, 3, 4)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 
 DOUBLE, INTEGER, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
@@ -11,7 +14,7 @@ MAY_BE_ONE = ("contract",)
 """A product and a sum may become one instruction, with one rounding."""
 
 
-class VectorValue:
+class VectorValue(np.lib.mixins.NDArrayOperatorsMixin):
     """The result of an instruction: a vector of float64, of 64-bit integers or of truth values."""
 
     __slots__ = ("builder", "value")
@@ -19,87 +22,47 @@ class VectorValue:
     def __init__(self, builder: ir.IRBuilder, value: ir.Value):
         self.builder, self.value = builder, value
 
-    def like(self, x: Any) -> ir.Value:
-        """The other operand of an operation: the value of a Number, or a constant in every lane."""
-        return x.value if isinstance(x, VectorValue) else repeated(self.value.type, x)
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any) -> VectorValue:
+        type_ = self.value.type  # of numbers, which stand in every lane
+        operands = (x.value if isinstance(x, VectorValue) else repeated(type_, x) for x in inputs)
+        return VectorValue(self.builder, INSTRUCTIONS[ufunc](self.builder, *operands))
 
-    def _given(self, instruction: Any, *operands: Any, **options: Any) -> VectorValue:
-        return VectorValue(self.builder, instruction(*operands, **options))
 
-    def __add__(self, other: Any) -> VectorValue:
-        if self.value.type.element == INTEGER:
-            return self._given(self.builder.add, self.value, self.like(other))
-        return self._given(self.builder.fadd, self.value, self.like(other), flags=MAY_BE_ONE)
+def _sum(builder: ir.IRBuilder, x: ir.Value, y: ir.Value) -> ir.Value:
+    if x.type.element == INTEGER:
+        return builder.add(x, y)
+    return builder.fadd(x, y, flags=MAY_BE_ONE)
 
-    __radd__ = __add__
 
-    def __sub__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.fsub, self.value, self.like(other), flags=MAY_BE_ONE)
+def _intrinsic(name: str, builder: ir.IRBuilder, x: ir.Value) -> ir.Value:
+    name += f".v{x.type.count}f64"
+    known = builder.module.globals.get(name)
+    return builder.call(known or ir.Function(builder.module, ir.FunctionType(x.type, [x.type]), name), [x])
 
-    def __rsub__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.fsub, self.like(other), self.value, flags=MAY_BE_ONE)
 
-    def __mul__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.fmul, self.value, self.like(other), flags=MAY_BE_ONE)
+def _compared(how: str, builder: ir.IRBuilder, x: ir.Value, y: ir.Value) -> ir.Value:
+    return builder.fcmp_ordered(how, x, y)
 
-    __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.fdiv, self.value, self.like(other))
-
-    def __rtruediv__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.fdiv, self.like(other), self.value)
-
-    def __neg__(self) -> VectorValue:
-        return self._given(self.builder.fneg, self.value)
-
-    def __abs__(self) -> VectorValue:
-        return self._intrinsic("llvm.fabs")
-
-    def sqrt(self) -> VectorValue:
-        """Its square root."""
-        return self._intrinsic("llvm.sqrt")
-
-    def __lt__(self, other: Any) -> VectorValue:
-        return self._compared("<", other)
-
-    def __le__(self, other: Any) -> VectorValue:
-        return self._compared("<=", other)
-
-    def __gt__(self, other: Any) -> VectorValue:
-        return self._compared(">", other)
-
-    def __ge__(self, other: Any) -> VectorValue:
-        return self._compared(">=", other)
-
-    def __eq__(self, other: object) -> VectorValue:  # type: ignore[override]
-        return self._compared("==", other)
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __and__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.and_, self.value, self.like(other))
-
-    def __or__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.or_, self.value, self.like(other))
-
-    def __xor__(self, other: Any) -> VectorValue:
-        return self._given(self.builder.xor, self.value, self.like(other))
-
-    def __lshift__(self, other: int) -> VectorValue:
-        return self._given(self.builder.shl, self.value, self.like(other))
-
-    def __rshift__(self, other: int) -> VectorValue:
-        return self._given(self.builder.lshr, self.value, self.like(other))
-
-    def _compared(self, how: str, other: Any) -> VectorValue:
-        return self._given(self.builder.fcmp_ordered, how, self.value, self.like(other))
-
-    def _intrinsic(self, name: str) -> VectorValue:
-        type_, module = self.value.type, self.builder.module
-        name += f".v{type_.count}f64"
-        function = module.globals.get(name) or ir.Function(module, ir.FunctionType(type_, [type_]), name)
-        return self._given(self.builder.call, function, [self.value])
+INSTRUCTIONS: dict[Any, Callable[..., ir.Value]] = {
+    np.add: _sum,
+    np.subtract: partial(ir.IRBuilder.fsub, flags=MAY_BE_ONE),
+    np.multiply: partial(ir.IRBuilder.fmul, flags=MAY_BE_ONE),
+    np.divide: ir.IRBuilder.fdiv,
+    np.negative: ir.IRBuilder.fneg,
+    np.absolute: partial(_intrinsic, "llvm.fabs"),
+    np.sqrt: partial(_intrinsic, "llvm.sqrt"),
+    np.less: partial(_compared, "<"),
+    np.less_equal: partial(_compared, "<="),
+    np.greater: partial(_compared, ">"),
+    np.greater_equal: partial(_compared, ">="),
+    np.equal: partial(_compared, "=="),
+    np.bitwise_and: ir.IRBuilder.and_,
+    np.bitwise_or: ir.IRBuilder.or_,
+    np.bitwise_xor: ir.IRBuilder.xor,
+    np.left_shift: ir.IRBuilder.shl,
+    np.right_shift: ir.IRBuilder.lshr,
+}
 
 
 def repeated(type_: ir.VectorType, x: Any) -> ir.Constant:
@@ -114,11 +77,6 @@ def select(chosen: Any, a: Any, b: Any) -> Any:
     type_ = ir.VectorType(DOUBLE, chosen.value.type.count)
     operands = [x.value if isinstance(x, VectorValue) else repeated(type_, float(x)) for x in (a, b)]
     return VectorValue(chosen.builder, chosen.builder.select(chosen.value, *operands))
-
-
-def sqrt(x: VectorValue) -> VectorValue:
-    """The square root, one instruction."""
-    return x.sqrt()
 
 
 def bits(x: VectorValue) -> VectorValue:

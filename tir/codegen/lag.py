@@ -10,16 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tir.codegen.cpython import SCALARS
-from tir.codegen.graph import INPUT, PARAMETER, Graph
-from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, program_of
+from tir.codegen.graph import INPUT, Graph
+from tir.codegen.program import INPUTS, Parameters, Program, Switches, program_of, symbols_of
 from tir.codegen.replay import Replay, replayed
 from tir.codegen.single import MATH, Run, constants, with_defaults
 from tir.codegen.source import conditions, preparation
 from tir.equations import contact
 from tir.equations.normalise import OperatingCondition
 from tir.evaluate import either_way
-from tir.record import TyreRecord
-from tir.tuning import tunables, warm
 
 LAG_INPUTS = ("Fz", "Vx", "Vsx", "Vsy", "gamma", "phi_t", "pressure", "damping")
 LAG_TEXTS = {
@@ -32,17 +30,6 @@ LAG_TEXTS = {
     "alpha": "lagging sideslip angle [rad]",
 }
 LAGGING = ("u", "v")
-
-
-def lag_programs(tyre: TyreRecord, switches: Switches, states: Sequence[str]) -> tuple[Program, Program]:
-    """The deflection after a step ``dt``; and forces, ``states`` and the lagging slips of a deflection.
-
-    Inputs are LAG_INPUTS, the deflection u and v, and for the step ``dt`` [s]. Tunables are symbols, other values numbers.
-    """
-    graph, free = Graph(), {one.name for one in tunables(tyre)}
-    p = {name: graph.symbol(name, PARAMETER) if name in free else float(tyre[name]) for name in NUMBERS}
-    warm(tyre, p, graph)
-    return _programs(graph, p, switches, states)
 
 
 class ContactLag(NamedTuple):
@@ -64,10 +51,8 @@ def lag_functions(values: Mapping[str, float], switches: Switches) -> ContactLag
 @cache
 def _compiled(switches: Switches) -> list[tuple[tuple[str, ...], Any, Any, Replay]]:
     """Names of the inputs, straight-line code to prepare and to run, and the same for numpy, of both functions."""
-    graph = Graph()
-    programs = _programs(graph, {name: graph.symbol(name, PARAMETER) for name in NUMBERS}, switches, ())
     out = []
-    for program, more in zip(programs, (("dt",), ()), strict=True):
+    for program, more in zip(lag_programs(symbols_of, switches), (("dt",), ()), strict=True):
         names, namespace = (*LAGGING, *LAG_INPUTS, *more), dict[str, Any](MATH)
         exec(preparation(program) + conditions(program, names), namespace)
         out.append((names, namespace["prepare"], namespace["run"], replayed([*program.outputs.values()])))
@@ -91,10 +76,15 @@ def _in_numpy(run: Replay, values: Mapping[str, float], names: Sequence[str], *g
     return tuple(np.broadcast_to(x, shape).copy() if shape else float(x) for x in found)
 
 
-def _programs(
-    graph: Graph, p: Mapping[str, Any], switches: Switches, states: Sequence[str]
+def lag_programs(
+    parameters_on: Parameters, switches: Switches, states: Sequence[str] = ()
 ) -> tuple[Program, Program]:
-    parameters = SimpleNamespace(**p)
+    """The deflection after a step ``dt``; and forces, ``states`` and the lagging slips of a deflection.
+
+    Inputs are LAG_INPUTS, the deflection u and v, and for the step ``dt`` [s].
+    """
+    graph = Graph()
+    parameters = SimpleNamespace(**parameters_on(graph))
     given = {name: graph.symbol(name, INPUT) for name in (*LAG_INPUTS, *LAGGING, "dt")}
     motion = contact.Motion(*(given[name] for name in contact.Motion._fields))
     deflection = contact.Deflection(*(given[name] for name in LAGGING))

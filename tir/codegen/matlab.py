@@ -8,22 +8,13 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from tir.codegen.graph import CONSTANT, INPUT, level
-from tir.codegen.program import INPUTS, ORDER, Program, called, refuse_zero_divisors
+from tir.codegen.program import INPUTS, ORDER, Program, called
 from tir.codegen.replay import allocated
 from tir.codegen.source import COMMON, COMPARISONS, SourceDialect, assignments, name_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
+from tir.exporting import INPUT_TEXTS, OUTPUT_TEXTS, STATES, ExportedTyre, exported, refuse_name
 from tir.record import TyreRecord
-from tir.tuning import (
-    INPUT_TEXTS,
-    OUTPUT_TEXTS,
-    STATES,
-    exported,
-    opening,
-    refuse_name,
-    trace_tuned,
-    tunables,
-)
 
 MORE = {
     "mu_x": "longitudinal friction coefficient [-]",
@@ -51,6 +42,8 @@ CONSTANTS = {"ans", "eps", "false", "i", "inf", "j", "pi", "true"}
 """What a file of that name would replace in other code of the user."""
 LONGEST_NAME = 63 - len("_mfeval")
 """MATLAB cuts names after 63 characters, also that of the second function."""
+GIVEN = ", ".join(map(called, ORDER))
+"""Arguments of the function but for the last one, tuning."""
 MATLAB = SourceDialect(
     {
         **COMMON,
@@ -119,50 +112,63 @@ def export_matlab(
         raise TirError(
             f"{name!r} is longer than the {LONGEST_NAME} characters that MATLAB leaves: use a shorter name"
         )
-    switches = exported(tyre, turn_slip, star, limits)
     outputs = (*Forces._fields, *STATE_TEXTS)
-    refuse_zero_divisors(tyre.p, switches, outputs)
-    starts = {key: MATLAB.literal(float(tyre[key])) for key in ("LONGVL", "INFLPRES")}
-    usual = {"Vx": starts["LONGVL"], "pressure": starts["INFLPRES"]}
-    factors = {one.name: MATLAB.literal(one.start) for one in tunables(tyre)}
-    inputs = [called(key) for key in ORDER]
-    given = ", ".join(inputs)
-    use = (2 - limits) * 100 + (1 + star) * 10 + 1 + switches.turn_slip
+    made = exported(tyre, outputs, turn_slip=turn_slip, star=star, limits=limits)
     one_line = " ".join(origin.encode("ascii", "replace").decode().split())
-    about = [*opening(switches, tyre), *filter(None, [one_line])]
+    usual = {"Vx": MATLAB.literal(float(tyre["LONGVL"])), "pressure": MATLAB.literal(float(tyre["INFLPRES"]))}
+    use = (2 - limits) * 100 + (1 + star) * 10 + 1 + made.switches.turn_slip
+    about = [*made.opening, *filter(None, [one_line])]
+    function = [*_help(name, made, about), *_entry(name, made, usual), *_evaluation(made.program(outputs))]
+    return MatlabCode(_text(function), _mfeval(name, about[2:], use, usual["pressure"]))
+
+
+def _help(name: str, made: ExportedTyre, about: Sequence[str]) -> list[str]:
+    """The head of the function, and its help text."""
     texts = {
         "": {called(key): INPUT_TEXTS[key] for key in ORDER},
         "r.": {key: OUTPUT_TEXTS[key] for key in Forces._fields},
         "s.": STATE_TEXTS,
-        "tuning.": {one.name: one.description for one in tunables(tyre)},
+        "tuning.": {one.name: one.description for one in made.turned},
     }
-    function = [
-        f"function [r, s, tuning] = {name}({given}, tuning)",
+    return [
+        f"function [r, s, tuning] = {name}({GIVEN}, tuning)",
         f"%{name}  Forces and moments of a tyre.",
-        f"%   [r, s, tuning] = {name}({given}, tuning)",
+        f"%   [r, s, tuning] = {name}({GIVEN}, tuning)",
         *(f"%   {line}" for line in about),
         "%",
         "%   Inputs are scalars or arrays whose sizes expand to one another. Those left out at the end are 0; Vx, p and",
         f"%   tuning are then as in the file. Another factor: [~, ~, t] = {name}(1000); t.LMUY = 0.8; then give t last.",
         *(f"%   {start + key:<18}{text}" for start, rows in texts.items() for key, text in rows.items()),
         *PRAGMA,
+    ]
+
+
+def _entry(name: str, made: ExportedTyre, usual: Mapping[str, str]) -> list[str]:
+    """The body of the function: what is left out is completed, and sizes are made equal."""
+    factors = {one.name: MATLAB.literal(one.start) for one in made.turned}
+    return [
         f"file = {_struct(factors)};",
         *(
-            f"if nargin < {i + 1}, {called(key)} = {usual.get(key, '0')}; end"
-            for i, key in enumerate(ORDER)
-            if i
+            f"if nargin < {i}, {called(key)} = {usual.get(key, '0')}; end"
+            for i, key in enumerate(ORDER[1:], start=2)
         ),
-        f"if nargin < {len(inputs) + 1}, tuning = file; end",
+        f"if nargin < {len(ORDER) + 1}, tuning = file; end",
         "both = [file, tuning]; %#ok<NASGU> a field that is missing, or that the file does not have, ends here",
         f"if numel([{', '.join(f'tuning.{key}' for key in factors)}]) ~= {len(factors)}",
         f"    error('{name}:tuning', 'a factor in tuning is not a scalar');",
         "end",
-        f"z = zeros(size({' + '.join(inputs)}));",
+        f"z = zeros(size({GIVEN.replace(', ', ' + ')}));",
         f"[r, s] = evaluate({', '.join(f'double({called(key)}) + z' for key in INPUTS)}, tuning);",
         "end",
         "",
+    ]
+
+
+def _evaluation(program: Program) -> list[str]:
+    """The functions behind the entry."""
+    return [
         f"function [r, s] = evaluate({', '.join(map(called, INPUTS))}, tuning)",
-        *_body(trace_tuned(tyre, switches, outputs)),
+        *_body(program),
         "end",
         "",
         "function r = choose(c, a, b)",
@@ -171,7 +177,6 @@ def export_matlab(
         "if numel(a) == 1, r(c) = a; else, r(c) = a(c); end",
         "end",
     ]
-    return MatlabCode(_text(function), _mfeval(name, about[2:], use, usual["pressure"]))
 
 
 def taken(name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
@@ -49,17 +49,18 @@ class Program:
         return tuple(node.name for node in self.per_tyre if node.operation == "symbol")
 
 
-def trace(
-    switches: Switches,
-    outputs: tuple[str, ...],
-    fixed: Mapping[str, float] | None = None,
-    changed: Callable[[dict[str, Any], Graph], None] | None = None,
-) -> Program:
-    """Run the model on symbols; ``outputs`` are fields of Forces and State, or RL.
+Parameters = Callable[[Graph], dict[str, Any]]
+"""Gives the parameters of a run by name: symbols of a graph, or numbers."""
 
-    ``fixed`` are parameters that the program holds as numbers; ``changed`` changes the parameters by name before the run.
-    """
-    found = run_on_symbols(switches, fixed or {}, {}, changed, radius=LOADED in outputs)
+
+def symbols_of(graph: Graph) -> dict[str, Any]:
+    """Every parameter as a symbol."""
+    return {name: graph.symbol(name, PARAMETER) for name in NUMBERS}
+
+
+def trace(switches: Switches, outputs: tuple[str, ...], parameters: Parameters = symbols_of) -> Program:
+    """Run the model on symbols; ``outputs`` are fields of Forces and State, or RL."""
+    found = run_on_symbols(switches, parameters, {}, radius=LOADED in outputs)
     for name in outputs:
         if name not in found:
             raise TirError(f"{name} is no force or state: use {', '.join(found)}", name=name)
@@ -67,28 +68,20 @@ def trace(
 
 
 def run_on_symbols(
-    switches: Switches,
-    fixed: Mapping[str, float],
-    given: Mapping[str, float],
-    changed: Callable[[dict[str, Any], Graph], None] | None = None,
-    *,
-    radius: bool = False,
+    switches: Switches, parameters: Parameters, given: Mapping[str, float], *, radius: bool = False
 ) -> dict[str, Any]:
     """Every force and state as a node of one graph, or as a number.
 
-    ``fixed`` and ``given`` are the parameters and inputs that are numbers already; ``changed`` changes the parameters; ``radius``
-    asks for RL, the loaded radius, too: with it there are twice as many nodes.
+    ``given`` are the inputs that are numbers already; ``radius`` asks for RL, the loaded radius, too: with it there are twice as
+    many nodes.
     """
     graph = Graph()
-    p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
-    if changed is not None:
-        changed(p, graph)
+    p = SimpleNamespace(**parameters(graph))
     inputs: list[Any] = [given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS]
     at = OperatingCondition(*inputs)
-    named = SimpleNamespace(**p)
-    forces, state = either_way(named, at.Vx < 0.0, at, switches)
+    forces, state = either_way(p, at.Vx < 0.0, at, switches)
     found = {**state._asdict(), **forces._asdict()}
-    return found | {LOADED: loaded_radius(named, at, forces, state)} if radius else found
+    return found | {LOADED: loaded_radius(p, at, forces, state)} if radius else found
 
 
 def refuse_zero_divisors(p: Any, switches: Switches, outputs: Sequence[str]) -> None:
@@ -137,3 +130,23 @@ def program_of(outputs: Mapping[str, Any]) -> Program:
         constants=tuple(constants[number] for number in sorted(constants)),
         outputs=outputs,
     )
+
+
+def computed(
+    nodes: Iterable[Node],
+    results: Iterable[Any],
+    operations: Mapping[str, Callable[..., Any]],
+    symbols: Mapping[str, Any],
+    known: dict[int, Any],
+) -> list[Any]:
+    """The results in other numbers, by ``operations`` on ``symbols``; ``known`` holds values by the number of a node."""
+
+    def value(x: Any) -> Any:
+        return known[x.number] if isinstance(x, Node) else x
+
+    for node in nodes:
+        if node.operation == "symbol":
+            known[node.number] = symbols[node.name]
+        else:
+            known[node.number] = operations[node.operation](*map(value, node.arguments))
+    return [*map(value, results)]

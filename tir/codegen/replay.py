@@ -5,7 +5,6 @@ The derivatives are more operations of the same graph; their rules are those of 
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache, lru_cache
 from threading import RLock
@@ -13,27 +12,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tir.codegen.graph import INPUT, UFUNCS, Node
-from tir.codegen.program import INPUTS, NUMBERS, Switches, needed, run_on_symbols
+from tir.codegen.graph import INPUT, OPERATORS, UFUNCS, Node
+from tir.codegen.program import INPUTS, NUMBERS, Switches, needed, run_on_symbols, symbols_of
 from tir.derivatives import PARTIALS, of_choice
 
 SMOOTH = {name: PARTIALS[ufunc] for name, ufunc in UFUNCS.items() if ufunc in PARTIALS}
 
 
-def derivatives(outputs: Mapping[str, Any], wrt: Collection[str]) -> dict[tuple[str, str], Any]:
-    """The derivative of each output by each named symbol: a node or a number; missing pairs are zero.
+def derivatives(result: Any, wrt: Collection[str]) -> dict[str, Any]:
+    """The derivative of an output by each named symbol: a node or a number, added to its graph; missing ones are zero.
 
     Reverse accumulation over the graph: every output belongs to one operating condition, so nothing is summed over
     conditions, and the column of a coefficient costs only its own operations.
     """
-    out: dict[tuple[str, str], Any] = {}
-    for name, result in outputs.items():
-        if isinstance(result, Node):
-            out.update({(name, symbol): d for symbol, d in _by_symbol(result, wrt).items()})
-    return out
-
-
-def _by_symbol(result: Node, wrt: Collection[str]) -> dict[str, Any]:
+    if not isinstance(result, Node):
+        return {}
     nodes = result.graph.nodes[: result.number + 1]
     moves = _moved(nodes, wrt)
     passed: dict[int, Any] = {result.number: 1.0}
@@ -71,17 +64,7 @@ def _partials(node: Node) -> tuple[Any, ...]:
     return SMOOTH[node.operation](node, *node.arguments)
 
 
-IN_FLOATS = {
-    **UFUNCS,
-    "add": operator.add,
-    "subtract": operator.sub,
-    "multiply": operator.mul,
-    "divide": operator.truediv,
-    "negative": operator.neg,
-    "less": operator.lt,
-    "greater": operator.gt,
-    "where": lambda chosen, a, b: a if chosen else b,
-}
+IN_FLOATS = {**UFUNCS, **OPERATORS, "where": lambda chosen, a, b: a if chosen else b}
 """Functions for what depends on the tyre alone, usually scalars: an array function takes ten times as long."""
 
 
@@ -168,9 +151,9 @@ def replay(
     """
     with _ONE_AT_A_TIME:
         found, known = _on_symbols(switches, still)
-        if wrt:
+        if wrt:  # by everything at once; a replay computes only what it needs
             for name in set(outputs) - known.keys():
-                known[name] = _derivatives(found[name], still)
+                known[name] = derivatives(found[name], {*NUMBERS, *INPUTS} - set(still))
         slopes = [known[name] if wrt else {} for name in outputs]
         return replayed(
             [*(found[name] for name in outputs), *(slope.get(x, 0.0) for slope in slopes for x in wrt)]
@@ -186,16 +169,7 @@ def _on_symbols(
     switches: Switches, still: tuple[str, ...]
 ) -> tuple[dict[str, Any], dict[str, Mapping[str, Any]]]:
     """Every force and state in one graph, and a place for the derivatives of each, which are of the same graph."""
-    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0)), {}
-
-
-def _derivatives(output: Any, still: tuple[str, ...]) -> Mapping[str, Any]:
-    """The derivatives of an output by every parameter and input, added to its graph.
-
-    A replay computes only those that it needs.
-    """
-    every = derivatives({"": output}, {*NUMBERS, *INPUTS} - set(still))
-    return {name: slope for (_, name), slope in every.items()}
+    return run_on_symbols(switches, symbols_of, dict.fromkeys(still, 0.0)), {}
 
 
 def replayed(results: Sequence[Any]) -> Replay:

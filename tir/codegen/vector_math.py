@@ -10,8 +10,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
-from tir.codegen.instructions import VectorValue, bits, number, select, sqrt
+import numpy as np
+
+from tir.codegen.instructions import VectorValue, bits, number, select
 
 ROUND = 6755399441055744.0
 """1.5 2^52: adding and subtracting it rounds to an integer, which is in the lowest bits in between."""
@@ -66,14 +69,14 @@ def cos(x: VectorValue) -> VectorValue:
     return _with_sign_of(turns, _sin_in_half_turn(_reduced(x, (turns - ROUND) - 0.5)))
 
 
-def tan(x: VectorValue) -> VectorValue:
+def tan(x: VectorValue) -> Any:
     half_turns = (x * PER_PI + ROUND) - ROUND
     r = _reduced(x, half_turns)
     from_pole = _reduced(x, half_turns + select(r < 0.0, -0.5, 0.5))
     return _sin_in_half_turn(r) / _sin_in_half_turn(abs(from_pole))
 
 
-def _reduced(x: VectorValue, half_turns: VectorValue) -> VectorValue:
+def _reduced(x: VectorValue, half_turns: VectorValue) -> Any:
     return (x - half_turns * PI_1) - half_turns * PI_2
 
 
@@ -82,7 +85,7 @@ def _with_sign_of(turns: VectorValue, value: VectorValue) -> VectorValue:
     return number(bits(value) ^ (bits(turns) << 63))
 
 
-def _sin_in_half_turn(r: VectorValue) -> VectorValue:
+def _sin_in_half_turn(r: VectorValue) -> Any:
     """sin(r) for abs(r) <= pi/2."""
     s = r * r
     return r + (r * s) * polynomial(s, SIN)
@@ -100,12 +103,12 @@ def arctan(x: VectorValue) -> VectorValue:
     return number(bits(value) | (bits(x) & SIGN_BIT))
 
 
-def arccos(x: VectorValue) -> VectorValue:
+def arccos(x: VectorValue) -> Any:
     """For -1 < x <= 1."""
-    return 2.0 * arctan(sqrt((1.0 - x) / (1.0 + x)))
+    return 2.0 * arctan(np.sqrt((1.0 - x) / (1.0 + x)))
 
 
-def exp(x: VectorValue) -> VectorValue:
+def exp(x: VectorValue) -> Any:
     x = select(x > 709.0, 709.0, select(x < -708.0, -708.0, x))
     turns = x * PER_LN2 + ROUND
     n = turns - ROUND
@@ -113,7 +116,7 @@ def exp(x: VectorValue) -> VectorValue:
     return (1.0 + (r + (r * r) * polynomial(r, EXP))) * number((bits(turns) << 52) + EXPONENT_OF_ONE)
 
 
-def log(x: VectorValue) -> VectorValue:
+def log(x: VectorValue) -> Any:
     """Of abs(x)."""
     whole = bits(abs(x))
     exponent = number((whole >> 52) + INTEGER_IN_BITS) - (4503599627370496.0 + 1023.0)
@@ -124,16 +127,14 @@ def log(x: VectorValue) -> VectorValue:
     s = f * f
     tail = (f * s) * polynomial(s, LOG)
     value = exponent * LN2_1 + (2.0 * f + (tail + exponent * LN2_2))
-    found: VectorValue = select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
-    return found
+    return select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
 
 
-def power(x: VectorValue, y: VectorValue | float) -> VectorValue:
+def power(x: VectorValue, y: VectorValue | float) -> Any:
     """As numpy's: 1 for y = 0, NaN for a negative x unless y is an integer."""
     exponent = y * log(x)
     size = select(exponent < -708.0, 0.0, select(exponent > 709.78, math.inf, exp(exponent)))
     half = 0.5 * y
     integer, even = (y + ROUND) - ROUND == y, (half + ROUND) - ROUND == half
     negative = select(integer, select(even, size, -size), math.nan)
-    found: VectorValue = select(y == 0.0, 1.0, select(x < 0.0, negative, size))
-    return found
+    return select(y == 0.0, 1.0, select(x < 0.0, negative, size))

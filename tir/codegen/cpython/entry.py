@@ -8,7 +8,6 @@ follow CPython's C interface METH_FASTCALL, without a converting layer between t
 from __future__ import annotations
 
 import functools
-import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -17,7 +16,7 @@ from llvmlite import ir
 from tir.codegen import vector_math
 from tir.codegen.constants import DIVISION_TAKES
 from tir.codegen.cpython import SCALARS
-from tir.codegen.graph import Node
+from tir.codegen.graph import OPERATORS, UFUNCS
 from tir.codegen.instructions import (
     DOUBLE,
     INTEGER,
@@ -26,9 +25,8 @@ from tir.codegen.instructions import (
     in_every_lane,
     repeated,
     select,
-    sqrt,
 )
-from tir.codegen.program import INPUTS, Program
+from tir.codegen.program import INPUTS, Program, computed
 from tir.codegen.source import FUNCTIONS
 
 POINTER = ir.IntType(8).as_pointer()
@@ -56,20 +54,9 @@ API = {
 }  # fmt: skip
 """Functions of Python's C interface that the machine code calls."""
 OPERATIONS: dict[str, Callable[..., Any]] = {
-    "add": operator.add,
-    "subtract": operator.sub,
-    "multiply": operator.mul,
-    "divide": operator.truediv,
-    "negative": operator.neg,
-    "absolute": abs,
-    "less": operator.lt,
-    "less_equal": operator.le,
-    "greater": operator.gt,
-    "greater_equal": operator.ge,
-    "both": operator.and_,
+    **OPERATORS,
     "where": select,
-    "sqrt": sqrt,
-    **{name: getattr(vector_math, name) for name in FUNCTIONS if name != "sqrt"},
+    **{name: getattr(vector_math, name, None) or UFUNCS[name] for name in FUNCTIONS},
 }
 
 
@@ -261,19 +248,11 @@ def _computed(
     written = builder.block.instructions
     before = len(written)
     known: dict[int, Any] = {}
-
-    def value(x: Any) -> Any:
-        return known[x.number] if isinstance(x, Node) else x
-
     for i, node in enumerate(program.constants):
         x = builder.load(builder.gep(constants, [ir.Constant(INTEGER, i)]))
         known[node.number] = VectorValue(builder, in_every_lane(builder, type_, x))
-    for node in program.per_point:
-        if node.operation == "symbol":
-            known[node.number] = VectorValue(builder, inputs[node.name])
-        else:
-            known[node.number] = OPERATIONS[node.operation](*map(value, node.arguments))
-    results = map(value, program.outputs.values())
+    symbols = {name: VectorValue(builder, x) for name, x in inputs.items()}
+    results = computed(program.per_point, program.outputs.values(), OPERATIONS, symbols, known)
     written[before:] = _longest_way_first(written[before:])
     return [x.value if isinstance(x, VectorValue) else repeated(type_, x) for x in results]
 
