@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -12,12 +13,11 @@ from scipy.optimize import least_squares
 
 import tir
 from mffit.conversion import mf52, wording
-from mffit.conversion.convert import CHANNELS_COMPARED, MISFIT, ORIGIN, camber_range, misfits
+from mffit.conversion.convert import MISFIT, ORIGIN, camber_range
 from mffit.conversion.grid import Conditions, Reach, conditions, loads, reach_of
 from mffit.conversion.old_files import OF_62, OWN, old_completed, refuse_load_of_zero, refuse_no_numbers
-from mffit.conversion.refit import UNBOUNDED
-from mffit.conversion.result import ROUNDING, OldConversion
-from mffit.least_squares import FreeNumber, of_model, solve
+from mffit.conversion.refit import UNBOUNDED, Fit
+from mffit.conversion.result import ROUNDING, Conversion, misfits
 from tir import Tyre
 from tir.document import folded
 from tir.outputs import outputs_of
@@ -65,7 +65,7 @@ OF_CHANNEL = {
 side force comes before the moments, into which it enters."""
 
 
-def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProxyType({})) -> OldConversion:
+def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProxyType({})) -> Conversion:
     """The MF 5.2 or PAC2002 file that comes nearest to the forces of an MF 6.2 file, at its inflation pressure.
 
     Coefficients that mean the same stay. Those of a channel are fitted to its forces where the old formula gives others: those of
@@ -86,30 +86,32 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
     refuse_load_of_zero(tyre.values, path)
     reach = reach_of(tyre.values, tyre.present)
     at = conditions(reach)
-    goal = dict(zip(CHANNELS_COMPARED, _forces(tyre, at), strict=True))
+    channels = mf52.OldForces._fields
+    read = outputs_of(channels, tyre.p, at._asdict(), turn_slip=tyre.turn_slip)
+    goal = {name: np.array(np.broadcast_to(x, at.Fz.shape)) for name, x in zip(channels, read, strict=True)}
     refuse_no_numbers(goal, path)
     keys = _keys(kind)
     values = _start(tyre, keys) | _cornering_stiffness(tyre, reach) | camber_range(tyre, reach)
     values |= _relaxation(tyre, values, reach)
-    refuse_no_numbers(mf52.forces(mf52.in_terms_of_62(values), *at)._asdict(), path)
+    refuse_no_numbers(_forces(at, values)._asdict(), path)
     fitted: list[str] = []
     for channel in OF_CHANNEL:
-        wanted, u = goal[channel], at.u(goal[channel])
-        stages = _stages(channel, keys, values, at, wanted)
-        for names, at_these in stages:
-            here = Conditions(*(x[at_these] for x in at))
-            values |= _fitted(channel, names, values, here, wanted[at_these], u[at_these])
-        fitted += stages[-1][0] if stages else []
-    new = mf52.forces(mf52.in_terms_of_62(values), *at)._asdict()
-    misfit = tuple(misfits(new, at, goal))
-    return OldConversion(
-        source=tyre,
+        stages = _stages(channel, keys, values, at, goal[channel])
+        for fit in stages:
+            values |= fit.solved(values, partial(_bounds, values))
+        fitted += stages[-1].names if stages else []
+    misfit = tuple(misfits(_forces(at, values)._asdict(), at, goal))
+    return Conversion(
         path=Path(path),
+        problems=tyre.problems,
+        old=None,
+        tyre=tyre,
         kind=KINDS[kind],
         text=_text(tyre, Path(path).name, kind, values, fitted, wording.worst(misfit)),
         reach=reach,
         misfit=misfit,
         fitted=tuple(fitted),
+        held={},
     )
 
 
@@ -119,9 +121,8 @@ def _keys(kind: str) -> Mapping[str, list[str]]:
     return {section: f"{keys} {more.get(section, '')}".split() for section, keys in KEYS.items()}
 
 
-def _forces(tyre: Tyre, at: Conditions) -> list[np.ndarray]:
-    found = outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict(), turn_slip=tyre.turn_slip)
-    return [np.array(np.broadcast_to(force, at.Fz.shape)) for force in found]
+def _forces(at: Conditions, values: Mapping[str, Any]) -> mf52.OldForces:  # plain or traced
+    return mf52.forces(mf52.in_terms_of_62(values), *at)
 
 
 def _start(tyre: Tyre, keys: Mapping[str, Sequence[str]]) -> dict[str, Any]:
@@ -142,24 +143,30 @@ def _cornering_stiffness(tyre: Tyre, reach: Reach) -> dict[str, float]:
     Fz, Fz0 = loads(reach), float(tyre["FNOMIN"]) * float(tyre["LFZO"])
     wanted = np.asarray(tyre.state(Fz).K_ya) / (Fz0 * (float(tyre["LKY"]) or 1.0))
 
-    def off(x: np.ndarray) -> np.ndarray:
-        return np.asarray(x[0] * np.sin(2.0 * np.arctan(Fz / (x[1] * Fz0))) - wanted)
+    def stiffness(x: np.ndarray) -> np.ndarray:
+        return np.asarray(x[0] * np.sin(2.0 * np.arctan(Fz / (x[1] * Fz0))))
 
-    most = wanted[np.argmax(np.abs(wanted))]
-    return dict(zip(("PKY1", "PKY2"), least_squares(off, [most, 2.0]).x.tolist(), strict=True))
+    return _nearest({"PKY1": wanted[np.argmax(np.abs(wanted))], "PKY2": 2.0}, stiffness, wanted)
 
 
 def _relaxation(tyre: Tyre, values: Mapping[str, Any], reach: Reach) -> dict[str, float]:
     """Coefficients of the old relaxation lengths nearest to those of the upright wheel over load."""
-    Fz, names = loads(reach), ("PTX1", "PTX2", "PTX3", "PTY1", "PTY2")
+    Fz, starts = loads(reach), {"PTX1": 1.0, "PTX2": 0.0, "PTX3": 0.0, "PTY1": 1.0, "PTY2": 2.0}
     state = tyre.state(Fz)
-    wanted = np.concatenate([np.abs(state.sigma_x), np.abs(state.sigma_y)])
 
-    def off(x: np.ndarray) -> np.ndarray:
-        p = mf52.in_terms_of_62({**values, **dict(zip(names, x.tolist(), strict=True))})
-        return np.asarray(np.concatenate(mf52.relaxation_lengths(p, Fz)) - wanted)
+    def lengths(x: np.ndarray) -> np.ndarray:
+        p = mf52.in_terms_of_62({**values, **dict(zip(starts, x.tolist(), strict=True))})
+        return np.concatenate(mf52.relaxation_lengths(p, Fz))
 
-    return dict(zip(names, least_squares(off, [1.0, 0.0, 0.0, 1.0, 2.0]).x.tolist(), strict=True))
+    return _nearest(starts, lengths, np.concatenate([np.abs(state.sigma_x), np.abs(state.sigma_y)]))
+
+
+def _nearest(
+    starts: Mapping[str, float], curve: Callable[[np.ndarray], np.ndarray], wanted: np.ndarray
+) -> dict[str, float]:
+    """The coefficients with which a curve comes nearest to the wanted one."""
+    found = least_squares(lambda x: curve(x) - wanted, [*starts.values()])
+    return dict(zip(starts, found.x.tolist(), strict=True))
 
 
 def _stages(
@@ -168,46 +175,36 @@ def _stages(
     values: Mapping[str, Any],
     at: Conditions,
     goal: np.ndarray,
-) -> list[tuple[list[str], np.ndarray]]:
-    """What is fitted after one another, and to which conditions (n,): nothing if the old formula gives the same, the coefficients
-    of camber if it does so upright; else those of the upright wheel, those of camber, and all together."""
+) -> list[Fit]:
+    """What is fitted after one another: nothing if the old formula gives the same, the coefficients of camber if it does so
+    upright; else those of the upright wheel, those of camber, and all together."""
     section, others = OF_CHANNEL[channel]
     names = [name for name in keys[section] if not name.startswith(others)]
     by_camber = [name for name in names if name in mf52.SCALED_BY_CAMBER]
-    everywhere, upright = np.ones_like(at.gamma, bool), at.gamma == 0.0
-    off = np.abs(_force(channel, values, at) - goal) > ROUNDING * np.max(np.abs(goal))
+    upright, u = at.gamma == 0.0, at.u(goal)
+
+    def force(at: Conditions, values: Mapping[str, Any]) -> Any:
+        return getattr(_forces(at, values), channel)
+
+    def everywhere(names: Sequence[str]) -> Fit:
+        return Fit(names, partial(force, at), goal, u)
+
+    off = np.abs(force(at, values) - goal) > ROUNDING * np.max(np.abs(goal))
     if not np.any(off):
         return []
     if by_camber and not np.any(off & upright):
-        return [(by_camber, everywhere)]
-    alone = [([name for name in names if name not in by_camber], upright), (by_camber, everywhere)]
-    return [*(alone if by_camber else []), (names, everywhere)]
+        return [everywhere(by_camber)]
+    alone = [name for name in names if name not in by_camber]
+    here = Conditions(*(x[upright] for x in at))
+    parts = [Fit(alone, partial(force, here), goal[upright], u[upright]), everywhere(by_camber)]
+    return [*(parts if by_camber else []), everywhere(names)]
 
 
-def _force(channel: str, values: Mapping[str, Any], at: Conditions) -> Any:  # plain or traced
-    return getattr(mf52.forces(mf52.in_terms_of_62(values), *at), channel)
-
-
-def _fitted(
-    channel: str,
-    names: Sequence[str],
-    values: Mapping[str, Any],
-    at: Conditions,
-    goal: np.ndarray,
-    u: np.ndarray,
-) -> Mapping[str, float]:
-    def force(numbers: Mapping[str, Any]) -> Any:
-        return _force(channel, {**values, **numbers}, at)
-
-    numbers = [FreeNumber(name, float(values[name]), *_bounds(name, float(values[name]))) for name in names]
-    return solve(of_model(force, names, goal, u), numbers).values
-
-
-def _bounds(name: str, start: float) -> tuple[float, float]:
+def _bounds(values: Mapping[str, Any], name: str) -> tuple[float, float]:
     """Those of a fit: they keep terms of camber that hardly differ from running away."""
     if name not in BY_NAME:
         return UNBOUNDED
-    lower, upper = BY_NAME[name].bounds
+    start, (lower, upper) = float(values[name]), BY_NAME[name].bounds
     return min(lower, start), max(upper, start)
 
 

@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from mffit.conversion import constants, mf52, wording
-from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
+from mffit.conversion import mf52, wording
+from mffit.conversion.grid import Reach, conditions, loads, reach_of
 from mffit.conversion.old_files import OldFile, read_old, refuse_no_numbers
 from mffit.conversion.refit import held, refit
-from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
+from mffit.conversion.result import Conversion, misfits
 from mffit.errors import InputError
 from mffit.fit.same_curve import in_one_form
-from tir import Tyre
+from tir import Problem, Tyre
+from tir.consumers import rule_problems
+from tir.document import number_of, read_document, unquoted
 from tir.equations import lateral, normalise, stiffness
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
+from tir.targets import TARGETS
 from tir.writing import replace_file
 
-CHANNELS_COMPARED = ("Fx", "Fy", "Mx", "Mz")
 ORIGIN = "converted from"
 MISFIT = "misfit of the conversion"
 """Keys of the provenance of a converted file."""
 MARK = f"! provenance: {ORIGIN}:".encode()
 """A line of every converted file."""
 STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "PCFY1", "PCFY2")
+READERS = ("chrono", "pac2002")
+"""Programs of :data:`tir.targets.TARGETS` that read old files and no others."""
+STATED = ("PROPERTY_FILE_FORMAT", "USE_MODE")
+"""Keys of [MODEL] that such a program goes by, and that a conversion replaces."""
 
 
 def convert(
@@ -63,51 +70,49 @@ def convert(
     at = conditions(reach)
     goal = mf52.forces(p, *at)._asdict()
     refuse_no_numbers(goal, path)
-    start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
+    start = {name: getattr(p, name) for name in BY_NAME} | _upright(p, reach)
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
     start |= in_one_form(start)
     found = refit(start, at, goal, reach)
     values = {**start, **found, **camber_range(old, reach)}
     tyre = Tyre.from_values(values)
-    new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
+    channels = mf52.OldForces._fields
+    new = dict(zip(channels, outputs_of(channels, tyre.p, at._asdict()), strict=True))
     misfit = tuple(misfits(new, at, goal))
     how = f"by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
     provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
     return Conversion(
-        tyre=tyre, old=old, reach=reach, misfit=misfit, fitted=tuple(found), held=held(p, reach)
+        path=old.path,
+        problems=old.problems,
+        old=old,
+        tyre=tyre,
+        kind=old.kind,
+        text=tyre.text(),
+        reach=reach,
+        misfit=misfit,
+        fitted=tuple(found),
+        held=held(p, reach),
     )
 
 
-def _camber_stiffness(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
-    """PKY6 and PKY7 nearest to the old camber stiffness of the upright wheel over load."""
-    Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
+def _upright(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
+    """What gives the old camber stiffness and relaxation lengths of the upright wheel over load: PKY6 and PKY7, and carcass
+    stiffnesses; the table's defaults of these where the file has no relaxation lengths."""
+    Fz = loads(reach)
     q = normalise.inputs(p, normalise.OperatingCondition(Fz))
-    force = p.PHY3 * stiffness.cornering_stiffness(p, q, 0.0)
-    force = force + lateral.camber_force(p, q, 1.0)
-    scale = p.LKYC or 1.0
-    terms = np.column_stack([Fz, Fz * q.dfz]) * scale
-    PKY6, PKY7 = np.linalg.lstsq(terms, force, rcond=None)[0]
-    return {"PKY6": float(PKY6), "PKY7": float(PKY7)}
-
-
-def _carcass(p: SimpleNamespace, reach: Reach) -> dict[str, float]:
-    """Carcass stiffnesses over load that give the old relaxation lengths; the table's defaults where the file has none."""
-    Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
-    q = normalise.inputs(p, normalise.OperatingCondition(Fz))
-    slip = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
-    out: dict[str, float] = {}
-    sides = (("LONGITUDINAL_STIFFNESS", "PCFX"), ("LATERAL_STIFFNESS", "PCFY"))
-    for K, sigma, (key, term) in zip(slip, mf52.relaxation_lengths(p, Fz), sides, strict=True):
+    K_ya = stiffness.cornering_stiffness(p, q, 0.0)
+    terms = np.column_stack([Fz, Fz * q.dfz]) * (p.LKYC or 1.0)
+    by_camber = np.linalg.lstsq(terms, p.PHY3 * K_ya + lateral.camber_force(p, q, 1.0), rcond=None)[0]
+    out = dict(zip(("PKY6", "PKY7"), by_camber.tolist(), strict=True))
+    sides = (("LONGITUDINAL_STIFFNESS", "PCFX1", "PCFX2"), ("LATERAL_STIFFNESS", "PCFY1", "PCFY2"))
+    slip = stiffness.longitudinal_slip_stiffness(p, q), K_ya
+    for K, sigma, names in zip(slip, mf52.relaxation_lengths(p, Fz), sides, strict=True):
         if np.all(sigma > 0.0):
             terms = np.column_stack([np.ones_like(Fz), q.dfz, q.dfz**2])
-            at_nominal, linear, quadratic = np.linalg.lstsq(terms, np.abs(K) / sigma, rcond=None)[0]
+            at_nominal, *by_load = np.linalg.lstsq(terms, np.abs(K) / sigma, rcond=None)[0].tolist()
             if at_nominal > 0.0:
-                out |= {
-                    key: float(at_nominal),
-                    f"{term}1": float(linear / at_nominal),
-                    f"{term}2": float(quadratic / at_nominal),
-                }
+                out |= dict(zip(names, (at_nominal, *(x / at_nominal for x in by_load)), strict=True))
     return out
 
 
@@ -134,33 +139,7 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
     return out
 
 
-def misfits(new: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:
-    """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
-    slipping = at.kappa != 0.0
-    out = []
-    for channel in CHANNELS_COMPARED:
-        most = at.largest_alike(goal[channel])
-        off = np.abs(np.broadcast_to(new[channel], at.Fz.shape) - goal[channel])
-        for region in ((True, False), (True, True), (False, False), (False, True)):
-            chosen = (at.small_camber == region[0]) & (slipping == region[1]) & (most > 0.0)
-            if np.any(chosen):
-                here, alike = off[chosen], most[chosen]
-                worst = int(np.argmax(here / alike))
-                out.append(
-                    RegionMisfit(
-                        channel, *region,
-                        rms=float(np.sqrt(np.mean(here**2))),
-                        rms_share=float(np.sqrt(np.mean((here / alike) ** 2))),
-                        load=float(at.Fz[chosen][worst]),
-                        largest=float(here[worst]),
-                        greatest_force=float(alike[worst]),
-                        within=float(np.mean(here <= float(constants.GOOD_SHARE) * alike)),
-                    )
-                )  # fmt: skip
-    return out
-
-
-def write(found: Conversion | OldConversion, out: str | Path) -> None:
+def write(found: Conversion, out: str | Path) -> None:
     """Write the converted file; a file that is not a converted one is left alone.
 
     Raises InputError if the path is the old file, another file or a folder, or if it cannot be written.
@@ -175,3 +154,30 @@ def write(found: Conversion | OldConversion, out: str | Path) -> None:
         replace_file(out, found.text.encode("ascii"))
     except OSError as error:
         raise InputError(f"cannot be written ({error.strerror}); give another name", file=out) from None
+
+
+def check_old(
+    path: str | Path, targets: Sequence[str], given: Mapping[str, float] = MappingProxyType({})
+) -> list[Problem]:
+    """Problems of an MF 5.2 or PAC2002 file in programs that read it; forces are those of the upright wheel, which stay.
+
+    Parameters
+    ----------
+    path : the old file
+    targets : names of :data:`READERS`
+    given : values [SI] of keys that it lacks
+
+    Raises
+    ------
+    TirError
+        If the file is of another formula, or cannot be read.
+    """
+    found = convert(path, given)
+    lines = {line.key: unquoted(line.value) for line in reversed(read_document(path).entries)}
+    form, mode = (lines.get(key) for key in STATED)
+    stated: dict[str, float | str] = {} if form is None else {"PROPERTY_FILE_FORMAT": form}
+    if (number := number_of(mode or "")) is not None:
+        stated["USE_MODE"] = number
+    tyre = found.tyre.replace(**stated)
+    tyre = replace(tyre, present=tyre.present.difference(STATED) | stated.keys())
+    return [*found.problems, *(p for name in targets for p in rule_problems(tyre, TARGETS[name]))]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -93,6 +94,29 @@ UNBOUNDED = (-np.inf, np.inf)
 """Of a converted coefficient: exact forces determine it, and what it multiplies may be tiny in the old file."""
 
 
+class Fit(NamedTuple):
+    """Coefficients to be fitted to a force of the other formula."""
+
+    names: Sequence[str]
+    force: Callable[[Mapping[str, Any]], Any]  #: (n,), from all coefficients by name, plain or traced
+    goal: np.ndarray  #: (n,) of the other formula
+    u: np.ndarray  #: (n,) uncertainty of each
+
+    def solved(
+        self,
+        values: Mapping[str, Any],
+        bounds: Callable[[str], tuple[float, float]] = lambda name: UNBOUNDED,
+        limits: Limits | None = None,
+    ) -> Mapping[str, float]:
+        """The coefficients that come nearest, from those in ``values``, which has all others."""
+        problem = of_model(lambda numbers: self.force({**values, **numbers}), self.names, self.goal, self.u)
+        if limits is not None:
+            problem = limits.added(problem, self.names, values)
+        return solve(
+            problem, [FreeNumber(name, float(values[name]), *bounds(name)) for name in self.names]
+        ).values
+
+
 def refit(
     values: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray], reach: Reach
 ) -> dict[str, float]:
@@ -108,52 +132,39 @@ def refit(
         limited = [factor for factor in curved if factor.channel == channel]
         names = (*by_camber, *(name for factor in limited for name in factor.names))
         if names:
-            fit = _ChannelFit(channel, names, limited, reach)
-            found.update(_of_channel(fit, {**values, **found}, at, goal[channel]))
+            fit = Fit(names, partial(force_62, channel, at), goal[channel], at.u(goal[channel]))
+            limits = Limits(limited, reach) if limited else None
+            found.update(fit.solved({**values, **found}, limits=limits))
     return found
 
 
-class _ChannelFit(NamedTuple):
-    """What is free in a channel, and which curvature factors are held to 1."""
+def force_62(channel: str, at: Conditions, values: Mapping[str, Any]) -> Any:
+    """A force of MF 6.2, without turn slip."""
+    return outputs_of((channel,), SimpleNamespace(**values), at._asdict())[0]
 
-    channel: str
-    names: Sequence[str]
-    limited: Sequence[CurvatureFactor]
+
+class Limits(NamedTuple):
+    """Curvature factors that a fit holds to 1."""
+
+    factors: Sequence[CurvatureFactor]
     reach: Reach
 
+    def added(
+        self, problem: LeastSquaresProblem, names: Sequence[str], values: Mapping[str, Any]
+    ) -> LeastSquaresProblem:
+        """The problem with a residual wherever a curvature factor exceeds 1."""
+        weight, margin = float(constants.WEIGHT_OF_CURVATURE_LIMIT), float(constants.CURVATURE_MARGIN)
 
-def _of_channel(
-    fit: _ChannelFit, values: Mapping[str, Any], at: Conditions, goal: np.ndarray
-) -> Mapping[str, float]:
-    inputs = at._asdict()
+        def limits(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
+            over, slope = excess(SimpleNamespace(**{**values, **numbers}), self.factors, self.reach, by)
+            return weight * (over + margin), weight * slope
 
-    def force(numbers: Mapping[str, Any]) -> Any:
-        return outputs_of((fit.channel,), SimpleNamespace(**{**values, **numbers}), inputs)[0]
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return problem.residual(x)[0], limits(dict(zip(names, x.tolist(), strict=True)))[0]
 
-    problem = of_model(force, fit.names, goal, at.u(goal))
-    if fit.limited:
-        problem = _held_to_one(problem, fit, values)
-    numbers = [FreeNumber(name, float(values[name]), *UNBOUNDED) for name in fit.names]
-    return solve(problem, numbers).values
+        def linear(x: np.ndarray) -> Linear:
+            numbers = traced(dict(zip(names, x.tolist(), strict=True)))
+            over, slope = limits(numbers, list(numbers.values()))
+            return replace(problem.linear(x), limits=over, limits_slope=slope)
 
-
-def _held_to_one(
-    problem: LeastSquaresProblem, fit: _ChannelFit, values: Mapping[str, Any]
-) -> LeastSquaresProblem:
-    """The problem with a residual wherever a curvature factor exceeds 1."""
-    weight, margin = float(constants.WEIGHT_OF_CURVATURE_LIMIT), float(constants.CURVATURE_MARGIN)
-
-    def limits(numbers: Mapping[str, Any], by: Sequence[Any] = ()) -> tuple[np.ndarray, np.ndarray]:
-        p = SimpleNamespace(**{**values, **numbers})
-        over, slope = excess(p, fit.limited, fit.reach, by)
-        return weight * (over + margin), weight * slope
-
-    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return problem.residual(x)[0], limits(dict(zip(fit.names, x.tolist(), strict=True)))[0]
-
-    def linear(x: np.ndarray) -> Linear:
-        numbers = traced(dict(zip(fit.names, x.tolist(), strict=True)))
-        over, slope = limits(numbers, list(numbers.values()))
-        return replace(problem.linear(x), limits=over, limits_slope=slope)
-
-    return LeastSquaresProblem(residual, linear)
+        return LeastSquaresProblem(residual, linear)

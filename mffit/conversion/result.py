@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.conversion import constants
-from mffit.conversion.grid import Reach
+from mffit.conversion.grid import Conditions, Reach
+from mffit.conversion.mf52 import OldForces
 from mffit.conversion.old_files import OldFile
 from tir import Problem, Tyre
 
@@ -39,14 +42,45 @@ class RegionMisfit(NamedTuple):
         return self.largest / self.greatest_force
 
 
-@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
-class _Converted(Brief):
-    """How near a converted file comes to the other one."""
+def misfits(new: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> Iterator[RegionMisfit]:
+    """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
+    slipping = at.kappa != 0.0
+    for channel in OldForces._fields:
+        most = at.largest_alike(goal[channel])
+        off = np.abs(np.broadcast_to(new[channel], at.Fz.shape) - goal[channel])
+        for region in ((True, False), (True, True), (False, False), (False, True)):
+            chosen = (at.small_camber == region[0]) & (slipping == region[1]) & (most > 0.0)
+            if not np.any(chosen):
+                continue
+            here, alike = off[chosen], most[chosen]
+            worst = int(np.argmax(here / alike))
+            yield RegionMisfit(
+                channel, *region,
+                rms=float(np.sqrt(np.mean(here**2))),
+                rms_share=float(np.sqrt(np.mean((here / alike) ** 2))),
+                load=float(at.Fz[chosen][worst]),
+                largest=float(here[worst]),
+                greatest_force=float(alike[worst]),
+                within=float(np.mean(here <= float(constants.GOOD_SHARE) * alike)),
+            )  # fmt: skip
 
+
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
+class Conversion(Brief):
+    """A converted file, of either formula, and how near it comes to the other one."""
+
+    path: Path  #: the file that was converted
+    problems: tuple[Problem, ...]  #: what it has of note
+    old: OldFile | None  #: itself, if it is of the older formula
+    tyre: Tyre  #: the tyre in MF 6.2: what was made, each coefficient marked as converted; else what was read
+    kind: str  #: the older formula in words
+    text: str  #: the converted file
     reach: Reach
     misfit: tuple[RegionMisfit, ...]
     fitted: tuple[str, ...]
     """Names of the coefficients that were fitted; the others mean the same in both formulae."""
+    held: Mapping[str, float]
+    """Curvature factors that the older formula holds to 1 in its file, and what they would be."""
 
     @property
     def poor(self) -> tuple[RegionMisfit, ...]:
@@ -59,57 +93,9 @@ class _Converted(Brief):
         )
 
 
-@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
-class OldConversion(_Converted):
-    """A file of an older formula, and how near it comes to that of MF 6.2."""
-
-    source: Tyre  #: of MF 6.2
-    path: Path  #: its file
-    kind: str  #: of the older formula, in words
-    text: str  #: the converted file
-
-    @property
-    def problems(self) -> tuple[Problem, ...]:
-        """What the file of MF 6.2 has of note."""
-        return self.source.problems
-
-
-keys(
-    OldConversion,
-    "kind trusted reasons ranges=reach fitted misfit",
-    trusted="mffit.conversion.wording.trusted",
-    reasons="mffit.conversion.wording.reasons",
-)
-
-
-@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
-class Conversion(_Converted):
-    """A converted file and how near it comes to the old one."""
-
-    tyre: Tyre  #: MF 6.2, every coefficient marked as converted
-    old: OldFile
-    held: Mapping[str, float]
-    """Curvature factors that the old formula holds to 1 in this file, and what they would be."""
-
-    @property
-    def path(self) -> Path:
-        """The old file."""
-        return self.old.path
-
-    @property
-    def text(self) -> str:
-        """The converted file."""
-        return self.tyre.text()
-
-    @property
-    def problems(self) -> tuple[Problem, ...]:
-        """What the old file has of note."""
-        return self.old.problems
-
-
 keys(
     Conversion,
-    "kind=old.kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems=old.problems",
+    "kind trusted reasons ranges=reach fitted curvature_held_to_1=held misfit problems",
     trusted="mffit.conversion.wording.trusted",
     reasons="mffit.conversion.wording.reasons",
 )

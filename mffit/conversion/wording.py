@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from mffit.conversion import constants
 from mffit.conversion.refit import FACTORS
-from mffit.conversion.result import Conversion, OldConversion, RegionMisfit
+from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.quantities import MODEL
 from tir.errors import listed
 
@@ -18,23 +18,23 @@ REVERSED = (
 """Coefficients of MF 5.2 whose signs together reverse Fy and Mz and nothing else."""
 
 
-def headline(found: Conversion | OldConversion) -> str:
+def headline(found: Conversion) -> str:
     """What was made of what, and over which ranges."""
     reach = found.reach
     over = (
         f"over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to {math.degrees(reach.alpha):.3g} deg, camber to "
         f"{math.degrees(reach.gamma):.3g} deg, longitudinal slip to {reach.kappa:g}"
     )
-    if isinstance(found, OldConversion):
+    if found.old is None:
         kept = f"those of {', '.join(found.fitted)}; " if found.fitted else ""
-        pressure = float(found.source["INFLPRES"]) / 1000.0
+        pressure = float(found.tyre["INFLPRES"]) / 1000.0
         return (
             f"{found.path.name} (MF 6.2) as {found.kind} at {pressure:g} kPa, {over}. {len(found.fitted)} coefficients "
             f"were fitted to its forces, {kept}all others mean the same in "
             "both formulae. The older formula knows neither pressure nor turn slip."
         )
     return (
-        f"{found.path.name} ({found.old.kind}) as MF 6.2, {over}. {len(found.fitted)} coefficients were fitted to "
+        f"{found.path.name} ({found.kind}) as MF 6.2, {over}. {len(found.fitted)} coefficients were fitted to "
         f"the old forces, those of {refitted(found.fitted)}; all others mean "
         f"the same in both formulae.{curvature(found)}"
     )
@@ -46,7 +46,7 @@ def curvature(found: Conversion) -> str:
         return ""
     most = " and ".join(f"{E:.3g} ({key})" for key, E in found.held.items())
     return (
-        f" The equations of {found.old.kind} hold curvature factors to 1, and the old forces are taken so; by the file's "
+        f" The equations of {found.kind} hold curvature factors to 1, and the old forces are taken so; by the file's "
         f"coefficients they would reach {most} in these ranges."
     )
 
@@ -81,14 +81,14 @@ def size(row: RegionMisfit) -> str:
     return f"{row.largest:.3g} of {row.greatest_force:.3g} {unit} ({row.share:.1%}) at {row.load:.0f} N"
 
 
-def trusted(found: Conversion | OldConversion) -> bool:
+def trusted(found: Conversion) -> bool:
     """Whether there is no reason against a conversion."""
     return not reasons(found)
 
 
-def reasons(found: Conversion | OldConversion) -> list[str]:
+def reasons(found: Conversion) -> list[str]:
     """Why the converted file is not to be trusted; empty if its misfit is small."""
-    out = [] if isinstance(found, OldConversion) else against_sideslip(found)
+    out = against_sideslip(found)
     for row in found.poor:
         out.append(
             f"{MODEL[row.channel].symbol} at {region(row)} is off by up to {size(row)}, in rms by {row.rms_share:.1%} of the "
@@ -100,7 +100,7 @@ def reasons(found: Conversion | OldConversion) -> list[str]:
 def against_sideslip(found: Conversion) -> list[str]:
     """A sentence if the side force of the upright wheel grows with sideslip, which no tyre does in ISO-W."""
     nominal = float(found.tyre["FNOMIN"])
-    if float(found.tyre.state(nominal).K_ya) <= 0.0:
+    if found.old is None or float(found.tyre.state(nominal).K_ya) <= 0.0:
         return []
     return [
         f"the side force grows with sideslip at {nominal:.0f} N (PKY1 and PKY2 have one sign), but in ISO-W, the axes of "

@@ -89,8 +89,7 @@ def write_fmu(
 def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: bool) -> dict[str, bytes]:
     """The files of the archive by their path in it; ``file`` is the name of the property file."""
     tyre, name, turn_slip, code = known
-    given, found = variables.inputs(tyre, transient=transient), variables.outputs(transient=transient)
-    turned = variables.parameters(tyre, transient=transient)
+    interface = variables.Interface.of(tyre, transient=transient)
     use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
         "fmi": fmi,
@@ -100,11 +99,9 @@ def _texts(known: CodeOfFile, file: str, fmi: int, *, limits: bool, transient: b
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
         "description": f"Tyre {file}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W; {LATE}",
         "transient": transient,
-        "inputs": given,
-        "outputs": found,
-        "parameters": turned,
-        "units": variables.units_of((*given, *found, *turned)),
-        "arguments": variables.arguments(given),
+        **interface._asdict(),
+        "units": variables.units_of(x for part in interface for x in part),
+        "arguments": variables.arguments(interface.inputs),
         "compiled": [f"{name}.c", f"{name}_fmi{fmi}.c"],
     }
     texts = {

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import tir
 from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
@@ -59,62 +60,46 @@ class Variable:
     start: str = ""  #: as text for C and XML; not for outputs
 
 
-def inputs(tyre: tir.Tyre, *, transient: bool = False) -> tuple[Variable, ...]:
-    """The operating condition; it starts as the nominal one of the file, rolling straight. ``transient``: with slip speeds."""
-    starts = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"]}
-    texts = {**INPUT_TEXTS, **LAG_TEXTS}
-    out = []
-    for reference, field in enumerate(LAG_INPUTS if transient else ORDER, start=1):
-        description, unit = _described(texts[field])
-        start = repr(float(starts.get(field, 0.0)))
-        out.append(
-            Variable(
-                name=called(field),
-                field=field,
-                reference=reference,
-                description=description,
-                unit=unit,
-                start=start,
-            )
-        )
-    return tuple(out)
+class Interface(NamedTuple):
+    """The variables of a tyre by their part, with references in this order."""
+
+    inputs: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+
+    @classmethod
+    def of(cls, tyre: tir.Tyre, *, transient: bool) -> Interface:
+        """Inputs start as the nominal condition of the file, rolling straight, and parameters as in the file.
+
+        ``transient``: slip speeds are inputs; the lagging slips and the deflections of the contact are outputs too.
+        """
+        starts = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"]}
+        texts = {**INPUT_TEXTS, **OUTPUT_TEXTS, **LAG_TEXTS}
+        given = LAG_INPUTS if transient else ORDER
+        inputs = [(called(x), x, INPUT_TEXTS.get(x) or texts[x], starts.get(x, 0.0)) for x in given]
+        found = [(NAMES.get(x, x), field, texts[x], None) for x, field in _outputs(transient).items()]
+        turned = [(one.name, one.name, one.description, one.start) for one in tunables(tyre)]
+        every = [_variable(k, *row) for k, row in enumerate([*inputs, *found, *turned], start=1)]
+        first, last = len(inputs), len(inputs) + len(found)
+        return cls(tuple(every[:first]), tuple(every[first:last]), tuple(every[last:]))
 
 
-def outputs(*, transient: bool = False) -> tuple[Variable, ...]:
-    """Forces and moments on the wheel in the contact frame, and further results for simulations.
-
-    ``transient``: the lagging slips and the deflections of the contact too.
-    """
-    fields = [("forces", name) for name in Forces._fields] + [("state", name) for name in STATES]
-    if transient:
-        fields = [("deflected", name) for _, name in fields] + [
-            ("deflected", name) for name in ("kappa", "alpha")
-        ]
-        fields += [("(*s)", name) for name in LAGGING]
-    texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
-    out = []
-    for reference, (record, field) in enumerate(fields, start=1 + len(LAG_INPUTS if transient else INPUTS)):
-        description, unit = _described(texts[field])
-        out.append(
-            Variable(
-                name=NAMES.get(field, field),
-                field=f"{record}.{field}",
-                reference=reference,
-                description=description,
-                unit=unit,
-            )
-        )
-    return tuple(out)
+def _outputs(transient: bool) -> dict[str, str]:
+    """By output its name in C: forces and moments on the wheel in the contact frame, and what simulations need besides."""
+    if not transient:
+        return {x: f"forces.{x}" for x in Forces._fields} | {x: f"state.{x}" for x in STATES}
+    fields = {x: f"deflected.{x}" for x in (*Forces._fields, *STATES, "kappa", "alpha")}
+    return fields | {x: f"(*s).{x}" for x in LAGGING}
 
 
-def parameters(tyre: tir.Tyre, *, transient: bool = False) -> tuple[Variable, ...]:
-    """What can be turned: scaling factors, and the temperature if the file has terms for it; they start as in the file."""
-    first = 1 + len(LAG_INPUTS if transient else INPUTS) + len(outputs(transient=transient))
-    out = []
-    for reference, one in enumerate(tunables(tyre), start=first):
-        description, unit = _described(one.description)
-        out.append(Variable(one.name, one.name, reference, description, unit, repr(one.start)))
-    return tuple(out)
+def _variable(reference: int, name: str, field: str, text: str, start: float | None) -> Variable:
+    """A variable from a text with its unit in brackets: 'sideslip angle [rad]'."""
+    found = re.fullmatch(r"(.*?)\s*\[(.*?)\](.*)", text)
+    assert found, f"{text!r} has no unit in brackets"
+    unit = "" if found[2] == "-" else found[2]
+    return Variable(
+        name, field, reference, found[1] + found[3], unit, "" if start is None else repr(float(start))
+    )
 
 
 def units_of(variables: Iterable[Variable]) -> tuple[Unit, ...]:
@@ -128,10 +113,3 @@ def arguments(variables: tuple[Variable, ...]) -> str:
     references = {x.field: x.reference for x in variables}
     order = INPUTS if set(INPUTS) <= set(references) else LAG_INPUTS
     return ", ".join(f"v[{references[name]}]" for name in order)
-
-
-def _described(text: str) -> tuple[str, str]:
-    """Words and unit of a text with a unit in brackets: 'sideslip angle [rad]'."""
-    found = re.fullmatch(r"(.*?)\s*\[(.*?)\](.*)", text)
-    assert found, f"{text!r} has no unit in brackets"
-    return found[1] + found[3], "" if found[2] == "-" else found[2]

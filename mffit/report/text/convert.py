@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from mffit.conversion import Conversion, OldConversion, wording
+from mffit.conversion import Conversion, wording
 from mffit.conversion.result import ROUNDING, RegionMisfit
 from mffit.quantities import MODEL
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import number
 
 
-def conversion_summary(found: Conversion | OldConversion) -> str:
+def conversion_summary(found: Conversion) -> str:
     """The text that ``mffit convert`` prints: what was fitted, and the misfit of every channel and region."""
     head = ("channel", "region", "rms", "largest", "at", "of the largest there", "rms of that", "within 2 %")
     rows = [

@@ -21,16 +21,28 @@ import tir
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.export import write_c, write_fmu
-from mffit.export.variables import UNITS, outputs
+from mffit.export.variables import UNITS, Interface
 from tir import transient
 from tir.transient import Contact, step
 
+OUTPUTS = Interface.of(tir.Tyre.from_values({}), transient=False).outputs
 VECTORS = Path(__file__).parents[2] / "tir" / "vectors"
 FILE = VECTORS / "moto_front.tir"
 INPUTS = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "p")
 FORCES = ("Fx", "Fy", "Fz_out", "Mx", "My", "Mz")
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+
+
+def test_inputs_lag_only_where_the_contact_does():
+    tyre = tir.Tyre.from_values({})
+    steady, lagging = (Interface.of(tyre, transient=transient) for transient in (False, True))
+    assert {x.name: x.description for x in steady.inputs}["kappa"].startswith("longitudinal slip")
+    assert {x.name: x.description for x in lagging.outputs}["kappa"] == "lagging longitudinal slip"
+    assert {x.name: x.description for x in steady.outputs}["Fz_out"] == "load in the formulae"
+    for interface in (steady, lagging):
+        references = [x.reference for part in interface for x in part]
+        assert references == [*range(1, len(references) + 1)]
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +69,7 @@ def wanted(given: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     tyre = tir.read(FILE)
     forces = tyre(**given, turn_slip=True)
     state = tyre.state(**given, turn_slip=True)._asdict()
-    names = [x.name for x in outputs()]
+    names = [x.name for x in OUTPUTS]
     return dict(zip(FORCES, forces, strict=True)) | {name: state[name] for name in names if name in state}
 
 
@@ -89,7 +101,7 @@ def test_a_simulation_gives_the_forces_of_tir(fmus, fmi, kind):
         signals[name] = given[name]
     found = fmpy.simulate_fmu(
         str(fmus[fmi]), fmi_type=kind, input=signals, stop_time=time[-1], output_interval=0.01, step_size=0.01,
-        output=[*INPUTS, *(x.name for x in outputs())],
+        output=[*INPUTS, *(x.name for x in OUTPUTS)],
     )  # fmt: skip
     recorded = {name: found[name] for name in INPUTS}
     assert np.ptp(recorded["Fz"]) > 3000.0
@@ -254,7 +266,7 @@ def test_units_and_starts_are_declared(fmus, fmi):
         named[x.attrib["name"]] = inner.attrib.get("unit", "")
         if x.attrib["causality"] == "input":
             starts[x.attrib["name"]] = float(inner.attrib["start"])
-    assert set(named) == {*INPUTS, *(x.name for x in outputs())}
+    assert set(named) == {*INPUTS, *(x.name for x in OUTPUTS)}
     assert {unit for unit in named.values() if unit} <= set(UNITS) & set(units)
     assert (named["K_ya"], named["sigma_y"], named["kappa"]) == ("N/rad", "m", "")
     assert starts == {
@@ -352,7 +364,7 @@ def test_instances_are_independent_and_states_come_back(fmus, tmp_path):
     hand, tyre = ByHand(fmus[2], tmp_path), tir.read(FILE)
     assert hand.instance("{00000000-0000-0000-0000-000000000000}") is None
     a, b = hand.instance(), hand.instance()
-    Fy = next(x.reference for x in outputs() if x.name == "Fy")
+    Fy = next(x.reference for x in OUTPUTS if x.name == "Fy")
     assert hand.set(a, Fz=1200.0, alpha=0.05) == 0
     (here,), (there,) = hand.get(a, Fy), hand.get(b, Fy)
     assert here == pytest.approx(tyre(1200.0, 0.05, phi_t=0.0).Fy, rel=1e-12)
