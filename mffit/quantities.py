@@ -27,6 +27,8 @@ class QuantityName(NamedTuple):
     word: str
     symbol: str
     unit: str  #: "-" without one
+    how: str = ""  #: how a result is obtained, and on which path
+    enters: str = ""  #: coefficients of the property file that are the result
 
     @property
     def ascii(self) -> str:
@@ -101,20 +103,27 @@ CHANNELS = {
 """Everything that a rig may read of a tyre, by its name in sentences, files, points and the model, in this order everywhere."""
 SIDEWAYS = {name: CHANNELS[name] for name in ("Fy", "Mz")}
 """Channels of every test: Fy is required, and Mz is simulated with it whether or not it was measured."""
+SLOPE_ON_PATH = "slope at zero on the path of the measurement"
 DIRECT = {
-    "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-"),
-    "C_phit": QuantityName("turn-slip stiffness", "C_φt", "Nm"),
-    "C_gamma": QuantityName("camber stiffness", "C_γ", "N/rad"),
-    "C_alpha": QuantityName("cornering stiffness", "C_α", "N/rad"),
-    "C_alpha_straight": QuantityName("cornering stiffness without spin", "C_α0", "N/rad"),
-    "r_e": QuantityName("effective radius", "r_e", "m"),
-    "R": QuantityName("path radius", "R", "m"),
-    "F_phit": QuantityName("turn-slip force", "F_φt", "N"),
-    "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad"),
-    "misalignment": QuantityName("sideslip misalignment", "α_0", "rad"),
-    "ply_steer": QuantityName("ply-steer", "α_ply", "rad"),
+    "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-", "1 + r_e C_gamma / C_phit (17)", "PECP1 and PECP2"),
+    "C_phit": QuantityName("turn-slip stiffness", "C_φt", "Nm", "turn-slip force over the curvature of the path (21)"),
+    "F_phit": QuantityName("turn-slip force", "F_φt", "N", "at zero angles, corrected for rig errors (23)"),
+    "C_gamma": QuantityName("camber stiffness", "C_γ", "N/rad", SLOPE_ON_PATH),
+    "C_alpha": QuantityName("cornering stiffness", "C_α", "N/rad", SLOPE_ON_PATH),
+    "C_alpha_straight": QuantityName("cornering stiffness without spin", "C_α0", "N/rad", "slope at zero on a straight path"),
+    "r_e": QuantityName("effective radius", "r_e", "m", "of the freely rolling wheel (18)", "Q_RE0"),
+    "R": QuantityName("path radius", "R", "m", "of the usual path (19)"),
+    "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad", "from zeros both ways"),
+    "misalignment": QuantityName("sideslip misalignment", "α_0", "rad", "part of alpha_M, by usual sizes"),
+    "ply_steer": QuantityName("ply-steer", "α_ply", "rad", "part of alpha_M, by usual sizes"),
+}  # fmt: skip
+"""Results of the direct method, by the attribute of its records, in the order of terminal, page and files."""
+KEYS = {
+    name: name if quantity.unit == "-" else f"{name}_{quantity.unit.replace('/', '_per_')}"
+    for name, quantity in DIRECT.items()
+    if quantity.unit != "rad"
 }
-"""Results of the direct method, by the attribute of its records."""
+"""Keys in property files and JSON of the results that are stated in the unit of the table: all but angles, by their name."""
 CHARACTERISTICS = {
     "epsilon_gamma": DIRECT["epsilon_gamma"],
     "C_alpha_N_per_rad": DIRECT["C_alpha"],

@@ -33,7 +33,7 @@ LARGEST = float(np.finfo(np.float32).max)
 """Largest size of a value: simulation programs have no larger one in single precision, and squares of it are finite here."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
-MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
+QUANTITY = re.compile(r"^\s*!\s*(measured|fitted):\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
 PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
 STATUS = re.compile(
     r"^(fitted|measured|tied|default|from (?:base|sister|another campaign)|estimate|covered|regularised|given|held|"
@@ -408,12 +408,12 @@ def _plain(key: str) -> str:
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:
     measured, provenance = {}, {}
     for _, text in document.comments:
-        found = MEASURED.match(text)
+        found = QUANTITY.match(text)
         if found:
-            name, unit = found.group(1, 4)
-            value, u = (number_of(x) for x in found.group(2, 3))
+            origin, name, *_, unit = found.groups()
+            value, u = (number_of(x) for x in found.group(3, 4))
             if value is not None and u is not None:
-                measured[name] = Quantity(value, u, unit)
+                measured[name] = Quantity(value, u, unit, origin)
         found = PROVENANCE.match(text)
         if found:
             provenance[found.group(1).strip()] = found.group(2)

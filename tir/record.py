@@ -27,11 +27,12 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 
 
 class Quantity(NamedTuple):
-    """A measured quantity, as the structured comments of a file state it."""
+    """A measured or fitted quantity, as the structured comments of a file state it."""
 
     value: float
     u: float  #: standard uncertainty, k = 1
     unit: str
+    origin: str = "measured"  #: "measured" by itself, or "fitted": a result of the fitted model
 
 
 @dataclass(frozen=True, repr=False)

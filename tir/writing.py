@@ -19,7 +19,7 @@ from typing import Any
 from tir.document import Document, FileLine, commented, encoded, folded, unquoted
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
-from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, described, parameter_of, units_of
+from tir.properties import ESSENTIAL, PROVENANCE, QUANTITY, described, parameter_of, units_of
 from tir.record import TyreRecord
 from tir.targets import DEFAULT, Target, target_of, use_mode_words, vendor
 from tir.units import SI, factor
@@ -63,12 +63,12 @@ def _value(row: Parameter, tyre: TyreRecord, target: Target) -> Any:
 
 
 def structured_comments(tyre: TyreRecord) -> Iterator[str]:
-    """Provenance and measured quantities as comment lines that ``tir.read`` understands."""
+    """Provenance, measured and fitted quantities as comment lines that ``tir.read`` understands."""
     for key, text in tyre.provenance.items():
         yield from folded(f"! provenance: {comment_text(key)}: {comment_text(text)}")
     for name, q in tyre.measured.items():
         unit = q.unit.encode("ascii", "backslashreplace").decode()
-        yield from folded(f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}")
+        yield from folded(f"! {q.origin}: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}")
 
 
 def entry(key: str, value: str, comment: str = "") -> str:
@@ -192,7 +192,7 @@ def _with_structured_comments(document: Document, tyre: TyreRecord) -> Document:
     old = [
         number
         for numbers, text in document.comments
-        if MEASURED.match(text) or PROVENANCE.match(text)
+        if QUANTITY.match(text) or PROVENANCE.match(text)
         for number in numbers
     ]
     header = [line.number for line in document.entries if line.section == "MDI_HEADER"]

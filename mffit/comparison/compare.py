@@ -22,10 +22,10 @@ from mffit.comparison.record import (
 )
 from mffit.constants import STEPS_OF_LINE
 from mffit.fit.plan import channels_of
-from mffit.measured import KEYS, LoadResult
+from mffit.measured import LoadResult
 from mffit.points import Points, levels, make_points
 from mffit.points.noise import over_noise
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import KEYS, SIDEWAYS
 from mffit.rig import Readings, Simulation
 from mffit.rounding import AtLeast
 from mffit.scatter import rms

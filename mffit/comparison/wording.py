@@ -9,8 +9,7 @@ from mffit.comparison.characteristics import Tested
 from mffit.comparison.record import ComparedSubject, Comparison, Difference, Shared
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.at_nominal import Nominal
-from mffit.measured import KEYS
-from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
+from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, KEYS, SIDEWAYS, QuantityName
 from mffit.rig_errors import words_of
 from mffit.rounding import AtLeast, stated
 from tir import Quantity

@@ -5,7 +5,6 @@ from mffit.measured.direct import adding_to_camber, at_the_axis, measure
 from mffit.measured.evidence import odd_alpha
 from mffit.measured.radii import RadiusReading, measured_path_radius, radius_readings
 from mffit.measured.result import (
-    KEYS,
     Alignment,
     Drift,
     LoadResult,
@@ -17,7 +16,6 @@ from mffit.measured.result import (
 from mffit.measured.uncertain import Contribution
 
 __all__ = [
-    "KEYS",
     "Alignment",
     "Contribution",
     "Drift",

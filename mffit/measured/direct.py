@@ -243,7 +243,7 @@ def _at_load(
     own = after.stiffnesses.get(group.load, {})
     measured = {name: x for name, x in numbers.items() if x is not None and name not in own}
     fields |= {name: quantity(x, DIRECT[name].unit) for name, x in measured.items()} | {**own}
-    fields |= {"budgets": {name: budget(x) for name, x in measured.items()}, "of_model": tuple(own)}
+    fields |= {"budgets": {name: budget(x) for name, x in measured.items()}}
     return _AtLoad(LoadResult(load=group.load, **fields), epsilon, factors.yields), troubles
 
 
@@ -252,7 +252,7 @@ def _of_model_alone(after: AfterFit, rows: Sequence[_AtLoad]) -> list[_AtLoad]:
     yields = {found.row.load: found.yields for found in rows}
     return [
         _AtLoad(
-            LoadResult(load, of_model=tuple(own), **dict[str, Any](own)),
+            LoadResult(load, **dict[str, Any](own)),
             None,
             yields[min(yields, key=lambda other: abs(other - load))] if yields else 0.0,
         )

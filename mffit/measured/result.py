@@ -15,7 +15,7 @@ from mffit.constants import COVERAGE_FACTOR_95, FALSE_ALARM, USUAL_CORNERING_STI
 from mffit.made import Made
 from mffit.measured import constants
 from mffit.measured.uncertain import Contribution, Expanded, expanded
-from mffit.quantities import CONDITIONS, DIRECT
+from mffit.quantities import CONDITIONS, DIRECT, KEYS
 from tir import Quantity
 from tir.parameters import BY_NAME
 
@@ -142,7 +142,6 @@ class LoadResult(Brief):
     budget: tuple[Contribution, ...] = ()  #: of epsilon_gamma
     budgets: Mapping[str, tuple[Contribution, ...]] = field(default_factory=dict)
     """Budgets of the other measured quantities, by their name in :data:`KEYS`."""
-    of_model: tuple[str, ...] = ()  #: names of the quantities that are a fitted model's
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual path first [1/m]
     setups: tuple[SetupResult, ...] = ()  #: results from every path and set-up alone, if there are several
 
@@ -178,6 +177,12 @@ class LoadResult(Brief):
         return expanded(self.budget) if self.budget else None
 
     @property
+    def of_model(self) -> dict[str, Quantity]:
+        """The quantities that are results of a fitted model, by name."""
+        found = {name: getattr(self, name) for name in KEYS}
+        return {name: q for name, q in found.items() if q is not None and q.origin == "fitted"}
+
+    @property
     def headline(self) -> str:
         """The load, and eps_gamma if it was measured there."""
         return headline(self.load, self.epsilon_gamma)
@@ -190,18 +195,6 @@ def headline(load: float, epsilon: Quantity | None) -> str:
     )
     return f"{CONDITIONS['Fz_N'].of(load)}{said}"
 
-
-KEYS = {
-    "epsilon_gamma": "epsilon_gamma",
-    "C_phit": "C_phit_Nm",
-    "C_gamma": "C_gamma_N_per_rad",
-    "C_alpha": "C_alpha_N_per_rad",
-    "C_alpha_straight": "C_alpha_straight_N_per_rad",
-    "r_e": "r_e_m",
-    "R": "R_m",
-    "F_phit": "F_phit_N",
-}
-"""By attribute of :class:`LoadResult`, the key with unit in property files and JSON."""
 
 keys(
     LoadResult,
@@ -384,7 +377,8 @@ class Measured(Brief):
             out["epsilon_gamma_debiased"] = self.epsilon_gamma_debiased
         for key, value in (("epsilon_gamma_model", self.epsilon_gamma_model), ("load_N", self.nominal.load)):
             if value is not None:
-                out[key] = Quantity(float(value), 0.0, "N" if key == "load_N" else "-")
+                known = ("N", "measured") if key == "load_N" else ("-", "fitted")
+                out[key] = Quantity(float(value), 0.0, *known)
         return out
 
 

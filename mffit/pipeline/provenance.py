@@ -19,6 +19,7 @@ from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
+from mffit.quantities import DIRECT, KEYS
 from mffit.rig_errors import T_REF, error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
@@ -43,13 +44,6 @@ TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
 """Characters of file names that are written in comments without %XX, beside letters and digits."""
 
-
-STIFFNESSES = (
-    "C_alpha_N_per_rad and C_gamma_N_per_rad are slopes at zero on the path of the measurement, C_alpha_straight_N_per_rad that "
-    "of the tyre without spin"
-)
-"""What the stiffnesses among the measured quantities are."""
-
 Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
@@ -67,7 +61,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             METHOD: str(made.method),
             SOURCE: made.source[:DIGITS],
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
-            "stiffnesses": STIFFNESSES,
+            "quantities": _quantities(measured),
             "configuration": _settings(config),
             **_by_hand(fitted),
             **inputs,
@@ -161,6 +155,14 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
         return None
     same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in expected.items())
     return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
+
+
+def _quantities(measured: Measured) -> str:
+    """How each stated quantity is obtained, and how it enters the file."""
+    known = {
+        KEYS[name]: DIRECT[name] for name in KEYS if measured.nominal and getattr(measured.nominal, name)
+    }
+    return "; ".join(f"{key}: {q.how}{f', as {q.enters}' if q.enters else ''}" for key, q in known.items())
 
 
 def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:

@@ -10,7 +10,7 @@ from mffit import fit as fitting
 from mffit.comparison.characteristics import characteristics
 from mffit.config import Config
 from mffit.fit import FitResult
-from mffit.measured import KEYS, Measured
+from mffit.measured import Measured
 from mffit.measured.constants import SPIN_BIAS_OF_MODEL
 from mffit.measured.result import AfterFit
 from mffit.parts import Parts
@@ -18,7 +18,7 @@ from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.points import Points
 from mffit.points.loading import Reading
 from mffit.progress import Progress
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import KEYS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from tir import Quantity, Tyre
@@ -58,7 +58,7 @@ def _after(
     if before.nominal is not None and not stiffnesses:
         straight = fitting.straight_cornering_stiffness(fitted, points, before.nominal)
         if straight is not None:
-            stiffnesses = {before.nominal.load: {"C_alpha_straight": straight}}
+            stiffnesses = {before.nominal.load: {"C_alpha_straight": straight._replace(origin="fitted")}}
     stderr = fitted.coefficients["PECP1"].stderr
     pecp1 = Quantity(float(fitted.written["PECP1"]), stderr or 0.0, "-")
     return AfterFit(spin, fitted.epsilon_gamma_model, pecp1, stiffnesses)
@@ -80,7 +80,7 @@ def at_rest(
             fitted.tyre, load, turn_slip=False, known=fitted.posterior, predictor=fitted.prediction
         )
         named = {name: numbers[KEYS[name]] for name in ("C_alpha", "C_gamma")}
-        found[load] = {name: number for name, number in named.items() if number.u}
+        found[load] = {name: q._replace(origin="fitted") for name, q in named.items() if q.u}
         if "C_alpha" in found[load]:
             found[load]["C_alpha_straight"] = found[load]["C_alpha"]
     return found

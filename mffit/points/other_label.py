@@ -48,7 +48,7 @@ class OtherLabel(NamedTuple):
     @property
     def sentence(self) -> str:
         """The remark about the sweep."""
-        word, _, unit = CONDITIONS[self.column]
+        word, _, unit = CONDITIONS[self.column][:3]
         own, other = (f"{x:.4g} {unit}" for x in (self.label, self.other))
         why = (
             f"is {self.expected:.0f} N off the sweeps at its own {own}"

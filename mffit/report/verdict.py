@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from mffit.comparison.characteristics import DECIDED_BY, Tested, characteristics
-from mffit.measured import KEYS
 from mffit.measured.wording import SOURCES
-from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, QuantityName
+from mffit.quantities import CHANNELS, CHARACTERISTICS, DIRECT, KEYS, QuantityName
 from mffit.results import BuildResult
 from mffit.rounding import AtLeast, number, stated, times
 from tir import Quantity
@@ -68,14 +67,16 @@ def headlines(result: BuildResult) -> list[Headline]:
     fitted = {name for name, a in result.fit.channels.items() if a.n}
     loads = dict.fromkeys(of_model, load)
     if nominal is not None and not result.on_disc:  # the same numbers as in result.json
-        of_model |= {KEYS[name]: getattr(nominal, name) for name in nominal.of_model}
+        of_model |= {KEYS[name]: q for name, q in nominal.of_model.items()}
         loads |= {KEYS[name]: nominal.load for name in nominal.of_model}
     tested = Tested.of([tyre])
     for key in filter(tested.varied, DECIDED_BY):
         value, note = of_model[key], f"of the model at {number(loads[key], 0)} N, straight path"
         if DECIDED_BY[key].channel in fitted and value.u:
             end = f"at {tested.end(key)}, the end of the tested range" if isinstance(value, AtLeast) else ""
-            found.append(_headline(CHARACTERISTICS[key], value, note, end))
+            straight = result.on_disc and key == KEYS["C_alpha"]
+            known = DIRECT["C_alpha_straight"] if straight else CHARACTERISTICS[key]
+            found.append(_headline(known, value, note, end))
     return found[:FOUR]
 
 

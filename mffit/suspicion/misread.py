@@ -177,7 +177,7 @@ def _wrong_labels(
         return
     for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
         if abs(level - here) > _near(kind, here):
-            word, _, unit = CONDITIONS[column]
+            word, _, unit = CONDITIONS[column][:3]
             size = signs.get(channel, 1.0) * level * TO_COLUMN[channel]
             run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"
             yield Mistake(

@@ -400,7 +400,7 @@ def unpublished(measured: JudgedMeasurement) -> Iterator[dict[str, Any]]:
     row, margin = measured.nominal, constants.CERTAIN_SIGMA * constants.SPREAD_OF_PUBLISHED_EPSILON
     if row is None or row.epsilon_gamma is None:
         return
-    value, u, _ = row.epsilon_gamma
+    value, u = row.epsilon_gamma[:2]
     usual = constants.USUAL_PUBLISHED_EPSILON
     leaned = bool(np.any(np.abs(measured.points.gamma) > CAMBER_OF_SLOPES.rad))
     most = usual + margin if leaned else constants.LARGEST_PUBLISHED_EPSILON

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 
 import pytest
 
-from mffit.measured import KEYS, LoadResult
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, QuantityName
+from mffit.measured import LoadResult
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, KEYS, QuantityName
 
 EPSILON = QuantityName("camber reduction factor", "ε_γ", "-")
 FORCE = QuantityName("turn-slip force", "F_φt", "N")
@@ -33,6 +34,13 @@ def test_every_symbol_can_be_shown_in_a_terminal(quantity):
 def test_the_direct_methods_quantities_are_those_of_its_record():
     attributes = {field.name for field in dataclasses.fields(LoadResult)}
     assert set(KEYS) <= set(DIRECT) <= attributes
+
+
+def test_the_page_of_files_describes_every_result_as_the_list_does():
+    page = (Path(__file__).parents[2] / "docs" / "files.md").read_text(encoding="utf-8")
+    for name, key in KEYS.items():
+        if name != "epsilon_gamma":  # the page explains where the carried value comes from
+            assert f"`{key}` | {DIRECT[name].word}: {DIRECT[name].how}" in page
 
 
 def test_the_unit_in_a_key_is_that_of_the_table():

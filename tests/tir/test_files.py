@@ -287,6 +287,13 @@ def test_a_measured_quantity_that_is_not_a_number_is_a_comment(tmp_path, tyre):
     assert found.measured == {"C": tir.Quantity(2.0, 0.1, "Nm")}
 
 
+def test_a_quantity_says_whether_it_was_measured_or_fitted_and_keeps_it_when_written(tmp_path):
+    found = read_text(tmp_path, "! measured: C 2 u 0.1 Nm\n! fitted: K 3 u 0.2 N/rad\n" + TEXT)
+    assert {name: q.origin for name, q in found.measured.items()} == {"C": "measured", "K": "fitted"}
+    found.write(tmp_path / "again.tir", target="mftyre")
+    assert tir.read(tmp_path / "again.tir").measured == found.measured
+
+
 def test_what_no_force_needs_may_be_blank_or_text(tmp_path, tyre):
     """As widely used programs write it; the file is used, and the list of problems says what was not."""
     text = re.sub(r"(?m)^ROAD_INCREMENT .*$", "ROAD_INCREMENT =   $ not known", TEXT)

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
 from mffit.measured.result import FINITE_SPIN, SetupResult
-from mffit.quantities import CONDITIONS, DIRECT
+from mffit.quantities import CONDITIONS, DIRECT, KEYS
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, stated, with_u
 
-NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "C_alpha_straight", "r_e", "R")
-"""Results at the load nearest to the nominal one, in this order."""
 MAIN = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha")
 """Those that a user came for."""
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
-EXPLAINED = {
-    "C_gamma": " (slope on the path)",
-    "C_alpha": " (slope on the path)",
-    "C_alpha_straight": " (without spin, by the model)",
-}
-"""What a stiffness is, where several are shown."""
 
 
 def budget_table(budget: Sequence[Contribution], total: float) -> str:
@@ -93,13 +85,15 @@ def alignment_table(alignment: Alignment) -> str:
     return blocks([table(head, rows, left=0), *map(wrapped, wording.advice(alignment))])
 
 
-def spin_numbers(measured: Measured, names: Sequence[str] = NUMBERS) -> str:
+def spin_numbers(measured: Measured, names: Collection[str] = KEYS) -> str:
     """The results at the load nearest to the nominal one, one per line."""
     row = measured.nominal
     if row is None:
         return ""
     found = {name: getattr(row, name) for name in names} | {"epsilon_gamma": measured.epsilon_of_file}
-    explained = {**EXPLAINED, **dict.fromkeys(row.of_model, " (of the fitted model)")}
+    explained = {
+        name: f" ({DIRECT[name].how}{', of the fitted model' * (name in row.of_model)})" for name in names
+    }
     carried = measured.carried
     if carried is not None:
         source = "" if carried.source == "direct" else f", {wording.SOURCES[carried.source]}"

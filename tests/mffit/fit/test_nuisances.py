@@ -21,7 +21,7 @@ from mffit.fit.influences.nuisance_choice import choose
 from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
-from mffit.quantities import DIRECT
+from mffit.quantities import DIRECT, KEYS
 from mffit.report.verdict import headlines
 from mffit.rig import Simulation
 from mffit.rounding import stated as in_words
@@ -377,6 +377,7 @@ def test_stiffnesses_of_moving_sweeps_are_those_of_the_tyre_at_rest(moved):
         assert shown[f"{word[0].upper()}{word[1:]} {DIRECT[name].ascii}"] == in_words(
             Quantity(value, u, "N/rad"), DIRECT[name].unit_behind
         )
+        assert moved.tyres["normal"].measured[KEYS[name]].origin == "fitted"
         assert not stated["budgets"]
     assert stated["load_N"] == load
     assert [row["load_N"] for row in stated["per_load"]] == sorted(

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from plain_tyre import Plain, R, settings
 
-from mffit.measured import KEYS, measure
+from mffit.measured import measure
 from mffit.parts import split
 from mffit.points import Points
+from mffit.quantities import KEYS
 
 LOADS = (1000.0, 1500.0, 2000.0)
 SIZE, GIVE, CROWN, TILT = 0.01, 1e-3, 0.05, 0.2  # relative; deg/Nm; m; deg/kN
