@@ -1,4 +1,4 @@
-"""What the formula misses of a measured tyre, beside its file: a table over the inputs, interpolated and added to the forces.
+"""Model error of a measured tyre, next to its file: a table over the inputs, interpolated and added to the forces.
 
 ``mffit build`` writes it; docs/correction.md says how to add it in any simulation.
 """
@@ -56,25 +56,25 @@ def digest(values: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Correction(ReadOnlyArrays):
-    """What the formula misses, over a grid of d inputs."""
+    """The model error over a grid of d inputs."""
 
     content: str  #: SHA-256 of the table, by which two are the same
     nodes: Mapping[str, np.ndarray] = field(compare=False)  #: by input of a call, rising, SI
     missed: np.ndarray = field(compare=False)  #: (*grid, channels) [N], [Nm]
     channels: tuple[int, ...] = field(compare=False)  #: places among the forces
     fading: np.ndarray = field(compare=False)
-    """(channels, d) lengths over which the miss fades outside of the grid, SI."""
+    """(channels, d) lengths over which the model error fades outside of the grid, SI."""
     path: float = field(compare=False)  #: curvature of the path of the measurement [1/m]
 
     def added(self, forces: Forces, inputs: Sequence[Any], *, limits: bool = False) -> Forces:
         """The forces of the formula with what it misses, at the ``inputs`` of the call, in the order of ``INPUTS``.
 
-        With ``limits`` the inputs are held to the file's ranges; then the miss does not fade outside of the grid. Raises
+        With ``limits`` the inputs are held to the file's ranges; then the model error does not fade outside of the grid. Raises
         TirError if an input is not a real number.
         """
         kinds = {x.dtype.kind for x in map(np.asarray, inputs)}
         if not kinds <= set("fiub"):
-            raise TirError("what a formula misses is added at real numbers only; call the tyre of the file")
+            raise TirError("the model error is added at real numbers only; call the tyre of the file")
         by_name = dict(zip(INPUTS, inputs, strict=True))
         if isinstance(forces.Fz, float):
             missed = self._once([float(by_name[name]) for name in self.nodes], fades=not limits)
@@ -95,7 +95,7 @@ class Correction(ReadOnlyArrays):
         return Forces(*found)
 
     def _left(self, at: np.ndarray) -> np.ndarray:
-        """Share (channels, n) of the miss that is left outside of the grid."""
+        """Share (channels, n) of the model error that is left outside of the grid."""
         nodes = self.nodes.values()
         beyond = np.array([x - np.clip(x, known[0], known[-1]) for x, known in zip(at, nodes, strict=True)])
         return np.asarray(np.exp(-0.5 * np.sum((beyond / self.fading[:, :, None]) ** 2, axis=1)))
@@ -157,9 +157,7 @@ def read_correction(path: str | Path, values: Mapping[str, Any]) -> Correction:
         known = head[COEFFICIENTS]
         found = _correction(text, head, heading, np.array(rows, dtype=float))
     except (ValueError, LookupError, StopIteration):
-        sentence = (
-            "is not the whole table of what a formula misses, as a build writes it; build the tyre again"
-        )
+        sentence = "is not the whole table of a model error, as a build writes it; build the tyre again"
         raise TirError(sentence, path=path) from None
     if known != digest(values):
         of = head.get(FILE, "another file")

@@ -47,7 +47,7 @@ class TyreRecord:
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
     problems: tuple[Problem, ...] = ()  #: problems found on reading
     document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
-    correction: Correction | None = None  #: what the formula misses, added by calls
+    correction: Correction | None = None  #: model error, added by calls
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Self:
@@ -145,9 +145,9 @@ class TyreRecord:
         )
 
     def with_correction(self, path: str | Path) -> Self:
-        """A copy whose calls add what the formula misses, from the table that a build wrote beside the file.
+        """A copy whose calls add the model error, from the table that a build wrote beside the file.
 
-        The table is linear in each input between its nodes. Beyond them the miss fades to zero, and on another path than that
+        The table is linear in each input between its nodes. Beyond them the model error fades to zero. On another path than that
         of the measurement it is known in part, as in ``mffit predict``; with ``limits=True`` it does not fade. Nothing is added
         when rolling backwards. A changed value keeps the table. Property files, exports, ``state`` and ``tir.transient`` do not
         have it; the first two and the last warn of it.
@@ -164,7 +164,7 @@ class TyreRecord:
         return replace(self, correction=read_correction(path, self.values))
 
     def leave_correction(self, where: str) -> None:
-        """Warn that something made of the tyre lacks what the formula misses."""
+        """Warn that something made of the tyre lacks the model error."""
         if self.correction is not None:
             warn(
                 f"{where} holds the formula alone: what it misses does not travel with it; give the table of with_correction "

@@ -152,7 +152,7 @@ def plan(
 def predict(folder: Path, conditions: Path, out: Path, voice: Voice) -> None:
     """Predict forces at conditions, from the folder of a build.
 
-    Writes the force of the property file and the best estimate, with what the formula misses added; both with how far a new
+    Writes the force of the property file and the best estimate, with the model error added; both with how far a new
     run may lie from them (k = 1). Conditions and forces are in ISO-W.
     """
     from mffit import pipeline

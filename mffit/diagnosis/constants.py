@@ -167,7 +167,7 @@ DIVISIONS_BESIDE_NOISE = Count(
 USUAL_MISS_OF_A_FORMULA = Real(
     0.03,
     "-",
-    "Usual smooth structure or bump (1 sigma) over the channel's size: what a fitted formula misses of real tyres.",
+    "Usual smooth structure or bump (1 sigma) over the channel's size: model error of real tyres.",
 )
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 TIE_RUN_CAMBER = Real(40.0, "deg", "Largest camber of an added camber sweep.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 FUNCTIONS = Count(
-    300, "-", "Most functions of what the formula misses of a channel: 450 predict no better on real tyres."
+    300, "-", "Most functions of the model error of a channel: 450 predict no better on real tyres."
 )
 LEAST_SHARE = Real(
     0.01,
@@ -47,12 +47,12 @@ USUAL_RATIO = Real(
 WIDER_THAN_THE_FIT = Real(
     10.0,
     "-",
-    "Variance of a coefficient beside what the formula misses, over that of the fit, which knows nothing of this.",
+    "Variance of a coefficient with model error, over that of the fit, which knows nothing of this.",
 )
 CERTAIN_EVIDENCE = Real(
     12.5,
     "-",
-    "Log evidence that proves a smooth miss, and a condition over which it changes: five standard deviations.",
+    "Log evidence that proves a model error, and a condition over which it changes: five standard deviations.",
 )
 LONGEST_LENGTH = Real(
     20.0, "-", "Largest length of smooth functions over the tested range: along it they are constant."

@@ -68,8 +68,8 @@ def correction(known: Predictor, fitted: Tyre, proven: Collection[str]) -> Corre
 def text_of(found: CorrectionTable, file: str) -> str:
     """The content of the correction file; ``file`` is the property file to whose forces the table is added."""
     head = [
-        f"What the formula misses, to be added to the forces of {file}; ISO-W axes. See docs/correction.md.",
-        f"Between the nodes linear in every input, which adds {100.0 * found.added:.1f} % of the miss (rms).",
+        f"Model error, to be added to the forces of {file}; ISO-W axes. See docs/correction.md.",
+        f"Between the nodes linear in every input, which adds {100.0 * found.added:.1f} % of the model error (rms).",
         f"{FILE}: {file}",
         f"{COEFFICIENTS}: {found.coefficients}",
         f"{PATH}: {found.path:.6g}",

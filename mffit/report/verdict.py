@@ -102,6 +102,6 @@ def purposes(result: BuildResult) -> dict[str, str]:
         found.setdefault(name, text.format(mode=mode, T=warm.T_ref if warm else 0.0))
     if result.correction is not None:
         found[result.correction_name] = (
-            f"simulations that add what the formula misses to {result.files[result.fitted]}"
+            f"simulations that add the model error to {result.files[result.fitted]}"
         )
     return found

@@ -227,7 +227,7 @@ def not_ended(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "sweeps and the stated uncertainty, or run mffit diagnose",
 )
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Scatter over the stated uncertainty, channel by channel, or a misfit that an effect explains better than a smooth miss."""
+    """Scatter over the stated uncertainty, channel by channel, or a misfit that an effect explains better than model error."""
     for name in fit.used:
         rough = far(fit.rough(name), constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA)
         certain = rough or (fit.wrong(name) and fit.cause_is_certain and not fit.against)
@@ -484,7 +484,7 @@ def declared_absent(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     sentence="{channel} leaves more than noise: what the fit misses of it changes smoothly with {over}, {size:.3g} {unit} rms",
 )
 def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Evidence of a smooth miss, where the noise is stated and the miss is no more than it."""
+    """Evidence of model error, where the noise is stated and the model error is no more than it."""
     from mffit.linearised.inputs import word_of
 
     for name, channel in fit.linear.channels.items() if fit.linear and _noise_is_stated(fit) else ():

@@ -99,7 +99,7 @@ def _felt(read: Points, at_tyre: Points) -> dict[str, np.ndarray]:
 
 
 def _bands(felt: Points, n: int, fitted: FitResult) -> dict[str, dict[str, np.ndarray]]:
-    """At some of the first n points, by channel: what the formula misses, and the half width of the 95 % band around both.
+    """At some of the first n points, by channel: the model error, and the half width of the 95 % band around both.
 
     They change smoothly, so that :data:`~mffit.viewer.constants.POINTS_OF_BANDS` points spread over all are enough.
     """

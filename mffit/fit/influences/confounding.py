@@ -101,7 +101,9 @@ def confounding_sentence(found: Confounding, *, modelled: bool) -> str:
     """A sentence: the correlated setting, the effect on coefficients, and the remedy."""
     growth = f"{found.coefficient} {found.growth:.1f} times as uncertain as at one temperature"
     if not found.widens:
-        effect = f"what the formula misses over the {found.setting} is taken for an effect of the temperature, and the reverse"
+        effect = (
+            f"model error over the {found.setting} is taken for an effect of the temperature, and the reverse"
+        )
     elif modelled:
         effect = f"this makes {growth}"
     else:

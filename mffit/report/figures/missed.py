@@ -1,4 +1,4 @@
-"""What the formula misses smoothly and alike in all sweeps."""
+"""The model error: smooth and alike in all sweeps."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def missed(view: BuildView) -> Sheet:
 
 
 def _conditions(channel: LinearisedChannel) -> list[str]:
-    """Columns of the swept condition over which the miss changes most, and of those by which it changes for certain, or most."""
+    """Columns of the swept condition over which the model error changes most, and of those of sure, or of the largest, influence."""
     by_name = {one.name: one for one in channel.smooth.inputs}
     found = [by_name[name] for name in channel.missed_over if COLUMNS.get(name) in UNITS]
     found = found[: max(2, sum(one.name in channel.proven_over for one in found))]

@@ -172,7 +172,7 @@ function dots(on, panel, shown, {start, width, height, ratio, kx, ky, ox, oy}) {
   }
   on.stroke();
 }
-// Where a further run is expected, 95 %, and its middle: the fit with what its formula misses.
+// Where a further run is expected, 95 %, and its middle: the fit with its model error.
 function band(pen, curve, {X, Y}) {
   const points = bandOf(curve), colour = palette[columns.of[state.colour][curve.group.members[0]]];
   if (points.length < 2) return;

@@ -211,7 +211,7 @@ def test_a_temperature_that_follows_the_sideslip_is_criticised(warmed):
 
 
 def test_a_temperature_that_mostly_follows_the_load_is_said_though_no_coefficient_suffers(warmed):
-    """What the formula misses over the load is then taken for the warming, however well the readings tell both apart."""
+    """Model error over the load is then taken for the warming, however well the readings tell both apart."""
     search = warmed[0].fit.search
     points = search.problem.points
     random = np.random.default_rng(7)
@@ -223,7 +223,7 @@ def test_a_temperature_that_mostly_follows_the_load_is_said_though_no_coefficien
     (row,) = [row for row in found if row.setting == "load"]
     assert 0.75 < row.correlation < 0.95
     assert not row.widens
-    assert "what the formula misses over the load" in confounding_sentence(row, modelled=True)
+    assert "model error over the load" in confounding_sentence(row, modelled=True)
 
 
 def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):
