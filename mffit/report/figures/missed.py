@@ -40,7 +40,7 @@ def missed(view: BuildView) -> Sheet:
 
 
 def _conditions(channel: LinearisedChannel) -> list[str]:
-    """Columns of the swept condition over which the model error changes most, and of those of sure, or of the largest, influence."""
+    """Columns of the swept condition over which the model error changes most, and of those that surely change it, or most."""
     by_name = {one.name: one for one in channel.smooth.inputs}
     found = [by_name[name] for name in channel.missed_over if COLUMNS.get(name) in UNITS]
     found = found[: max(2, sum(one.name in channel.proven_over for one in found))]
