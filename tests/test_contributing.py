@@ -7,6 +7,7 @@ import dataclasses
 import io
 import json
 import re
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,7 +21,7 @@ from mffit.effects.effect import Effect
 from mffit.errors import InputError
 from mffit.report import page
 from mffit.report.build_view import view_of
-from mffit.rig_errors import RigError
+from mffit.rig_errors.catalog import rig_error
 from tests.mffit.report.report_toys import made_result
 from tir.equations.stiffness import camber_stiffness
 from tir.parameters import BY_NAME
@@ -50,9 +51,9 @@ def test_every_file_of_the_tables_exists_unless_it_is_new():
 
 
 def test_the_records_are_complete(examples):
-    effect, error = examples["CURVATURE_LOAD"], examples["LOAD_ZERO"]
+    (block,) = re.findall(r"^```toml\n(\[Fz_0_N\]\n.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    effect, error = examples["CURVATURE_LOAD"], rig_error(*tomllib.loads(block).popitem())
     assert isinstance(effect, Effect)
-    assert isinstance(error, RigError)
     assert set(effect.parameters) <= set(BY_NAME)
     seen = (effect, error.seen_as)
     assert {word for one in seen for word in one.needs} <= set(NEEDS)
@@ -60,7 +61,7 @@ def test_the_records_are_complete(examples):
 
 def test_both_formulae_of_the_rig_error_agree(examples):
     settings = type("Settings", (), {"Fz": np.array([900.0, 1400.0])})
-    true = examples["LOAD_ZERO"].formula(20.0, settings.Fz, None)
+    true = examples["FORMULAE"]["Fz_0_N"](20.0, settings.Fz, None)
     factor = examples["LOADS"]["Fz_0_N"](20.0, settings, None)
     np.testing.assert_allclose(true, settings.Fz * factor, rtol=1e-15)
 

@@ -9,11 +9,11 @@ from mffit.rig_errors.catalog import (
     DECLARED,
     MEANINGS,
     RIG_ERRORS,
+    T_REF,
     UNITS,
     WORDS,
     ZEROS,
 )
-from mffit.rig_errors.environment import T_REF
 from mffit.rig_errors.faults import (
     NO_FAULTS,
     OF_RUN,

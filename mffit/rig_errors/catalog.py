@@ -2,24 +2,51 @@
 
 from __future__ import annotations
 
-from mffit.rig_errors.angle import ANGLE_ERRORS
-from mffit.rig_errors.conditions import CONDITION_ERRORS
-from mffit.rig_errors.environment import (
-    COEFFICIENT_ERRORS,
-    ENVIRONMENT_ERRORS,
-    PRESSURE_ARM,
-    REFERENCE_PRESSURE,
-)
-from mffit.rig_errors.force import FORCE_ERRORS
-from mffit.rig_errors.record import BEFORE_THE_TYRE, RigError
+import tomllib
+from importlib import resources
+from typing import Any
 
-RIG_ERRORS: tuple[RigError, ...] = (
-    *CONDITION_ERRORS,
-    *COEFFICIENT_ERRORS,
-    *ANGLE_ERRORS,
-    *ENVIRONMENT_ERRORS,
-    *FORCE_ERRORS,
-)
+from mffit.rig_errors import constants
+from mffit.rig_errors.formulae import CALIBRATES, CAMBER_STIFFNESS, FORCE_AT_ZERO, FORMULAE
+from mffit.rig_errors.record import BEFORE_THE_TYRE, Appearance, Declared, Place, RigError
+
+T_REF = "T_ref_degC"
+"""Number with the temperature at which the fitted model holds."""
+
+
+def rig_error(name: str, row: dict[str, Any]) -> RigError:
+    """The record of a table of ``rig_errors.toml``, with the formulae of its name."""
+    fields = _values(row)
+    for seen in ("seen_as", "seen_per_run"):
+        if seen in fields:
+            fields[seen] = Appearance(**_values(fields[seen]))
+    if "place" in fields:
+        fields["place"] = Place[fields["place"]]
+    if "declared" in fields:
+        fields["declared"] = Declared(
+            **{"default": None, **_values(fields["declared"])},
+            force_at_zero=FORCE_AT_ZERO.get(name),
+            camber_stiffness=CAMBER_STIFFNESS.get(name),
+            calibrates=CALIBRATES.get(name),
+        )
+    return RigError(name=name, formula=FORMULAE.get(name), **fields)
+
+
+def _values(row: dict[str, Any]) -> dict[str, Any]:
+    """The values of a table, with lists as tuples and numbers of judgement by their names."""
+    values: dict[str, Any] = {k: tuple(x) if isinstance(x, list) else x for k, x in row.items()}
+    for key in ("default", "undisturbed"):
+        if isinstance(values.get(key), str):
+            values[key] = getattr(constants, values[key])
+    return values
+
+
+def _read() -> tuple[RigError, ...]:
+    text = resources.files(__package__).joinpath("rig_errors.toml").read_text(encoding="utf-8")
+    return tuple(rig_error(name, row) for name, row in tomllib.loads(text).items())
+
+
+RIG_ERRORS = _read()
 BY_NAME: dict[str, RigError] = {error.name: error for error in RIG_ERRORS}
 BEFORE = tuple(error for error in RIG_ERRORS if error.place in BEFORE_THE_TYRE)
 """Errors that act between the readings of the set-points and the conditions of the tyre."""
@@ -29,7 +56,7 @@ DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declar
 """Errors whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Errors that differ from set-up to set-up."""
-BESIDE = (REFERENCE_PRESSURE, PRESSURE_ARM)
+BESIDE = (BY_NAME["p_ref_kPa"], BY_NAME["k_p_arm_per_kPa"])
 """Effects of the tyre over known conditions, for which the formula has no coefficient."""
 CALIBRATED = {error.acts_on[0]: declared.key for error, declared in DECLARED if error.is_gain}
 """By channel with a calibration, the key of ``[rig]`` that states its uncertainty."""

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import constants
 
 RADIANS = math.pi / 180.0
 
@@ -109,7 +108,7 @@ class RigError:
     unit: str
     meaning: str  #: the formula in words
     kind: str  #: "rig" | "environment" | "tyre"
-    place: Place | None  #: None: a reference value that enters the formulae of other errors
+    place: Place | None = None  #: None: a reference value that enters the formulae of other errors
     acts_on: tuple[str, ...] = ()  #: alpha, gamma, kappa, Fz, phi_t, channels or coefficients
     formula: Formula | None = None
     reads: tuple[str, ...] = ()  #: channels of the tyre that the formula takes from ``at.true``
@@ -162,37 +161,3 @@ class RigError:
         if isinstance(number, float):
             return number != self.undisturbed and not math.isnan(number)
         return bool(np.any((number != self.undisturbed) & ~np.isnan(number)))
-
-
-def calibration(
-    channel: str,
-    name: str,
-    meaning: str,
-    *,
-    u: float = constants.FORCE_GAIN,
-    place: Place = Place.FORCE,
-    slopes: Callable[[AtLoad], Slopes] = lambda at: Slopes(),
-    seen_as: Appearance | None = None,
-) -> RigError:
-    """The record of a channel's calibration factor, with standard uncertainty ``u`` unless ``[rig]`` states another."""
-    return RigError(
-        name=name,
-        unit="-",
-        meaning=meaning,
-        kind="rig",
-        place=place,
-        acts_on=(channel,),
-        formula=lambda gain, quantity, at: gain * quantity,
-        undisturbed=1.0,
-        spread=0.02,
-        limits=(0.5, 2.0),
-        seen_as=seen_as,
-        word=f"calibration of {channel}",
-        declared=Declared(
-            key=f"u_{channel}_gain",
-            unit="-",
-            default=u,
-            source=f"calibration of {channel}",
-            calibrates=slopes,
-        ),
-    )

@@ -12,10 +12,12 @@ from mffit.fit.influences.nuisances import NUISANCES
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig.lag import lagged_setting
-from mffit.rig_errors import BY_NAME, RIG_ERRORS, Faults, Place
+from mffit.rig_errors import BY_NAME, DECLARED, RIG_ERRORS, Faults, Place
+from mffit.rig_errors import formulae as chain_formulae
 from mffit.virtual_rig.machine import FORMULAE, Machine, steady
 from mffit.virtual_rig.recording import lagged
 from mffit.virtual_rig.settings import Settings
+from tir.temperature import SCALED_BY
 
 R, LOAD = 1.323, 1400.0
 FORCES = ("Fx", "Fy", "Mx", "My", "Mz")
@@ -155,6 +157,18 @@ def test_a_record_is_complete(error):
     assert isinstance(error.place, Place)
     assert error.acts_on
     assert error.seen_as or error.declared or error.name in FREED, "no effect shows it, and no fit frees it"
+
+
+def test_every_formula_belongs_to_an_error_and_every_error_in_the_chain_has_one():
+    known = chain_formulae
+    assert set(known.FORMULAE) == {error.name for error in RIG_ERRORS if error.place is not None}
+    declared = {error.name for error, _ in DECLARED}
+    assert {*known.FORCE_AT_ZERO, *known.CAMBER_STIFFNESS, *known.CALIBRATES} <= declared
+
+
+def test_the_terms_of_temperature_act_on_the_factors_of_the_property_file():
+    for name, factor in SCALED_BY.items():
+        assert BY_NAME[name].acts_on == (factor,)
 
 
 def test_an_unknown_error_is_refused_by_name():
