@@ -33,7 +33,6 @@ ROWS_AT_ONCE = Count(
     "Residuals with derivatives beyond which only their sums of products are kept.",
     "tests/benchmarks/scale.py",
 )
-ROWS_AS_TEXT = Count(16_384, "-", "Rows of a table that are in memory as text at the same time.")
 LOOKS_AT_LIMITS = Count(
     200, "-", "Most times a step is computed again because it meets a limit or a bound; 5 to 50 are usual."
 )
