@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import Any, NamedTuple
 
@@ -26,7 +25,7 @@ from mffit.measured.axis import (
     slope_at,
     split_of_zero,
 )
-from mffit.measured.calibration import Factors, calibration, powers_of_load
+from mffit.measured.calibration import calibration, powers_of_load
 from mffit.measured.drift import shares_of_sweeps
 from mffit.measured.epsilon import (
     LoadDependence,
@@ -42,11 +41,9 @@ from mffit.measured.radii import effective_radius_at
 from mffit.measured.result import (
     NO_FIT,
     AfterFit,
-    Drift,
     LoadResult,
     Measured,
     MeasuredFacts,
-    SetupScatter,
     SideslipZeros,
     SpinStatement,
 )
@@ -63,15 +60,6 @@ from mffit.scatter import ALARM
 from tir import Quantity, Tyre
 
 COMPLIANCE = BY_NAME["compliance_deg_per_Nm"]
-
-
-@dataclass(frozen=True, slots=True)
-class _AtLoad:
-    """The result of one load, with eps_gamma as an uncertain number for later steps."""
-
-    row: LoadResult
-    epsilon: UFloat | None
-    yields: float  #: relative change of C_alpha by a compliance of the steering of 1 deg/Nm
 
 
 Judge = Callable[[MeasuredFacts], SpinStatement]
@@ -100,76 +88,57 @@ def measure(
     evidence = evidence_of(config, points, parts, base, after.spin)
     slopes = [(group, *load_slopes(evidence, group)) for group in load_groups(evidence.points)]
     stiffnesses = [(group, own) for group, own, _ in slopes]
-    evidence, skew = _with_measured_skew(evidence, [own for _, own in stiffnesses])
-    evidence, scatter, zeros, drift = _with_setups(evidence, stiffnesses)
-    tried = []
-    for group, own in stiffnesses:
-        calibrated = partial(calibration, evidence, group, powers_of_load(stiffnesses, group.load))
-        # With camber sweeps in both directions (skew), no correction is needed: their mean holds at true zero sideslip.
-        at_zero = own if skew else _at_true_sideslip(evidence, group, own)
-        tried.append(_at_load(evidence, group, at_zero, calibrated, after))
-    rows = [found for found, _ in tried if found is not None]
-    rows = sorted([*rows, *_of_model_alone(after, rows)], key=lambda found: found.row.load)
-    row, law, notes, of_nominal = _at_nominal(evidence, rows, skew)
-    stated, left = judge(MeasuredFacts(row, zeros, drift)), config.rig.u("alpha_0_deg")
+    evidence = _with_setups(_with_measured_skew(evidence, [own for _, own in stiffnesses]), stiffnesses)
+    of_loads = [_at_load(evidence, group, own, stiffnesses, after) for group, own in stiffnesses]
+    measured = [found.row for found in of_loads if found.row is not None]
+    per_load = sorted([*measured, *_of_model_alone(after, measured)], key=lambda row: row.load)
+    epsilons = {x.row.load: x.epsilon for x in of_loads if x.row is not None and x.epsilon is not None}
+    row, law, notes, of_nominal = _at_nominal(evidence, per_load, epsilons)
+    stated, left = judge(MeasuredFacts(row, evidence.zeros, evidence.drift)), config.rig.u("alpha_0_deg")
     on_disc = None if law is None else row
-    of_loads = chain(*(said for *_, said in slopes), *(said for _, said in tried))
-    troubles = (*parts.unpaired, *of_loads, *of_nominal)
+    troubles = chain(*(said for *_, said in slopes), *(found.troubles for found in of_loads), of_nominal)
+    of_setups = warnings_of_setups(points, row, evidence.scatter, config)
     return Measured(
-        per_load=tuple(found.row for found in rows),
+        per_load=tuple(per_load),
         nominal=row,
         carried=carried_by_file(config, row, law, after.pecp1) if row and law else None,
         r_e_loads={load: float(r.nominal_value) for load, r in evidence.radii.items()},
         misaligned=on_disc is not None and on_disc.slips_beyond(left),
         notes=notes,
-        warnings=(*stated.warnings, *troubles, *warnings_of_setups(points, row, scatter, config)),
+        warnings=(*stated.warnings, *parts.unpaired, *troubles, *of_setups),
         load_note=law.note if law else "",
-        setup_scatter=scatter,
-        sideslip_zeros=zeros,
-        drift=drift,
+        setup_scatter=evidence.scatter,
+        sideslip_zeros=evidence.zeros,
+        drift=evidence.drift,
         misaligned_setups=_misaligned_setups(evidence, on_disc) if on_disc else {},
         axis_off=on_disc is not None and on_disc.axis_off(left),
-        camber_skew=skew,
+        camber_skew=evidence.skew,
         epsilon_gamma_model=after.epsilon_gamma,
         made=stated.made,
         reasons=stated.reasons,
     )
 
 
-class _WithSetups(NamedTuple):
-    """The evidence with what differs between set-ups and sweeps."""
-
-    evidence: DirectEvidence
-    scatter: SetupScatter | None = None
-    zeros: tuple[SideslipZeros, ...] = ()
-    drift: Drift | None = None
-
-
 def _with_setups(
     evidence: DirectEvidence, stiffnesses: Sequence[tuple[LoadGroup, LoadSlopes]]
-) -> _WithSetups:
+) -> DirectEvidence:
     """The evidence with scatter and sideslip zeros of the set-ups and with a drift; unchanged on a straight path."""
     if evidence.rig is None:
-        return _WithSetups(evidence)
+        return evidence
     scatter = setup_scatter(evidence, stiffnesses)
-    evidence = replace(evidence, excess=excess_forces(scatter, evidence.rig.of_setups))
-    evidence, drift = _with_drift(evidence)
+    excess = excess_forces(scatter, evidence.rig.of_setups)
+    evidence = _with_drift(replace(evidence, scatter=scatter, excess=excess))
     axes, zeros = _sideslip_zeros(evidence, stiffnesses)
-    return _WithSetups(replace(evidence, axes=axes), scatter, zeros, drift)
+    return replace(evidence, axes=axes, zeros=zeros)
 
 
-def _with_drift(evidence: DirectEvidence) -> tuple[DirectEvidence, Drift | None]:
-    """The evidence, with the relative forces of the sweeps if they clearly drift, and the drift.
-
-    The drift is None if the recorded temperature varies, which may explain it.
-    """
+def _with_drift(evidence: DirectEvidence) -> DirectEvidence:
+    """The evidence with the drift between sweeps, and with their relative forces if they clearly drift."""
     points = evidence.points
-    if np.ptp(points.T) > VISIBLE_TEMPERATURE:
-        return evidence, None
-    shares = shares_of_sweeps(points)
-    if shares is None:
-        return evidence, None
-    return (replace(evidence, shares=shares) if shares.drift.counts else evidence), shares.drift
+    found = None if np.ptp(points.T) > VISIBLE_TEMPERATURE else shares_of_sweeps(points)
+    if found is None:
+        return evidence
+    return replace(evidence, drift=found.drift, shares=found if found.drift.counts else None)
 
 
 def _at_true_sideslip(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes) -> LoadSlopes:
@@ -216,22 +185,35 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> tuple[Points, d
     return evidence.points, {load: quantity(C, "N/rad") for load, C in found.items() if C is not None}
 
 
+class _AtLoad(NamedTuple):
+    """The result of one load, None if nothing was measured there, with eps_gamma as an uncertain number, and warnings."""
+
+    row: LoadResult | None
+    epsilon: UFloat | None = None
+    troubles: Sequence[str] = ()
+
+
 def _at_load(
     evidence: DirectEvidence,
     group: LoadGroup,
     slopes: LoadSlopes,
-    calibrated: Callable[[LoadSlopes, Turning | None], Factors],
+    stiffnesses: Sequence[tuple[LoadGroup, LoadSlopes]],
     after: AfterFit,
-) -> tuple[_AtLoad | None, list[str]]:
-    """Results and warnings at one load, with eps_gamma if all its inputs were measured; None without any result."""
-    C_alpha, rig = slopes.C_alpha, evidence.rig
+) -> _AtLoad:
+    """The result at one load, with eps_gamma if all its inputs were measured; ``stiffnesses`` are those of all loads."""
+    rig = evidence.rig
+    if (
+        evidence.skew is None
+    ):  # otherwise the mean of camber sweeps in both directions holds at true zero sideslip
+        slopes = _at_true_sideslip(evidence, group, slopes)
+    C_alpha = slopes.C_alpha
     assumed = assumed_stiffness(evidence, group, C_alpha)
     slopes = slopes.of_camber(lambda C_gamma: corrected(evidence, C_gamma, assumed))
     found, troubles = (None, []) if rig is None else turning(evidence, group, slopes)
-    factors = calibrated(slopes, found)
+    factors = calibration(evidence, group, powers_of_load(stiffnesses, group.load), slopes, found)
     slopes = slopes.calibrated(factors.C_alpha, factors.C_gamma)
     if rig is None and not slopes.exists:
-        return None, []
+        return _AtLoad(None)
     found = found and found.calibrated(factors.F_phit)
     numbers = _numbers(evidence, group, slopes, found)
     fields: dict[str, Any] = {} if found is None else _of_zeros(evidence, group, found, slopes)
@@ -243,18 +225,18 @@ def _at_load(
     own = after.stiffnesses.get(group.load, {})
     measured = {name: x for name, x in numbers.items() if x is not None and name not in own}
     fields |= {name: quantity(x, DIRECT[name].unit) for name, x in measured.items()} | {**own}
-    fields |= {"budgets": {name: budget(x) for name, x in measured.items()}}
-    return _AtLoad(LoadResult(load=group.load, **fields), epsilon, factors.yields), troubles
+    fields |= {"budgets": {name: budget(x) for name, x in measured.items()}, "yields": factors.yields}
+    return _AtLoad(LoadResult(load=group.load, **fields), epsilon, troubles)
 
 
-def _of_model_alone(after: AfterFit, rows: Sequence[_AtLoad]) -> list[_AtLoad]:
+def _of_model_alone(after: AfterFit, rows: Sequence[LoadResult]) -> list[LoadResult]:
     """Results at loads at which only the fitted model has any; a steering yields there as at the nearest other load."""
-    yields = {found.row.load: found.yields for found in rows}
+    yields = {row.load: row.yields for row in rows}
     return [
-        _AtLoad(
-            LoadResult(load, **dict[str, Any](own)),
-            None,
-            yields[min(yields, key=lambda other: abs(other - load))] if yields else 0.0,
+        LoadResult(
+            load,
+            yields=yields[min(yields, key=lambda other: abs(other - load))] if yields else 0.0,
+            **dict[str, Any](own),
         )
         for load, own in after.stiffnesses.items()
         if load not in yields
@@ -334,35 +316,37 @@ class _AtNominal(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def _at_nominal(evidence: DirectEvidence, rows: Sequence[_AtLoad], skew: Quantity | None) -> _AtNominal:
-    """The result at the load nearest to the nominal one that has eps_gamma, and eps_gamma over load; else the nearest result."""
+def _at_nominal(
+    evidence: DirectEvidence, per_load: Sequence[LoadResult], epsilons: Mapping[float, UFloat]
+) -> _AtNominal:
+    """The result at the load nearest to the nominal one that has eps_gamma, and eps_gamma over load; else the nearest result.
+
+    ``epsilons`` are those measured, by load [N].
+    """
     nominal_load = evidence.config.tyre.nominal_load
-    nearest = min(rows, key=lambda found: abs(found.row.load - nominal_load), default=None)
+    nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
     of_slopes = [] if nearest is None else _if_steering_yields(evidence.config, nearest)
     if nearest is not None and not np.any(np.isfinite(evidence.points.T)):
         of_slopes.append(wording.UNKNOWN_WARMTH)
-    known = [(found, found.epsilon) for found in rows if found.epsilon is not None]
-    if not known:
-        per_load = [found.row for found in rows]
+    if not epsilons:
         lacking = wording.nothing_measured(
             camber=any(row.C_gamma is not None for row in per_load),
             zeros=any(row.C_phit is not None for row in per_load),
             radius=bool(evidence.radii),
         )
         notes = (*(() if evidence.rig else (wording.STRAIGHT_PATH,)), *of_slopes)
-        return _AtNominal(nearest.row if nearest else None, None, notes, (lacking,) if evidence.rig else ())
-    loads = [found.row.load for found, _ in known]
-    at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
-    law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
-    row, left = known[at][0].row, evidence.config.rig.u("alpha_0_deg")
+        return _AtNominal(nearest, None, notes, (lacking,) if evidence.rig else ())
+    loads = [row.load for row in per_load if row.load in epsilons]
+    at = min(range(len(loads)), key=lambda k: abs(loads[k] - nominal_load))
+    law = load_dependence(loads, [epsilons[load] for load in loads], at, nominal_load)
+    row, left = next(row for row in per_load if row.load == loads[at]), evidence.config.rig.u("alpha_0_deg")
     said, off = wording.alignment(row, left), row.axis_off(left)
-    notes = (*_notes(evidence, row, skew, law.note), *of_slopes)
-    elsewhere = _taken_elsewhere(evidence, [found.row for found in rows], row.load)
+    notes = (*_notes(evidence, row, law.note), *of_slopes)
     return _AtNominal(
         row,
         law,
         notes if off or not said else (said, *notes),
-        (*elsewhere, *([said] if off else []), *_skew_warning(evidence, skew)),
+        (*_taken_elsewhere(evidence, per_load, row.load), *([said] if off else []), *_skew_warning(evidence)),
     )
 
 
@@ -395,9 +379,7 @@ def _taken_elsewhere(evidence: DirectEvidence, per_load: Sequence[LoadResult], t
     return [said]
 
 
-def _with_measured_skew(
-    evidence: DirectEvidence, slopes: Sequence[LoadSlopes]
-) -> tuple[DirectEvidence, Quantity | None]:
+def _with_measured_skew(evidence: DirectEvidence, slopes: Sequence[LoadSlopes]) -> DirectEvidence:
     """The evidence with the measured value of the rig error that adds to the camber stiffness, and this value in declared units.
 
     Rolling backwards, the camber force keeps its sign and the slip force changes sign. Therefore half the sum of the two slopes
@@ -410,7 +392,7 @@ def _with_measured_skew(
         if row.C_alpha is not None and row.C_gamma is not None and row.C_gamma_backward is not None
     ]
     if evidence.rig is None or not both:
-        return evidence, None
+        return evidence
     errors = dict(evidence.rig.errors)
     error, declared = max(adding_to_camber(), key=lambda pair: errors[pair[0].name].std_dev)
     assert declared.camber_stiffness is not None
@@ -422,21 +404,22 @@ def _with_measured_skew(
         ],
     )
     errors[error.name] = found
-    measured = replace(evidence, rig=replace(evidence.rig, errors=errors))
-    return measured, quantity(found, declared.unit)
+    rig = replace(evidence.rig, errors=errors)
+    return replace(evidence, rig=rig, skew=quantity(found, declared.unit))
 
 
-def _if_steering_yields(config: Config, found: _AtLoad) -> list[str]:
+def _if_steering_yields(config: Config, row: LoadResult) -> list[str]:
     """A sentence if the steering is declared rigid, but a usual compliance would change C_alpha by more than its uncertainty."""
-    C_alpha, usual = found.row.C_alpha, COMPLIANCE.spread
+    C_alpha, usual = row.C_alpha, COMPLIANCE.spread
     if C_alpha is None or config.rig.u(COMPLIANCE.name) > 0.0:
         return []
-    change = abs(usual * found.yields)
+    change = abs(usual * row.yields)
     return [wording.steering(usual, change)] if change > abs(C_alpha.u / C_alpha.value) else []
 
 
-def _skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:
+def _skew_warning(evidence: DirectEvidence) -> list[str]:
     """A sentence if the measured skew far exceeds its declared uncertainty."""
+    skew = evidence.skew
     if skew is None:
         return []
     declared = max(evidence.config.rig.u(error.name) for error, _ in adding_to_camber())
@@ -449,15 +432,13 @@ def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:
     return tuple((error, declared) for error, declared in DECLARED if declared.camber_stiffness)
 
 
-def _notes(
-    evidence: DirectEvidence, row: LoadResult, skew: Quantity | None, load_note: str
-) -> tuple[str, ...]:
+def _notes(evidence: DirectEvidence, row: LoadResult, load_note: str) -> tuple[str, ...]:
     """Notes on the results at the nominal load: skew, conicity, load dependence, pressure."""
     used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
     nominal = 1e3 * evidence.config.tyre.nominal_pressure
     near = abs(used - nominal) < levels.PRESSURE.tolerance
     return (
-        *([wording.camber_skew(skew)] if skew else []),
+        *([wording.camber_skew(evidence.skew)] if evidence.skew else []),
         *([] if row.conicity is None else [wording.conicity_measured(row.conicity)]),
         load_note,
         *([] if near else [wording.off_nominal_pressure(used, nominal)]),

@@ -20,7 +20,7 @@ from mffit.measured import constants
 from mffit.measured.axis import SetupAngle
 from mffit.measured.drift import SweepShares
 from mffit.measured.radii import measured_effective_radius, measured_path_radius
-from mffit.measured.result import FINITE_SPIN
+from mffit.measured.result import FINITE_SPIN, Drift, SetupScatter, SideslipZeros
 from mffit.measured.uncertain import named
 from mffit.parts import Parts
 from mffit.points import Points
@@ -51,6 +51,12 @@ class DirectEvidence(ReadOnlyArrays):
     shares: SweepShares | None = None  #: relative deviations of the sweeps' forces, if they drift
     axes: Mapping[str, SetupAngle] = field(default_factory=dict)
     """alpha_M of every set-up that was run both ways."""
+    skew: Quantity | None = (
+        None  #: measured rig error that adds to the camber stiffness, in its declared unit
+    )
+    scatter: SetupScatter | None = None  #: of repeated set-ups
+    zeros: tuple[SideslipZeros, ...] = ()  #: consistency of the sideslip zeros of every set-up
+    drift: Drift | None = None  #: between sweeps; None if the temperature varies, which may explain it
 
     @property
     def published(self) -> bool:

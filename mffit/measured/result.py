@@ -144,6 +144,7 @@ class LoadResult(Brief):
     """Budgets of the other measured quantities, by their name in :data:`KEYS`."""
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual path first [1/m]
     setups: tuple[SetupResult, ...] = ()  #: results from every path and set-up alone, if there are several
+    yields: float = 0.0  #: relative change of C_alpha by a compliance of the steering of 1 deg/Nm
 
     def slip_force(self, angle: float) -> float:
         """Side force [N] of a small sideslip angle [rad], with the usual stiffness if none was measured."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from threadpoolctl import threadpool_limits
 
@@ -16,8 +16,10 @@ from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
 from mffit.diagnosis import wording
 from mffit.fit import FitResult
-from mffit.made import made
+from mffit.made import Made, made
+from mffit.measured import Measured
 from mffit.output import refuse_early
+from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.inputs import base_notes, base_warnings, input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
@@ -25,7 +27,15 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure, said
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.pipeline.refining import fit_and_measure
-from mffit.prediction import correction, missed_at_readings, missed_sentence
+from mffit.points import Points
+from mffit.points.loading import Reading
+from mffit.prediction import (
+    CorrectionTable,
+    MissedAtReadings,
+    correction,
+    missed_at_readings,
+    missed_sentence,
+)
 from mffit.progress import JUDGING, MEASURING, READING, WRITING, Progress, silent
 from mffit.results import CORRECTION, BuildResult
 from tir import Tyre
@@ -62,80 +72,97 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress(READING)
-    reading = read_points(config)
-    base = read_base(config)
-    made_of = made(input_hashes(config))
+    read = _Read(config, read_points(config), read_base(config), made(input_hashes(config)))
     progress(MEASURING)
-    parts, before = measure(config, reading.points, base)
-    names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
-    special = fitting.name_at_temperature(config.tyre.name)
+    parts, before = measure(config, read.reading.points, read.base)
     if out is not None:
-        further = f"{config.tyre.name}{CORRECTION}"
-        refuse_early(Path(out), (*names.values(), special, further, *WRITTEN), inputs_of(config))
+        names = (*_names(config).values(), f"{config.tyre.name}{CORRECTION}", *WRITTEN)
+        refuse_early(Path(out), names, inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-        measured, fitted = fit_and_measure(config, reading, parts, before, base, progress)
+        measured, fitted = fit_and_measure(config, read.reading, parts, before, read.base, progress)
         progress(JUDGING)
-        assert fitted.files is not None
-        files = fitted.files.by_use
-        trust, left = judged(
-            config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
-        )
-        judgement = said(trust)  # the doubts of the reading are among its warnings
-        trust = replace(trust, doubts=(*reading.doubts, *trust.doubts))
-        if ensemble:
-            progress(f"drawing {ensemble} tyres from the posterior")
-        annotated = annotator(config, made_of, measured, fitted, trust)
-        known = fitted.prediction
-        assert known is not None
-        assert fitted.left_by_formula is not None
-        proven = [name for name, own in fitted.left_by_formula.channels.items() if own.is_proven]
-        model = files[fitting.fitted_use(names)].tyre
-        missed = missed_at_readings(known, model, reading.points, fitted.model, proven)
-        table = correction(known, model, proven)
-        if trust.trusted:
-            rival = wording.rival_of_formula(left.effect)
-            remarks = (missed_sentence(missed[name], rival) for name in trust.limited if name in missed)
-            trust = replace(trust, remarks=tuple(remarks))
-        members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
-    notes = (*base_notes(config, base), *(f"{note}." for note in reading.notes))
+        result = _result(read, parts, measured, fitted, ensemble)
+    result = replace(result, seconds=time.perf_counter() - began)
+    if out is not None:
+        progress(f"{WRITING} {'report' if with_report else 'files'}")
+        write_build(result, Path(out), read.reading.stretches, with_report=with_report)
+    return result
+
+
+class _Read(NamedTuple):
+    """What a build reads."""
+
+    config: Config
+    reading: Reading
+    base: Tyre | None
+    made: Made
+
+
+def _names(config: Config) -> dict[str, str]:
+    """Name of every property file that a build may write, by use."""
+    names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
+    return {**names, TEMPERATURE: fitting.name_at_temperature(config.tyre.name)}
+
+
+def _result(read: _Read, parts: Parts, measured: Measured, fitted: FitResult, ensemble: int) -> BuildResult:
+    """The result of a fit: its judgement, the proven model error, and the annotated tyres."""
+    config, reading = read.config, read.reading
+    assert fitted.files is not None
+    files, names = {use: one.tyre for use, one in fitted.files.by_use.items()}, _names(config)
+    if fitted.temperature is None:
+        del names[TEMPERATURE]
+    else:
+        files[TEMPERATURE] = fitted.temperature.file.tyre
+    of_uses = {use: files[use] for use in names if use != TEMPERATURE}
+    trust, left = judged(config, reading.points, measured, fitted, of_uses)
+    said_of_trust = said(trust)  # the doubts of the reading are among its warnings
+    trust = replace(trust, doubts=(*reading.doubts, *trust.doubts))
+    annotated = annotator(config, read.made, measured, fitted, trust)
+    missed, table = _model_error(reading.points, fitted, files[fitting.fitted_use(of_uses)])
+    if trust.trusted:
+        rival = wording.rival_of_formula(left.effect)
+        remarks = (missed_sentence(missed[name], rival) for name in trust.limited if name in missed)
+        trust = replace(trust, remarks=tuple(remarks))
+    notes = (*base_notes(config, read.base), *(f"{note}." for note in reading.notes))
     fitted = replace(fitted, explanations=(*fitted.explanations, *notes))
-    tyres = {use: annotated(files[use].tyre, use) for use in names}
-    if fitted.temperature is not None:
-        tyres[TEMPERATURE] = annotated(fitted.temperature.file.tyre, TEMPERATURE)
-        names = {**names, TEMPERATURE: special}
-    warnings = (
-        *judgement,
-        *base_warnings(config, base),
-        *reading.warnings,
-        *measured.warnings,
-        *fitted.warnings,
-        *lab_warnings(config.lab, made_of.date.date()),
-    )
-    result = BuildResult(
+    return BuildResult(
         config=config,
         points=reading.points,
         parts=parts,
         measured=measured,
         fit=fitted,
         files=names,
-        tyres=tyres,
-        members=members,
+        tyres={use: annotated(files[use], use) for use in names},
+        members=tuple(_members(config, fitted, ensemble, annotated)) if ensemble else (),
         plain=fitting.plain_use(config),
-        warnings=warnings,
-        seconds=time.perf_counter() - began,
+        warnings=(
+            *said_of_trust,
+            *base_warnings(config, read.base),
+            *reading.warnings,
+            *measured.warnings,
+            *fitted.warnings,
+            *lab_warnings(config.lab, read.made.date.date()),
+        ),
         trust=trust,
         remains=left,
-        prediction=known,
+        prediction=fitted.prediction,
         missed=missed,
         correction=table,
-        made=made_of,
+        made=read.made,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,
     )
-    if out is not None:
-        progress(f"{WRITING} {'report' if with_report else 'files'}")
-        write_build(result, Path(out), reading.stretches, with_report=with_report)
-    return result
+
+
+def _model_error(
+    points: Points, fitted: FitResult, model: Tyre
+) -> tuple[dict[str, MissedAtReadings], CorrectionTable | None]:
+    """The proven model error of the file ``model``, at the readings and as a table."""
+    known, linear = fitted.prediction, fitted.left_by_formula
+    assert known is not None
+    assert linear is not None
+    proven = [name for name, own in linear.channels.items() if own.is_proven]
+    return missed_at_readings(known, model, points, fitted.model, proven), correction(known, model, proven)
 
 
 def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate) -> Iterator[Tyre]:

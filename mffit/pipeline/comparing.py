@@ -70,11 +70,8 @@ def compare(
         found = _with_data(_subject(files[0], given), config)
         files += inputs_of(config)
     else:
-        sides = _with_names_apart([_subject(path, given) for path in paths], paths)
-        if turn_slip is not None:
-            sides = [replace(side, turn_slip=turn_slip) for side in sides]
         progress("comparing")
-        found = between(*sides)
+        found = between(*_sides(paths, given, turn_slip))
     if out is not None:
         progress("writing the page")
         write_comparison(found, Path(out), read=files)
@@ -124,11 +121,18 @@ def _build_in(folder: Path) -> Specimen:
         ) from None
 
 
-def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:
-    """The subjects; those with one name get as much of their paths as makes the names differ."""
+def _sides(
+    paths: Sequence[Path], given: Mapping[str, float], turn_slip: bool | None
+) -> list[ComparedSubject]:
+    """Both subjects; those with one name get as much of their paths as makes the names differ."""
+    sides = [_subject(path, given) for path in paths]
     files = [path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)]
     return [
-        replace(side, name=f"{name}{file.suffix}")
+        replace(
+            side,
+            name=f"{name}{file.suffix}",
+            turn_slip=side.turn_slip if turn_slip is None else turn_slip,
+        )
         for side, name, file in zip(sides, tell_apart(files), files, strict=True)
     ]
 

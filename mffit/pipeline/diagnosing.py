@@ -28,6 +28,7 @@ from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
+from mffit.points.loading import Reading
 from mffit.progress import READING, Progress, silent
 from tir import Tyre
 
@@ -63,56 +64,75 @@ def diagnose(
     config = configuration.load(config)
     progress(READING)
     reading = read_points(config, continuous=True)
-    points, base = reading.points, read_base(config)
     read = [*inputs_of(config), last_build(config), *([Path(model)] if isinstance(model, str | Path) else [])]
     if out is not None:
         names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
         refuse_early(Path(out), names, read)
     chosen = chosen_model(config, model, progress)
-    other = another_tyre(chosen.tyre, config)
-    if other is not None:
-        progress(other.sentence)
     with threadpool_limits(1):
-        same = fitted_to(chosen.tyre, config)
-        known, seen = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
-        diagnosis = find_effects(
-            points,
-            chosen.tyre,
-            config,
-            rig=rig_of_build(chosen.tyre) if same else None,
-            effects=effects,
-            coefficients=known,
-            seen=seen,
-            repair_all=repair_all,
-            as_read=reading.as_read,
-            taken_off=reading.taken_off,
-            culprits=other is None,
-            progress=progress,
-        )
-    hashes = input_hashes(config)
-    if chosen.file is not None:
-        hashes[str(chosen.file)] = digest(chosen.file)
-    notes = [*([] if other is None else [other]), *chosen.notes, *diagnosis.notes]
-    diagnosis = replace(
-        diagnosis,
-        notes=(*notes, *_redone(config, points, diagnosis, base)),
-        made=made(hashes),
-        lab=config.lab,
-        left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
-        given_file=_seen_from(out, chosen.file),
-        written_anyway=chosen.fresh,
-    )
-    why = wording.reasons(diagnosis)
-    diagnosis = replace(
-        diagnosis,
-        headline=wording.headline(diagnosis),
-        reasons=why,
-        tyre=marked(diagnosis.tyre, why),
-        with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, why),
-    )
+        found = _explained(config, reading, chosen, effects, repair_all=repair_all, progress=progress)
+    diagnosis = _stated(config, reading, found, chosen, out)
     if out is not None:
         write_diagnosis(diagnosis, Path(out), protected=read)
     return diagnosis
+
+
+def _explained(
+    config: Config,
+    reading: Reading,
+    chosen: ChosenModel,
+    effects: Sequence[Effect],
+    *,
+    repair_all: bool,
+    progress: Progress,
+) -> Diagnosis:
+    """The effects that explain the misfit of the chosen model."""
+    other = another_tyre(chosen.tyre, config)
+    if other is not None:
+        progress(other.sentence)
+    same = fitted_to(chosen.tyre, config)
+    known, seen = known_of_model(chosen.tyre, config, chosen.file, same=same, fresh=chosen.fresh)
+    found = find_effects(
+        reading.points,
+        chosen.tyre,
+        config,
+        rig=rig_of_build(chosen.tyre) if same else None,
+        effects=effects,
+        coefficients=known,
+        seen=seen,
+        repair_all=repair_all,
+        as_read=reading.as_read,
+        taken_off=reading.taken_off,
+        culprits=other is None,
+        progress=progress,
+    )
+    return replace(found, notes=(*([] if other is None else [other]), *chosen.notes, *found.notes))
+
+
+def _stated(
+    config: Config, reading: Reading, found: Diagnosis, chosen: ChosenModel, out: str | Path | None
+) -> Diagnosis:
+    """The diagnosis with its origin, the direct method on corrected points, and its judgement."""
+    hashes = input_hashes(config)
+    if chosen.file is not None:
+        hashes[str(chosen.file)] = digest(chosen.file)
+    found = replace(
+        found,
+        notes=(*found.notes, *_redone(config, reading.points, found, read_base(config))),
+        made=made(hashes),
+        lab=config.lab,
+        left_out=(*reading.left_out, *left_out_by_diagnosis(reading.points, found)),
+        given_file=_seen_from(out, chosen.file),
+        written_anyway=chosen.fresh,
+    )
+    why = wording.reasons(found)
+    return replace(
+        found,
+        headline=wording.headline(found),
+        reasons=why,
+        tyre=marked(found.tyre, why),
+        with_terms=found.with_terms and marked(found.with_terms, why),
+    )
 
 
 def _seen_from(out: str | Path | None, file: Path | None) -> str:

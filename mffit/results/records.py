@@ -40,7 +40,7 @@ class BuildResult(Brief):
     tyres: Mapping[str, Tyre]  #: the tyre of each file, by use
     plain: str  #: the use whose file has the plain name
     warnings: tuple[str, ...]
-    seconds: float
+    seconds: float = 0.0  #: time of the whole build
     members: tuple[Tyre, ...] = ()  #: tyres drawn from the posterior, if requested
     trust: Trust = SOUND  #: the judgement by all rules
     remains: Remains = NOTHING_REMAINS  #: the examination of the residuals

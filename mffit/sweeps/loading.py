@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,71 +39,99 @@ from tir.errors import some
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
+class _File(NamedTuple):
+    """What is read of a file."""
+
+    raw: RawTable  #: the whole table
+    sweeps: tuple[Sweep, ...] = ()  #: without the excluded rows, in the rig's frame
+    columns: Columns | None = None  #: None if every row is excluded
+    frame: FileFrame | None = None  #: None if no row can be read
+    excluded: tuple[ExcludedRows, ...] = ()
+    contradicting: tuple[str, ...] = ()  #: sentences about rows in another direction than the [[sweep]]
+
+
 def load(config: Config) -> Sweeps:
     """The sweeps of every file of ``[[sweep]]``, in its order, in ISO-W, contact frame, SI; with warnings as sentences.
 
     Raises InputError if a file cannot be read, a value is implausible, or ``[fit] exclude`` leaves no reading.
     """
-    found: list[Sweep] = []
-    excluded: list[ExcludedRows] = []
-    at_rest: list[tuple[str, np.ndarray]] = []
-    warnings: list[str] = []
-    of_columns: list[tuple[Path, str]] = []
-    frames: dict[str, FileFrame] = {}
-    tables: dict[str, RawTable] = {}
-    tyres: dict[Path, str] = {}
     setups = setup_names(config.rig, config.sweep)
-    for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
-        whole = _raw(config, index, entry)
-        tables[entry.file] = whole
-        raw, apart = _apart(config, entry, whole)
-        for exclusion, rows in apart:
-            sweeps, frame = _as_far_as_readable(config, index, entry, rows, setup)
-            if frame is not None:
-                frames[entry.file] = frame
-            excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
-        if raw is None:
-            continue
-        tyres[raw.path] = named_tyre(raw.about)
-        columns = _columns(config, index, entry, raw)
-        if len(columns.standing):
-            at_rest.append((entry.file, columns.standing))
-        frames[entry.file] = _frame(config, columns)
-        of_columns.extend(
-            (raw.path, sentence) for sentence in _overridden(columns, config, frames[entry.file])
-        )
-        of_columns.extend((raw.path, sentence) for sentence in columns.warnings)
-        if entry.direction is not None and columns.direction is not None:
-            warnings.extend(_contradicting(columns, entry))
-        found.extend(sweeps_of(columns, config, entry, setup))
-    if not found:
+    files = {
+        entry.file: _file(config, index, entry, setup)
+        for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True))
+    }
+    read = [(file, file.columns, file.frame) for file in files.values() if file.columns and file.frame]
+    if not read:
         raise InputError(
             "leaves out every reading; remove some entries",
             file=config.path,
             line=config.line_of("fit.exclude"),
             key="fit.exclude",
         )
-    warnings = other_names(tyres) + _once(of_columns) + warnings + _sheets_left_out(tables)
+    found = [sweep for file in files.values() for sweep in file.sweeps]
+    frames = {name: file.frame for name, file in files.items() if file.frame is not None}
     open_loads = [s for s in found if frames[s.file].forces_lean and frames[s.file].load_is_vertical is None]
     vertical = load_is_vertical(open_loads)
-    warnings.extend(_about_frames(found, frames, vertical=vertical))
+    of_columns = [
+        (columns.raw.path, sentence)
+        for _, columns, frame in read
+        for sentence in (*_overridden(columns, config, frame), *columns.warnings)
+    ]
+    warnings = (
+        *other_names({columns.raw.path: named_tyre(columns.raw.about) for _, columns, _ in read}),
+        *_once(of_columns),
+        *(sentence for file, *_ in read for sentence in file.contradicting),
+        *_sheets_left_out({name: file.raw for name, file in files.items()}),
+        *_about_frames(found, frames, vertical=vertical),
+    )
 
-    def in_iso_w(sweep: Sweep) -> Sweep:
-        frame = frames[sweep.file]
-        if frame.forces_lean:
-            stated = frame.load_is_vertical
-            sweep = forces_turned(sweep, load_is_vertical=vertical if stated is None else stated)
-        if frame.moments_lean:
-            sweep = moments_turned(sweep)
-        if frame.at_centre:
-            sweep = to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius)
-        return sweep
+    def in_iso_w(sweeps: Sequence[Sweep]) -> tuple[Sweep, ...]:
+        return tuple(_in_iso_w(sweep, frames[sweep.file], config, vertical=vertical) for sweep in sweeps)
 
     return Sweeps(
-        tuple(in_iso_w(sweep) for sweep in found),
-        tuple(warnings),
-        tuple(replace(rows, sweeps=tuple(in_iso_w(sweep) for sweep in rows.sweeps)) for rows in excluded),
-        tuple(at_rest),
+        in_iso_w(found),
+        warnings,
+        tuple(
+            replace(rows, sweeps=in_iso_w(rows.sweeps)) for file in files.values() for rows in file.excluded
+        ),
+        tuple(
+            (name, f.columns.standing) for name, f in files.items() if f.columns and len(f.columns.standing)
+        ),
+    )
+
+
+def _in_iso_w(sweep: Sweep, frame: FileFrame, config: Config, *, vertical: bool) -> Sweep:
+    """The sweep with forces and moments in frame W about the contact point."""
+    if frame.forces_lean:
+        stated = frame.load_is_vertical
+        sweep = forces_turned(sweep, load_is_vertical=vertical if stated is None else stated)
+    if frame.moments_lean:
+        sweep = moments_turned(sweep)
+    if frame.at_centre:
+        sweep = to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius)
+    return sweep
+
+
+def _file(config: Config, index: int, entry: SweepTable, setup: str) -> _File:
+    """What is read of the file of a [[sweep]]; of excluded rows, which may be damaged, as much as can be read."""
+    whole, frame, excluded = _raw(config, index, entry), None, []
+    raw, apart = _apart(config, entry, whole)
+    for exclusion, rows in apart:
+        sweeps: tuple[Sweep, ...] = ()
+        with suppress(InputError):
+            columns = _columns(config, index, entry, rows)
+            sweeps, frame = tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
+        excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
+    if raw is None:
+        return _File(whole, frame=frame, excluded=tuple(excluded))
+    columns = _columns(config, index, entry, raw)
+    return _File(
+        whole,
+        tuple(sweeps_of(columns, config, entry, setup)),
+        columns,
+        _frame(config, columns),
+        tuple(excluded),
+        tuple(_contradicting(columns, entry)),
     )
 
 
@@ -220,17 +250,6 @@ def _no_reading(name: str, lines: np.ndarray, wrong: int) -> str:
     return f"line {wrong} {reason}; {place}"
 
 
-def _as_far_as_readable(
-    config: Config, index: int, entry: SweepTable, raw: RawTable, setup: str
-) -> tuple[tuple[Sweep, ...], FileFrame | None]:
-    """The sweeps of excluded rows and their frame; () and None if they cannot be read, as damaged rows are often excluded."""
-    try:
-        columns = _columns(config, index, entry, raw)
-        return tuple(sweeps_of(columns, config, entry, setup)), _frame(config, columns)
-    except InputError:
-        return (), None
-
-
 def _frame(config: Config, columns: Columns) -> FileFrame:
     """The frame of a file."""
     try:
@@ -275,7 +294,9 @@ def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Co
 
 
 def _contradicting(columns: Columns, entry: SweepTable) -> list[str]:
-    assert columns.direction is not None
+    """A sentence about rows whose direction is not that of the [[sweep]]."""
+    if entry.direction is None or columns.direction is None:
+        return []
     differs = int(np.sum(columns.direction != (-1 if entry.direction == "backward" else 1)))
     if not differs:
         return []
