@@ -17,9 +17,17 @@ from mffit.on_demand import names_on_demand
 ROOT = Path(__file__).parents[1]
 MOST_OF_SPIN = 215
 """Modules of mffit and tir that the direct method needs, from the command line, with a base file and a recording."""
-OF_LMFIT = ("scipy.optimize", "scipy.stats", "scipy.sparse", "matplotlib")
-"""What lmfit loads, which finds the slopes at zero."""
-HEAVY = ("rich", "jinja2", "pint", "llvmlite")
+HEAVY = (
+    "rich",
+    "jinja2",
+    "pint",
+    "llvmlite",
+    "lmfit",
+    "matplotlib",
+    "scipy.optimize",
+    "scipy.sparse",
+    "scipy.stats",
+)
 QUESTIONS = {
     "building": "fit.fitting",
     "comparing": "comparison.compare",
@@ -72,7 +80,7 @@ def test_no_question_imports_the_others(question):
 def test_tir_is_light():
     modules = loaded("import tir")
     assert not [name for name in own(modules) if name.startswith("mffit")]
-    assert not modules & {*HEAVY, *OF_LMFIT, "scipy", "pandas", "pydantic"}
+    assert not modules & {*HEAVY, "scipy", "pandas", "pydantic"}
 
 
 @pytest.mark.parametrize("package", ON_DEMAND)

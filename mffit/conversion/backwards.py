@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares
 
 import tir
 from mffit.conversion import mf52, wording
@@ -143,30 +142,36 @@ def _cornering_stiffness(tyre: Tyre, reach: Reach) -> dict[str, float]:
     Fz, Fz0 = loads(reach), float(tyre["FNOMIN"]) * float(tyre["LFZO"])
     wanted = np.asarray(tyre.state(Fz).K_ya) / (Fz0 * (float(tyre["LKY"]) or 1.0))
 
-    def stiffness(x: np.ndarray) -> np.ndarray:
-        return np.asarray(x[0] * np.sin(2.0 * np.arctan(Fz / (x[1] * Fz0))))
+    def off(at: Mapping[str, float]) -> np.ndarray:
+        return np.asarray(at["PKY1"] * np.sin(2.0 * np.arctan(Fz / (at["PKY2"] * Fz0))) - wanted)
 
-    return _nearest({"PKY1": wanted[np.argmax(np.abs(wanted))], "PKY2": 2.0}, stiffness, wanted)
+    return _nearest(off, {"PKY1": float(wanted[np.argmax(np.abs(wanted))]), "PKY2": 2.0})
 
 
 def _relaxation(tyre: Tyre, values: Mapping[str, Any], reach: Reach) -> dict[str, float]:
     """Coefficients of the old relaxation lengths nearest to those of the upright wheel over load."""
-    Fz, starts = loads(reach), {"PTX1": 1.0, "PTX2": 0.0, "PTX3": 0.0, "PTY1": 1.0, "PTY2": 2.0}
+    Fz = loads(reach)
     state = tyre.state(Fz)
+    wanted = np.concatenate([np.abs(state.sigma_x), np.abs(state.sigma_y)])
 
-    def lengths(x: np.ndarray) -> np.ndarray:
-        p = mf52.in_terms_of_62({**values, **dict(zip(starts, x.tolist(), strict=True))})
-        return np.concatenate(mf52.relaxation_lengths(p, Fz))
+    def off(at: Mapping[str, float]) -> np.ndarray:
+        p = mf52.in_terms_of_62({**values, **at})
+        return np.asarray(np.concatenate(mf52.relaxation_lengths(p, Fz)) - wanted)
 
-    return _nearest(starts, lengths, np.concatenate([np.abs(state.sigma_x), np.abs(state.sigma_y)]))
+    return _nearest(off, {"PTX1": 1.0, "PTX2": 0.0, "PTX3": 0.0, "PTY1": 1.0, "PTY2": 2.0})
 
 
 def _nearest(
-    starts: Mapping[str, float], curve: Callable[[np.ndarray], np.ndarray], wanted: np.ndarray
+    off: Callable[[Mapping[str, float]], np.ndarray], start: Mapping[str, float]
 ) -> dict[str, float]:
-    """The coefficients with which a curve comes nearest to the wanted one."""
-    found = least_squares(lambda x: curve(x) - wanted, [*starts.values()])
-    return dict(zip(starts, found.x.tolist(), strict=True))
+    """The coefficients with the least sum of squares of ``off``, by name."""
+    import lmfit  # loads scipy.stats and matplotlib, so it is imported only on use
+
+    def residual(at: lmfit.Parameters) -> np.ndarray:
+        return off(at.valuesdict())
+
+    found = lmfit.minimize(residual, lmfit.create_params(**start), method="least_squares")
+    return dict(found.params.valuesdict())
 
 
 def _stages(

@@ -7,15 +7,16 @@ procedure.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
 from mffit.constants import CAMBER_OF_SLOPES, STRAIGHT, UPRIGHT, USUAL_U_FORCE
+from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.measured import constants, wording
 from mffit.measured.axis import usual_stiffness
 from mffit.measured.evidence import DirectEvidence, rest_of_play
@@ -86,32 +87,27 @@ def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray, curvature: float) -
 
     The curve is D sin(C atan(b - E (b - atan b))) with b = x s / (C D): odd, with slope s at zero and ceiling D.
     """
-    import lmfit  # loads matplotlib, so it is imported only on use
-
     first = np.argsort(x)[:3]
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
-
-    shape = lmfit.Parameters()
-    shape.add("slope", 1.05, min=0.2, max=5.0)  # relative to its first estimate
-    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # relative to the largest value
-    shape.add("C", 1.2, min=0.3, max=1.9)
+    numbers = [
+        FreeNumber("slope", 1.05, 0.2, 5.0),  # relative to its first estimate
+        FreeNumber("ceiling", 1.2, 0.7, 20.0),  # relative to the largest value
+        FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
+    ]
     if curvature:
-        shape.add("E", 0.0, min=-6.0, max=1.0)
+        numbers.append(FreeNumber("E", 0.0, -6.0, 1.0, expected=0.0, spread=curvature))
 
-    def residual(shape: lmfit.Parameters) -> np.ndarray:
-        s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
-        b = s * x / (C * D)
-        bent = shape["E"].value * (b - np.arctan(b)) if curvature else 0.0
-        priors = [(C - 1.2) / 0.5, *([shape["E"].value / curvature] if curvature else [])]
-        return np.append((D * np.sin(C * np.arctan(b - bent)) - y) / u, priors)
+    def curve(at: Mapping[str, Any]) -> Any:
+        D, C = at["ceiling"] * top, at["C"]
+        b = at["slope"] * start * x / (C * D)
+        bent = at["E"] * (b - np.arctan(b)) if curvature else 0.0
+        return D * np.sin(C * np.arctan(b - bent))
 
-    scales = [0.1, 0.3, 0.2, *([0.5] if curvature else [])]
-    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=scales)
-    found = out.params["slope"]
-    scatter = float(np.sqrt(out.chisqr / max(len(x) - 3, 1)))
-    error = found.stderr if found.stderr is not None else abs(found.value)
-    return float(found.value * start), float(error * abs(start)), scatter
+    found = solve(of_model(curve, [number.name for number in numbers], y, u), numbers, tolerance=1e-9)
+    scatter = math.sqrt(found.cost / max(len(x) - 3, 1))
+    error = math.sqrt(found.covariance[0, 0])
+    return found.values["slope"] * start, error * abs(start), scatter
 
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
