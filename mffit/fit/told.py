@@ -124,8 +124,8 @@ class _Readings(NamedTuple):
         slopes = self.slopes[rows]
         noisy, own = slopes * self.noise[rows, None], stride * slopes.T @ self.own[rows]
         return Told(
-            information=stride * slopes.T @ slopes,
-            scatter=stride * noisy.T @ noisy + own @ own.T,
+            information=stride * (slopes.T @ slopes),
+            scatter=stride * (noisy.T @ noisy) + own @ own.T,
             missed=stride * slopes.T @ self.missed[rows],
             pull=stride * slopes.T @ self.residual[rows],
         )

@@ -382,7 +382,7 @@ def _turn(numbers: Sequence[Uncertain], weighted: np.ndarray, stride: int) -> np
     the readings over the uncertainty that the fit used.
     """
     prior = np.array([number.spread for number in numbers]) ** -2.0
-    return root(inverse(np.diag(prior) + stride * weighted.T @ weighted / constants.WIDER_THAN_THE_FIT))
+    return root(inverse(np.diag(prior) + stride * (weighted.T @ weighted) / constants.WIDER_THAN_THE_FIT))
 
 
 def _evidence(model: Mixed, of: Components, smooth: SmoothFunctions, further: np.ndarray) -> float:

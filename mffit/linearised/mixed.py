@@ -78,7 +78,8 @@ class Mixed(ReadOnlyArrays):
         alone = np.einsum("gqr,gr->gq", found.own, sums.own_pull)
         own = w * (alone - found.through @ found.mean)
         through = found.through.reshape(own.size, len(found.mean))
-        spread = np.sum(dtrmm(1.0, found.root, through, side=1) ** 2, axis=1).reshape(own.shape)
+        # transposed, the rows lie as the library wants them and need not be turned
+        spread = np.sum(dtrmm(1.0, found.root, through.T, trans_a=1) ** 2, axis=0).reshape(own.shape)
         own_variance = np.diagonal(found.own, axis1=1, axis2=2) + w * w * spread
         square = w * sums.square - found.mean @ found.pull - w * w * np.sum(sums.own_pull * alone)
         scaled = found.scaled
@@ -104,7 +105,7 @@ class Mixed(ReadOnlyArrays):
         through = half @ halfway
         m = len(size)
         flat = halfway.reshape(-1, m)
-        information = w * sums.common - w * w * flat.T @ flat
+        information = w * sums.common - w * w * (flat.T @ flat)  # a product with its own transpose is half the work
         pull = w * sums.pull - w * w * sums.own_pull.ravel() @ through.reshape(-1, m)
         whole = size[:, None] * information * size
         factor = _factor(whole, ROUNDING * float(np.max(w * np.diag(sums.common) * size**2, initial=0.0)))
