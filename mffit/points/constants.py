@@ -64,6 +64,12 @@ SWEPT_SHARE = Real(
     "-",
     "Share of its setting's range that a movement among plateaus covers to be a sweep; a move to the next plateau covers less.",
 )
+MOST_OF_WAY = Real(
+    0.8,
+    "-",
+    "Share of the way of the settings by which a rig that rests half of the time is told from one that moves all the time: it "
+    "is made in half of that share of the time.",
+)
 GAP_OVER_STEP = Real(5.0, "-", "Smallest gap in time over the usual step.")
 BLOCKS_OF_STRETCH = Count(10, "-", "Blocks of a stretch; leading ones are compared with its second half.")
 

@@ -123,7 +123,9 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     resting = ~np.any([*moving.values(), *creeping.values()], axis=0)
     rests = _with_their_ends(settings, runs(resting))
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in rests]
-    staircase = 2.0 * sum(held) >= np.ptp(settings.time)  # the rig rests most of the time
+    # The rig rests most of the time, or hurries to where it settles and then rests.
+    rests_long = 2 * sum(seconds >= _shortest_plateau(settings, roll=True) for seconds in held) > len(held)
+    staircase = 2.0 * sum(held) >= np.ptp(settings.time) or (rests_long and _hurries(settings))
     # Between plateaus a movement is a sweep only if it covers most of its setting's range; else it leads to the next plateau.
     span = {
         name: constants.SWEPT_SHARE * np.ptp(_smoothed(settings, name)[0]) if staircase else 0.0
@@ -139,6 +141,18 @@ def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) ->
     for begin, end in runs(~covered):
         found += _swept(settings, moving, creeping, begin, end, span)
     return found
+
+
+def _hurries(settings: SteadySettings) -> bool:
+    """Whether most of the way of all settings is made in a small part of the time.
+
+    A rig that settles at each set-point seems to move for long, but hardly does; in a sweep, the way takes the time.
+    """
+    lag = samples_in(settings.time, constants.COMPARED_APART)
+    ways = [np.abs(np.diff(_smoothed(settings, name)[0][::lag])) / step for name, step in STEP.items()]
+    made = np.cumsum(np.sort(np.sum(ways, axis=0))[::-1])
+    share = np.searchsorted(made, constants.MOST_OF_WAY * made[-1]) / len(made) if len(made) else 1.0
+    return bool(share <= constants.SWEPT_SHARE * constants.MOST_OF_WAY)
 
 
 def _with_their_ends(settings: SteadySettings, rests: Sequence[tuple[int, int]]) -> list[Stretch]:
@@ -182,10 +196,16 @@ def _with_its_load(settings: SteadySettings, rest: Stretch) -> Stretch:
     return rest._replace(kind=SWEEP, swept="Fz") if wanders else rest
 
 
-def _shortest_plateau(settings: SteadySettings) -> float:
-    """Time [s] of a rest between movements, transient included, below which it is part of the sweep around it."""
+def _shortest_plateau(settings: SteadySettings, *, roll: bool = False) -> float:
+    """Time [s] of a rest between movements, transient included, below which it is part of the sweep around it.
+
+    ``roll``: or below which it gives no point, because the wheel does not roll far enough either.
+    """
     speed = float(np.median(settings.V))
-    return constants.SHORTEST_STRETCH + (constants.TRANSIENT_ROLL / speed if speed > 0.0 else 0.0)
+    if not speed > 0.0:
+        return float(constants.SHORTEST_STRETCH)
+    longest = constants.SHORTEST_ROLL / speed if roll else np.inf
+    return min(constants.SHORTEST_STRETCH, longest) + constants.TRANSIENT_ROLL / speed
 
 
 def _swept(

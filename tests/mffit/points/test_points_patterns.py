@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+import scipy.signal
 
 from mffit import build, points
 from mffit import config as configuration
@@ -146,6 +147,19 @@ def test_a_staircase_of_short_holds_gives_a_plateau_for_each(read, angles):
     found = read(recording(50.0, alpha_deg=alpha))
     plateaus = [note for note in of_kind(found, PLATEAU) if not note.dropped]
     assert [round(note.alpha_to_deg) for note in plateaus] == angles.tolist()
+    assert not of_kind(found, SWEEP)
+
+
+@pytest.mark.parametrize("seconds", [3.0, 4.0])
+def test_a_staircase_to_either_side_whose_steps_settle_slowly_gives_a_plateau_for_each(read, seconds):
+    """Set-points +1, -1, +2, -2 ... deg are reached with a lag of 0.3 s, which takes half of a hold."""
+    angles = [side * angle for angle in range(1, 13) for side in (1, -1)]
+    demand = np.repeat(angles, round(50.0 * seconds)).astype(float)
+    keeps = np.exp(-1.0 / 50.0 / 0.3)
+    alpha = scipy.signal.lfilter([1.0 - keeps], [1.0, -keeps], demand)
+    found = read(recording(50.0, alpha_deg=alpha))
+    plateaus = [note for note in of_kind(found, PLATEAU) if not note.dropped]
+    assert [round(note.alpha_to_deg) for note in plateaus] == angles
     assert not of_kind(found, SWEEP)
 
 
