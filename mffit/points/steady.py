@@ -236,14 +236,27 @@ def _swept(
             if name not in steps or steps[name] < max(steps.values()):
                 continue
             follows = name == "gamma" and ranges["alpha"] > constants.SWEPT_SHARE * ranges["gamma"]
-            lasts = settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
-            if ranges[name] >= span[name] and lasts and not follows:
+            if ranges[name] >= span[name] and not follows and _lasts(settings, smooth[name], b, e):
                 found += [Stretch(i, j, "", SWEEP, name) for i, j in _without_jumps(settings, name, b, e)]
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
         taken[s.begin - begin : s.end - begin] = True
     found += [Stretch(begin + b, begin + e, "moves between set-points", MOVE) for b, e in runs(~taken)]
     return found
+
+
+def _lasts(settings: SteadySettings, smooth: np.ndarray, begin: int, end: int) -> bool:
+    """Whether a movement is no move to another set-point: it lasts, or turns back and is long enough for the forces to follow.
+
+    A rig goes to its next set-point at once, but by the shortest way.
+    """
+    seconds = settings.time[end - 1] - settings.time[begin]
+    if seconds >= constants.SHORTEST_STRETCH:
+        return True
+    rolled = seconds * float(np.median(settings.V[begin:end]))
+    away = abs(smooth[end - 1] - smooth[begin])
+    turns = away <= (1.0 - constants.SWEPT_SHARE) * np.ptp(smooth[begin:end])
+    return bool(turns and rolled >= 2.0 * constants.TRANSIENT_ROLL and end - begin >= constants.FEWEST_POINTS)
 
 
 def _without_jumps(settings: SteadySettings, name: str, begin: int, end: int) -> list[tuple[int, int]]:

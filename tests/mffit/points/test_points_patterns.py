@@ -163,6 +163,43 @@ def test_a_staircase_to_either_side_whose_steps_settle_slowly_gives_a_plateau_fo
     assert not of_kind(found, SWEEP)
 
 
+def between_rests(one: np.ndarray, rate: float) -> np.ndarray:
+    """Six times one movement, each after three seconds at rest where it begins."""
+    return np.tile(np.r_[np.full(round(3.0 * rate), one[0]), one], 6)
+
+
+@pytest.mark.parametrize("setting", ["alpha_deg", "kappa"])
+@pytest.mark.parametrize("seconds", [1.0, 1.5])
+@pytest.mark.parametrize("shape", ["triangle", "sine", "one side", "sawtooth"])
+def test_a_fast_movement_that_turns_back_between_rests_is_a_sweep(read, shape, seconds, setting):
+    rate, top = 100.0, 10.0 if setting == "alpha_deg" else 0.1
+    phase = np.arange(round(seconds * rate)) / (seconds * rate)
+    one = {
+        "triangle": 1.0 - np.abs((4.0 * phase + 1.0) % 4.0 - 2.0),
+        "sine": np.sin(2.0 * np.pi * phase),
+        "one side": 1.0 - np.abs(2.0 * phase - 1.0),
+        "sawtooth": 2.0 * phase - 1.0,
+    }[shape]
+    found = read(recording(rate, **{setting: between_rests(top * one, rate)}))
+    swept = of_kind(found, SWEEP)
+    assert len(swept) >= 4
+    assert {note.swept for note in swept} == {setting}
+    assert len([note for note in of_kind(found, PLATEAU) if not note.dropped]) == 6
+    reached = found.points.condition(setting)
+    assert np.ptp(reached) > 0.8 * np.ptp(top * one)
+    assert not found.doubts
+
+
+@pytest.mark.parametrize("seconds", [0.2, 1.0])
+def test_a_fast_move_to_the_next_set_point_and_a_short_bump_are_no_sweeps(read, seconds):
+    bump = np.interp(np.linspace(0.0, 1.0, 20), [0.0, 0.5, 1.0], [0.0, 6.0, 0.0])  # 2 m of rolling
+    ramp = np.linspace(-6.0, 6.0, round(100.0 * seconds))
+    rest = np.zeros(300)
+    alpha = np.tile(np.r_[rest - 6.0, ramp, rest + 6.0, ramp[::-1]], 3)
+    assert not of_kind(read(recording(100.0, alpha_deg=alpha)), SWEEP)
+    assert not of_kind(read(recording(100.0, alpha_deg=between_rests(bump, 100.0))), SWEEP)
+
+
 def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
     """Steps of 2 deg from -8 to 8 deg, and all the way back in 8 s."""
     angles = np.arange(-8.0, 9.0, 2.0)
@@ -181,18 +218,18 @@ def test_a_move_in_a_staircase_is_no_sweep_and_a_movement_over_its_range_is():
 
 
 def braked_with_the_load(fall: float) -> pd.DataFrame:
-    """Eight brakings between rests, each of which takes off a share of the load at once."""
+    """Eight brakings between rests, in each of which a share of the load goes and comes back every second."""
     corners = [
         (6.0 * k + x, s) for k in range(8) for x, s in ((0.0, 0.0), (3.0, 0.0), (4.4, -0.1), (5.9, 0.0))
     ]
     kappa = at_rate(corners, 50.0)
     table = recording(50.0, kappa=kappa)
-    table["Fz_N"] *= 1.0 - fall * (kappa < -0.015)
+    table["Fz_N"] *= 1.0 - fall * (kappa < -0.001) * (np.arange(len(kappa)) // 25 % 2)
     return table
 
 
 def test_a_setting_whose_sweeps_are_all_lost_is_in_doubt(read):
-    """The load jumps by two thirds whenever the wheel is braked, so that no sweep of slip is held."""
+    """The load jumps by two thirds while the wheel is braked, so that no sweep of slip is held."""
     (doubt,) = read(braked_with_the_load(0.67)).doubts
     assert doubt.startswith("kappa moves from -0.09")
     assert "load, pressure or speed changes" in doubt
