@@ -8,6 +8,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from mffit import config as configuration
 from mffit.config import Config, SweepTable
 from mffit.config.loading import STAND_IN, checked
@@ -23,8 +25,8 @@ from mffit.recordings.disc import files_of_folder
 from mffit.recordings.guess import NOTHING_NAMED
 from mffit.recordings.project_file import load_beyond, relative, slug, sweeps_text, tyre_found
 from mffit.recordings.recording import rolls_backward
-from mffit.recordings.sniffed import configuration_of, stated_of_tyre
-from mffit.suspicion import before_the_fit
+from mffit.recordings.sniffed import configuration_of, holding, stated_of_tyre
+from mffit.suspicion import before_the_fit, under_axes
 from mffit.sweeps import formats
 
 STRETCHES = "stretches.csv"
@@ -142,7 +144,8 @@ def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[S
     for axes in sniffed.axes if stated.axes is None else (stated.axes,):
         ordered = tuple(sorted(sniffed.axes, key=lambda one: one != axes))
         found = replace(sniffed, axes=ordered)
-        refusal = _refusal_of_a_build(found, stated)
+        belt = stated.disc is None and not disc_signs(sniffed)
+        refusal = _refusal_of_a_build(found, stated, sniffed.axes[0] if belt and sniffed.axes else "")
         if refusal is None:
             return found, project_text(found, folder, stated)
         refusals.append(refusal)
@@ -155,12 +158,23 @@ def _as_a_build_reads(sniffed: Sniffed, folder: Path, stated: Stated) -> tuple[S
     return found, project_text(sniffed, folder, stated)
 
 
-def _refusal_of_a_build(sniffed: Sniffed, stated: Stated) -> InputError | None:
-    """Why a build refuses the points of the ``tyre.toml``; None if it reads them."""
+def _refusal_of_a_build(sniffed: Sniffed, stated: Stated, read_under: str) -> InputError | None:
+    """Why a build refuses the points of the ``tyre.toml``; None if it takes them.
+
+    ``read_under`` are the axes of the points; "" if a build reads others, as it does on a disc.
+    """
     here = Path()  # the project's folder may not exist yet
     try:
         config = checked(tomllib.loads(project_text(sniffed, here, stated)), path=None, folder=here, lines={})
-        before_the_fit(read(config).points, config)
+        points = sniffed.points
+        if read_under and len(points):
+            points = under_axes(points, read_under, config.rig.axes)
+            pressed = [file in holding(sniffed.recordings, "p_kPa") for file in points.files]
+            nominal = 1e3 * config.tyre.nominal_pressure  # of the files that do not state theirs
+            points = points.replace(p=np.where(np.array(pressed)[points.file], points.p, nominal))
+        else:
+            points = read(config).points
+        before_the_fit(points, config)
     except InputError as error:
         return error
     return None
