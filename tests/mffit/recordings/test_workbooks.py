@@ -138,3 +138,22 @@ def test_a_name_may_have_brackets_and_the_mark(book):
     name = sheet_in(other, "900N_0deg")
     assert (file_of(name), sheet_of(name)) == (other, "900N_0deg")
     assert np.all(sniff([name]).points.Fz == pytest.approx(900.0, rel=1e-2))
+
+
+@pytest.mark.parametrize("merged", [["Fz_N"], ["p_kPa"], ["Fz_N", "gamma_deg"]])
+def test_a_condition_in_merged_cells_is_refused_with_the_cure(tmp_path, merged):
+    """A value that is stated once for many rows: Excel keeps it in the first of the merged cells."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    headings = ["Fz_N", "gamma_deg", "p_kPa", "alpha_deg", "Fy_N"]
+    sheet.append(headings)
+    for angle in range(-5, 6):
+        sheet.append([1000.0, 0.0, 200.0, float(angle), -150.0 * angle])
+    for name in merged:
+        column = headings.index(name) + 1
+        sheet.merge_cells(start_row=2, end_row=12, start_column=column, end_column=column)
+    book.save(tmp_path / "a.xlsx")
+    with pytest.raises(InputError, match="merged cells hold their value only in the first one") as refused:
+        sniff([tmp_path / "a.xlsx"])
+    assert (refused.value.column, refused.value.line) in {(name, 3) for name in merged}
