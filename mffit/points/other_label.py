@@ -8,28 +8,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
-from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM, STRAIGHT
+from mffit.constants import EXPLAINED_SHARE, FALSE_ALARM
 from mffit.points import constants, levels
-from mffit.points.noise import neighbour_noise, stating
+from mffit.points.like import MeanReadings, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points, of_si
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
 LABELS = {"Fz": ("Fz_N", levels.LOAD), "p": ("p_kPa", levels.PRESSURE), "gamma": ("gamma_deg", levels.CAMBER)}
 """By setting, its column and its levels."""
-
-
-class MeanReading(NamedTuple):
-    """Mean of the side forces of a sweep at one combination of the other settings."""
-
-    Fy: float  #: [N]
-    Fz: float  #: [N]
-    alpha: float  #: [rad]
-    slope: float  #: dFy/dalpha [N/rad]; 0 if the sweep does not show it
-    u: float  #: standard error of Fy [N]
-
-
-MeansOfSweep = Mapping[tuple[int, ...], MeanReading]
 
 
 class OtherLabel(NamedTuple):
@@ -69,8 +56,8 @@ def other_labels(points: Points) -> tuple[OtherLabel, ...]:
 
     That it does is seen at the sweep's own label, where other sweeps differ from it, or elsewhere in the campaign.
     """
-    used = points.select(points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False)
-    u = np.where(stating(used.u_Fy), used.u_Fy, neighbour_noise(used, used.Fy))
+    used = rolling(points)
+    u = noise(used)
     found: list[OtherLabel] = []
     while len(np.unique(used.sweep)) > 2:
         suspects = [one for setting in LABELS for one in _under(setting, used, u)]
@@ -91,19 +78,13 @@ def _under(setting: str, points: Points, u: np.ndarray) -> Iterator[OtherLabel]:
     values = {k: float(np.median(getattr(points, setting)[label == k])) for k in np.unique(label).tolist()}
     if len(values) < 2:
         return
-    others = [
-        levels.labels_of_setting(getattr(points, name), points.sweep, one)
-        for name, (_, one) in LABELS.items()
-        if name != setting
-    ]
-    step = np.round(points.alpha / STRAIGHT.rad).astype(int)
-    path = np.unique(points.phi_t, return_inverse=True)[1]
-    keys = np.column_stack([*others, step, points.direction, points.mount, path, points.setup])
-    swept: dict[tuple[int, int], MeansOfSweep] = {}
+    others = [(name, one) for name, (_, one) in LABELS.items() if name != setting]
+    keys = np.column_stack([points.setup, conditions(points, others)])
+    swept: dict[tuple[int, int], MeanReadings] = {}
     for k in np.unique(points.sweep).tolist():
         own = np.flatnonzero(points.sweep == k)
         if len(np.unique(label[own])) == 1:  # a sweep over this setting has no label of it
-            swept[k, int(label[own[0]])] = _readings(points, own, keys, u)
+            swept[k, int(label[own[0]])] = mean_readings(points, own, keys, u)
     matter = {
         pair: share
         for pair in {(a, b) for _, a in swept for _, b in swept if a != b}
@@ -155,30 +136,8 @@ class _Compared(NamedTuple):
         return float(np.sqrt(max(self.apart**2 - self.noise**2, 0.0)))
 
 
-def _readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeansOfSweep:
-    """The mean readings of a sweep by its other settings."""
-    out: dict[tuple[int, ...], MeanReading] = {}
-    for group in levels.rows_of_equal(keys[rows]):
-        own = rows[group]
-        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
-        out[tuple(keys[own[0]].tolist())] = MeanReading(
-            Fy, Fz, alpha, 0.0, float(rms(u[own])) / np.sqrt(len(own))
-        )
-    for key, one in out.items():
-        beside = [out[near] for near in (_next(key, -1), _next(key, 1)) if near in out]
-        if beside:
-            low, high = min((one, *beside), key=lambda r: r.alpha), max((one, *beside), key=lambda r: r.alpha)
-            out[key] = one._replace(slope=(high.Fy - low.Fy) / (high.alpha - low.alpha))
-    return out
-
-
-def _next(key: tuple[int, ...], by: int) -> tuple[int, ...]:
-    """The key of the next step of sideslip, which is its third from the front."""
-    return (*key[:2], key[2] + by, *key[3:])
-
-
 def _differences(
-    setting: str, first: MeansOfSweep, second: MeansOfSweep
+    setting: str, first: MeanReadings, second: MeanReadings
 ) -> Iterator[tuple[float, float, float]]:
     """Difference of two sweeps [N], its standard error, and the force, at the settings that both have."""
     for key in first.keys() & second.keys():
@@ -188,7 +147,7 @@ def _differences(
         yield moved - a.Fy, float(np.hypot(a.u, scale * b.u)), a.Fy
 
 
-def _compared(setting: str, readings: MeansOfSweep, others: list[MeansOfSweep]) -> _Compared | None:
+def _compared(setting: str, readings: MeanReadings, others: list[MeanReadings]) -> _Compared | None:
     """A sweep against others; None with too few common readings."""
     all_of = [one for other in others for one in _differences(setting, readings, other)]
     if len(all_of) < constants.FEWEST_COMPARED_LABELS:
@@ -200,7 +159,7 @@ def _compared(setting: str, readings: MeansOfSweep, others: list[MeansOfSweep]) 
     return _Compared(len(apart), rms(apart), rms(u), rms(force), float(chdtrc(len(apart), chi2)))
 
 
-def _effect(setting: str, swept: Mapping[tuple[int, int], MeansOfSweep], at: int, other: int) -> float | None:
+def _effect(setting: str, swept: Mapping[tuple[int, int], MeanReadings], at: int, other: int) -> float | None:
     """Difference over force that a change of label makes in pairs of sweeps, rms over all; None without pairs."""
     found = [
         _compared(setting, one, [second])

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from mffit.constants import STRAIGHT
 from mffit.points import constants, levels
+from mffit.points.like import MeanReading, conditions, mean_readings, noise, rolling
 from mffit.points.points import Points
 from mffit.quantities import CONDITIONS
 from mffit.scatter import ALARM, rms
 
-Curve = Mapping[int, tuple[float, float, float]]
-"""Mean sideslip [rad] and side force per load with its standard error (0 of a single reading), by step of sideslip."""
+SETTINGS = (("Fz", levels.LOAD), ("gamma", levels.CAMBER), ("p", levels.PRESSURE), ("V", levels.SPEED))
 
 
 class Unlike(NamedTuple):
@@ -44,29 +42,19 @@ def unlike_files(points: Points) -> tuple[Unlike, ...]:
     Conditions are levels of load, camber, pressure and speed, direction, mount and path; only the freely rolling wheel is
     compared. What a zero of the force or of the sideslip makes is taken off.
     """
-    rolling = points.select(
-        points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False
-    )
-    if len(np.unique(rolling.file)) < 2:
+    used = rolling(points)
+    files = np.unique(used.file).tolist()
+    if len(files) < 2:
         return ()
-    keys = np.column_stack(
-        [
-            levels.labels_of_sweeps(rolling.Fz, rolling.sweep, levels.LOAD),
-            *(
-                levels.nearest_labels(getattr(rolling, kind), of)
-                for kind, of in (("gamma", levels.CAMBER), ("p", levels.PRESSURE), ("V", levels.SPEED))
-            ),
-            rolling.direction,
-            rolling.mount,
-            np.unique(rolling.phi_t, return_inverse=True)[1],
-        ]
-    )
+    keys, u = conditions(used, SETTINGS), noise(used)
+    readings = {k: mean_readings(used, np.flatnonzero(used.file == k), keys, u) for k in files}
     apart: dict[tuple[int, int], list[_Difference]] = {}
-    for rows in levels.rows_of_equal(keys):
-        cell = rolling.select(rows, with_table=False)
-        curves = {int(k): _curve(cell.select(cell.file == k, with_table=False)) for k in np.unique(cell.file)}
-        for one, other in itertools.combinations(curves, 2):
-            found = _difference(curves[one], curves[other], cell)
+    for one, other in itertools.combinations(files, 2):
+        common = np.array(sorted(readings[one].keys() & readings[other].keys())).reshape(-1, keys.shape[1])
+        for rows in levels.rows_of_equal(common[:, :-1]):
+            first, second = ([readings[k][tuple(key)] for key in common[rows].tolist()] for k in (one, other))
+            in_cell = np.all(keys[:, :-1] == common[rows[0], :-1], axis=1) & np.isin(used.file, (one, other))
+            found = _difference(first, second, used.select(in_cell, with_table=False))
             if found is not None:
                 apart.setdefault((one, other), []).append(found)
     pairs = (_pair(points.files[one], points.files[other], found) for (one, other), found in apart.items())
@@ -86,24 +74,13 @@ class _Difference(NamedTuple):
     where: str
 
 
-def _curve(part: Points) -> Curve:
-    step = np.round(part.alpha / STRAIGHT.rad).astype(int)
-    y = part.Fy / part.Fz
-    curve = {}
-    for k in np.unique(step).tolist():
-        own = y[step == k]
-        error = float(np.std(own, ddof=1)) / np.sqrt(len(own)) if len(own) > 1 else 0.0
-        curve[k] = float(np.mean(part.alpha[step == k])), float(np.mean(own)), error
-    return curve
-
-
-def _difference(first: Curve, second: Curve, cell: Points) -> _Difference | None:
-    """The difference of two curves at the steps of sideslip that both have; None with too few."""
-    common = sorted(first.keys() & second.keys())
-    if len(common) < constants.FEWEST_COMPARED:
+def _difference(first: list[MeanReading], second: list[MeanReading], cell: Points) -> _Difference | None:
+    """The difference of two files at common steps of sideslip, in rising order; None with too few."""
+    if len(first) < constants.FEWEST_COMPARED:
         return None
     (x, y, u), (x_other, y_other, u_other) = (
-        np.transpose([curve[k] for k in common]) for curve in (first, second)
+        np.transpose([(one.alpha, one.Fy / one.Fz, np.nan_to_num(one.u) / one.Fz) for one in of])
+        for of in (first, second)
     )
     slope = np.gradient(y, x)
     change = y_other - y - slope * (x_other - x)

@@ -1,0 +1,67 @@
+"""Mean side forces at like conditions, by which sweeps and files are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.constants import STRAIGHT
+from mffit.points import levels
+from mffit.points.noise import neighbour_noise, stating
+from mffit.points.points import Points
+from mffit.scatter import rms
+
+
+class MeanReading(NamedTuple):
+    """Mean of some side forces of the freely rolling wheel at one condition and step of sideslip."""
+
+    Fy: float  #: [N]
+    Fz: float  #: [N]
+    alpha: float  #: [rad]
+    slope: float  #: dFy/dalpha [N/rad]; 0 if the readings do not show it
+    u: float  #: standard error of Fy [N]; NaN if nothing shows the noise
+
+
+MeanReadings = Mapping[tuple[int, ...], MeanReading]
+"""By condition, whose last number is the step of sideslip."""
+
+
+def rolling(points: Points) -> Points:
+    """The loaded points that roll freely and have a side force."""
+    return points.select(points.free_rolling & np.isfinite(points.Fy) & (points.Fz > 0.0), with_table=False)
+
+
+def noise(points: Points) -> np.ndarray:
+    """Standard uncertainty (n,) of Fy: as stated, else from neighbouring readings."""
+    return np.where(stating(points.u_Fy), points.u_Fy, neighbour_noise(points, points.Fy))
+
+
+def conditions(points: Points, settings: Sequence[tuple[str, levels.LevelKind]]) -> np.ndarray:
+    """Condition (n, k) of each point: labels of settings, direction, mount and path, and the step of sideslip."""
+    return np.column_stack(
+        [
+            *(levels.labels_of_setting(getattr(points, name), points.sweep, kind) for name, kind in settings),
+            points.direction,
+            points.mount,
+            np.unique(points.phi_t, return_inverse=True)[1],
+            np.round(points.alpha / STRAIGHT.rad).astype(int),
+        ]
+    )
+
+
+def mean_readings(points: Points, rows: np.ndarray, keys: np.ndarray, u: np.ndarray) -> MeanReadings:
+    """The mean readings of some ``rows`` (m,) by condition; ``keys`` (n, k) are conditions, ``u`` (n,) uncertainties of Fy."""
+    out: dict[tuple[int, ...], MeanReading] = {}
+    for group in levels.rows_of_equal(keys[rows]):
+        own = rows[group]
+        Fy, Fz, alpha = (float(np.mean(getattr(points, name)[own])) for name in ("Fy", "Fz", "alpha"))
+        error = float(rms(u[own])) / np.sqrt(len(own))
+        out[tuple(keys[own[0]].tolist())] = MeanReading(Fy, Fz, alpha, 0.0, error)
+    for key, one in out.items():
+        beside = [out[near] for by in (-1, 1) if (near := (*key[:-1], key[-1] + by)) in out]
+        if beside:
+            low, high = min((one, *beside), key=lambda r: r.alpha), max((one, *beside), key=lambda r: r.alpha)
+            out[key] = one._replace(slope=(high.Fy - low.Fy) / (high.alpha - low.alpha))
+    return out
