@@ -79,12 +79,9 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     stretches = tuple(note for part in reduced for note in part.stretches)
-    compared = points.select(~points.continuous) if config.rig.on_disc else points
-    unlike = unlike_files(compared)
     doubts = (
         *lost_sweeps((part.ranges for part in reduced), points, stretches),
-        *(pair.sentence for pair in unlike[:NAMED_IN_SENTENCE]),
-        *(one.sentence for one in other_labels(compared)[:NAMED_IN_SENTENCE]),
+        *_compared(points.select(~points.continuous) if config.rig.on_disc else points),
     )
     warnings = [
         *doubts,
@@ -130,6 +127,12 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         _slip_as_read(kept, {file: zero for file, (zero, _) in of_slip.taken_off.items()}),
         doubts,
     )
+
+
+def _compared(points: Points) -> tuple[str, ...]:
+    """Doubts about files and labels that others contradict at like conditions."""
+    found = (unlike_files(points), other_labels(points))
+    return tuple(one.sentence for kind in found for one in kind[:NAMED_IN_SENTENCE])
 
 
 def _slip_as_read(points: Points, taken_off: Mapping[str, SlipZero]) -> Points | None:

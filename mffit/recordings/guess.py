@@ -84,9 +84,9 @@ def guesses(
     by_unit = only_ones(raw, columns, known)
     columns |= by_unit
     speed = columns.get("V_mps")
-    sign = -1.0 if speed is not None and float(np.nanmedian(speed.values)) < 0.0 else 1.0
-    if speed is not None:
-        columns["V_mps"] = speed._replace(values=sign * speed.values)
+    rolls_back = speed is not None and float(np.nanmedian(speed.values)) < 0.0
+    if speed is not None and rolls_back:
+        columns["V_mps"] = speed._replace(values=-speed.values)
     columns, of_axes = _in_one_frame(columns)
     chosen, left_out, of_units = choices(columns, unloaded_radius)
     columns = {name: column for name, column in columns.items() if name not in left_out}
@@ -96,9 +96,8 @@ def guesses(
     for name in [name for name in by_unit if name in found]:
         found[name] = found[name]._replace(why="taken by its unit, see above")
         remarks.append(taken_for(by_unit[name]))
-    if sign < 0.0 and "V_mps" in found:
-        why = "; ".join(filter(None, (found["V_mps"].why, "the speed is negative in the file")))
-        found["V_mps"] = found["V_mps"]._replace(scale=sign, why=why)
+    if rolls_back and "V_mps" in found:
+        found["V_mps"] = found["V_mps"].reversed("the speed is negative in the file")
     if why := _of_finished_points(columns, found):
         time = found.pop("time_s")
         found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
@@ -107,8 +106,7 @@ def guesses(
     if slip.guess is not None:
         found[SLIP] = slip.guess
     if slip.force_reversed:
-        why = "; ".join(filter(None, (found["Fx_N"].why, slip.force_reversed)))
-        found["Fx_N"] = found["Fx_N"]._replace(scale=-1.0, why=why)
+        found["Fx_N"] = found["Fx_N"].reversed(slip.force_reversed)
     remarks += questions(raw, found, {guess.heading for guess in found.values()})
     if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
         remarks.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))

@@ -142,8 +142,7 @@ def _judged(
             force_reversed += ", which the recorded speeds confirm" if confirmed else ", as a braking force"
             in_form = None if in_form is None else in_form.reversed
         else:
-            why = "braking is positive in the file, as Fx falls with it"
-            guess = guess._replace(scale=-1.0, why="; ".join(filter(None, (guess.why, why))))
+            guess = guess.reversed("braking is positive in the file, as Fx falls with it")
             form, in_form = _form(-slip, found, unit_of)
     if form is not None and form.over not in (None, ROAD):
         why = "; ".join(filter(None, (guess.why, form.said(column.heading))))

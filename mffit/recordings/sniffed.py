@@ -116,16 +116,9 @@ def sniff(
     bad = bad_runs(summaries)
     if len(bad) == len(recordings):
         raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
-    axes = _first_axes(recordings)
-    for directed in _either_way(recordings):
-        recordings = directed
-        config = configuration_of(recordings, axes, bad)
-        reading = read(config, may_be_empty=True)
-        agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
-        if axes in agreeing:
-            break
-    if agreeing and agreeing[0] != axes:
-        reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
+    tried = _first_axes(recordings)
+    found = _read_under(tried, recordings, bad)
+    reading, config = found.reading, found.config
     of_summaries = [
         *(f"{error} (this sheet is left out)" for error in refused),
         *(f"{each.recording} is left out: {each.why}" for each in bad),
@@ -137,15 +130,38 @@ def sniff(
     two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
     reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
     return Sniffed(
-        recordings,
-        agreeing,
-        wrong,
+        found.recordings,
+        found.agreeing,
+        found.wrong,
         reading,
-        conditions_of(recordings, reading),
+        conditions_of(found.recordings, reading),
         bool(two),
         bad,
-        evidence_of(reading.points, load_falls=axes == "sae"),
+        evidence_of(reading.points, load_falls=tried == "sae"),
     )
+
+
+class _ReadUnderAxes(NamedTuple):
+    """Recordings with their rolling directions, as read under axes that fit."""
+
+    recordings: tuple[SniffedRecording, ...]
+    config: Config
+    reading: Reading
+    agreeing: tuple[str, ...]  #: as :func:`axes_of` returns them
+    wrong: tuple[str, ...]
+
+
+def _read_under(axes: str, recordings: Sequence[SniffedRecording], bad: Sequence[BadRun]) -> _ReadUnderAxes:
+    """The recordings under these axes in the first directions in which they fit, else under the first axes that do."""
+    for directed in _either_way(recordings):
+        config = configuration_of(directed, axes, bad)
+        reading = read(config, may_be_empty=True)
+        agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
+        if axes in agreeing:
+            break
+    if agreeing and agreeing[0] != axes:
+        reading = read(configuration_of(directed, agreeing[0], bad), may_be_empty=True)
+    return _ReadUnderAxes(directed, config, reading, agreeing, wrong)
 
 
 def files_of(path: str | Path) -> list[Path]:

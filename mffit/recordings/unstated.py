@@ -54,6 +54,10 @@ class Guess(NamedTuple):
         """The unit in which the file's readings are."""
         return self.unit or self.stated or self.channel.unit
 
+    def reversed(self, why: str) -> Guess:
+        """The same column with the opposite sign in the file, for a reason."""
+        return self._replace(scale=-1.0, why="; ".join(filter(None, (self.why, why))))
+
     @property
     def column(self) -> Column:
         """The guess as an entry of ``[columns]``."""

@@ -17,7 +17,7 @@ from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.groups import SETTINGS
-from mffit.suspicion.rereadings import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.rereadings import MISTAKES, Away, ExplainingMistake, Mistake, explaining
 from mffit.suspicion.rule import Outcome, When, rule
 
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
@@ -100,19 +100,22 @@ def misread_sweep(
         }
         best = explaining(candidates, gross, away, tolerated) if gross else None
         if best is not None:
-            found.append(
-                Misread(
-                    sweep=part.sweep_names[part.sweep[0]],
-                    file=part.files[part.file[0]],
-                    looks=best.mistake.looks,
-                    column=best.mistake.column,
-                    remedy=best.mistake.remedy,
-                    before=max(gross.values()),
-                    after=best.left,
-                )
-            )
+            found.append(_named(part, best, max(gross.values())))
     if len(found) == 1:
         yield found[0]
+
+
+def _named(part: Points, best: ExplainingMistake, before: float) -> Misread:
+    """The record of a sweep with its mistake."""
+    return Misread(
+        sweep=part.sweep_names[part.sweep[0]],
+        file=part.files[part.file[0]],
+        looks=best.mistake.looks,
+        column=best.mistake.column,
+        remedy=best.mistake.remedy,
+        before=before,
+        after=best.left,
+    )
 
 
 def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
