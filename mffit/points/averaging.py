@@ -70,16 +70,8 @@ def means(
     moving = np.repeat([stretch.kind != PLATEAU for stretch in stretches], counts)
     names = tuple(dict.fromkeys(labels))
     found = _means(sweep, phi_t, rows, first)
-    u = {}
-    for channel in CHANNELS:
-        values, stated = getattr(sweep, channel), found.u(channel)
-        if np.any(np.isfinite(values)) and not np.all(moving):
-            records = [values[part] for part, s in zip(kept, stretches, strict=True) if s.kind == PLATEAU]
-            errors = np.full(len(found), np.nan)
-            errors[~moving] = errors_of_means(records)
-            # Without scatter no standard error can be estimated.
-            stated = np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
-        u[channel] = stated
+    resting = [part for part, s in zip(kept, stretches, strict=True) if s.kind == PLATEAU]
+    u = {channel: _errors(sweep, found, channel, resting, moving) for channel in CHANNELS}
     begin, end = (
         np.repeat(ends, counts) for ends in zip(*[(s.rests_from, s.end) for s in stretches], strict=True)
     )
@@ -97,6 +89,19 @@ def means(
         ),
     )
     return Means(points, tuple(counts), used)
+
+
+def _errors(
+    sweep: Sweep, found: Points, channel: str, resting: Sequence[np.ndarray], moving: np.ndarray
+) -> np.ndarray:
+    """Standard errors (k,) of the means of a channel, those of plateaus estimated from their samples where none is stated."""
+    values, stated = getattr(sweep, channel), found.u(channel)
+    if not np.any(np.isfinite(values)) or np.all(moving):
+        return stated
+    errors = np.full(len(found), np.nan)
+    errors[~moving] = errors_of_means([values[rows] for rows in resting])
+    # Without scatter no standard error can be estimated.
+    return np.where(np.isfinite(stated), stated, np.where(errors > 0.0, errors, np.nan))
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:

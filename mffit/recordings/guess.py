@@ -107,12 +107,17 @@ def guesses(
         found[SLIP] = slip.guess
     if slip.force_reversed:
         found["Fx_N"] = found["Fx_N"].reversed(slip.force_reversed)
-    remarks += questions(raw, found, {guess.heading for guess in found.values()})
-    if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
-        remarks.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
-    remarks += [] if found.keys() & {"time_s", "t_s"} else [_without_time(raw)]
+    remarks += _asked(raw, found)
     ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
+
+
+def _asked(raw: RawTable, found: Mapping[str, Guess]) -> list[str]:
+    """Questions about channels that a file may have, the load in its names, and its time."""
+    asked = questions(raw, found, {guess.heading for guess in found.values()})
+    if FROM_NAMES in raw.about and "Fz_N" in found and not found["Fz_N"].stated:
+        asked.append(_load_of_names(raw.about[FROM_NAMES], found["Fz_N"]))
+    return asked if found.keys() & {"time_s", "t_s"} else [*asked, _without_time(raw)]
 
 
 def _rolling(raw: RawTable) -> tuple[RawTable, list[str]]:
