@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response, StreamingResponse
-from starlette.routing import Route
+from starlette.routing import Mount, Route
 
 from mffit.as_json import plain
 from mffit.errors import InputError
@@ -111,82 +112,107 @@ class Opened:
             self._session.stop()
 
 
+@dataclass(frozen=True)
+class Answers:
+    """What the addresses of a window answer; ``closing`` says whether the server is about to end."""
+
+    opened: Opened
+    closing: Callable[[], bool]
+
+    def showing(self, found: Callable[[], Any]) -> Endpoint:
+        async def show(request: Request) -> Response:
+            return JSONResponse(await run_in_threadpool(found))
+
+        return show
+
+    def acting(self, action: Callable[[dict[str, Any]], Any]) -> Endpoint:
+        async def act(request: Request) -> Response:
+            content = await _content(request)
+            return await self._done(lambda: action(content))
+
+        return act
+
+    async def page(self, request: Request) -> Response:
+        return HTMLResponse(await run_in_threadpool(_page, self.opened))
+
+    async def adding(self, request: Request) -> Response:
+        return HTMLResponse(await run_in_threadpool(_recordings_page, self.opened))
+
+    async def store(self, request: Request) -> Response:
+        folder, name = self.opened.folder, request.path_params["name"]
+        content = await _body(request, int(constants.LARGEST_RECORDING))
+        if content is None:
+            most = f"{constants.LARGEST_RECORDING / 1e6:.0f} MB"
+            raise InputError(f"{name} is larger than {most}; copy it into the folder")
+        return await self._done(lambda: {"name": folder.store(name, content).name})
+
+    async def run(self, request: Request) -> Response:
+        return await self._done(lambda: self.opened.session.run(request.path_params["kind"]))
+
+    async def events(self, request: Request) -> Response:
+        states = _events(self.opened.session, request, self.closing)
+        return StreamingResponse(states, media_type="text/event-stream")
+
+    async def result(self, request: Request) -> Response:
+        found = within(out_of(self.opened.session.file.path), request.path_params["path"])
+        if found is None:
+            return Response(status_code=404)
+        return FileResponse(found, headers={"content-security-policy": SANDBOX})
+
+    async def gone(self, request: Request, error: Exception) -> Response:
+        return Response(status_code=400)  # nobody reads it
+
+    async def refused(self, request: Request, error: Exception) -> Response:
+        """The sentence why something was refused."""
+        assert isinstance(error, InputError)
+        versions = error.versions if isinstance(error, ChangedElsewhere) else None
+        found = {"error": str(error), "sentence": error.sentence, "key": error.key, "versions": versions}
+        return await self._with_state(found, REFUSED)
+
+    async def _done(self, action: Callable[[], Any]) -> Response:
+        return await self._with_state(await run_in_threadpool(action) or {}, 200)
+
+    async def _with_state(self, found: dict[str, Any], status: int) -> Response:
+        """An answer with the new state of the project if one is open."""
+        if self.opened.has_project:
+            found = {**found, "state": await run_in_threadpool(self.opened.session.state)}
+        return JSONResponse(plain(found), status)
+
+
 def window_app(
     opened: Opened, *, entrance: Entrance, port: int, closing: Callable[[], bool] = lambda: False
 ) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
+    answers = Answers(opened, closing)
     shown: dict[str, Callable[[], Any]] = {
         "recordings": lambda: plain(opened.of_folder("table")),
         "project": lambda: opened.session.data,
         "settings": lambda: opened.session.settings(),
         "state": lambda: opened.session.state(),
     }
-    actions: dict[str, Callable[[dict[str, Any], Mapping[str, str]], Any]] = {
-        "check": lambda content, at: opened.of_folder("check", content),
-        "make": lambda content, at: opened.make(content),
-        "add": lambda content, at: opened.add(content),
-        "edit": lambda content, at: opened.edit(content),
-        "values": lambda content, at: _values_of(content),
-        "undo": lambda content, at: opened.session.undo(),
-        "stop": lambda content, at: opened.session.stop(),
-        "stop-reading": lambda content, at: opened.stop_reading(),
-        "run/{kind}": lambda content, at: opened.session.run(at["kind"]),
+    actions: dict[str, Callable[[dict[str, Any]], Any]] = {
+        "check": lambda content: opened.of_folder("check", content),
+        "make": opened.make,
+        "add": opened.add,
+        "edit": opened.edit,
+        "values": _values_of,
+        "undo": lambda content: opened.session.undo(),
+        "stop": lambda content: opened.session.stop(),
+        "stop-reading": lambda content: opened.stop_reading(),
     }
-
-    def showing(found: Callable[[], Any]) -> Endpoint:
-        async def show(request: Request) -> Response:
-            return JSONResponse(await run_in_threadpool(found))
-
-        return show
-
-    def acting(action: Callable[[dict[str, Any], Mapping[str, str]], Any]) -> Endpoint:
-        async def act(request: Request) -> Response:
-            content = await _content(request)
-            return await _answer(lambda: action(content, request.path_params), opened)
-
-        return act
-
-    async def page(request: Request) -> Response:
-        return HTMLResponse(await run_in_threadpool(_page, opened))
-
-    async def adding(request: Request) -> Response:
-        return HTMLResponse(await run_in_threadpool(_recordings_page, opened))
-
-    async def store(request: Request) -> Response:
-        folder, name = opened.folder, request.path_params["name"]
-        content = await _body(request, int(constants.LARGEST_RECORDING))
-        if content is None:
-            most = f"{constants.LARGEST_RECORDING / 1e6:.0f} MB"
-            raise InputError(f"{name} is larger than {most}; copy it into the folder")
-        return await _answer(lambda: {"name": folder.store(name, content).name}, opened)
-
-    async def events(request: Request) -> Response:
-        return StreamingResponse(_events(opened.session, request, closing), media_type="text/event-stream")
-
-    async def result(request: Request) -> Response:
-        found = within(out_of(opened.session.file.path), request.path_params["path"])
-        if found is None:
-            return Response(status_code=404)
-        return FileResponse(found, headers={"content-security-policy": SANDBOX})
-
-    async def gone(request: Request, error: Exception) -> Response:
-        return Response(status_code=400)  # nobody reads it
-
-    async def refused(request: Request, error: Exception) -> Response:
-        return JSONResponse({"error": str(error)}, REFUSED)
-
     routes = [
-        Route("/{home}/", page),
-        Route("/{home}/add", adding),
-        *(Route(f"/{{home}}/{name}", showing(found)) for name, found in shown.items()),
-        *(Route(f"/{{home}}/{name}", acting(action), methods=["POST"]) for name, action in actions.items()),
-        Route("/{home}/store/{name}", store, methods=["POST"]),
-        Route("/{home}/events", events),
-        Route("/{home}/out/{path:path}", result),
+        Route("/", answers.page),
+        Route("/add", answers.adding),
+        *(Route(f"/{name}", answers.showing(found)) for name, found in shown.items()),
+        *(Route(f"/{name}", answers.acting(action), methods=["POST"]) for name, action in actions.items()),
+        Route("/run/{kind}", answers.run, methods=["POST"]),
+        Route("/store/{name}", answers.store, methods=["POST"]),
+        Route("/events", answers.events),
+        Route("/out/{path:path}", answers.result),
     ]
     application = Starlette(
-        routes=routes,
-        exception_handlers={InputError: refused, ClientDisconnect: gone},
+        routes=[Mount("/{home}", routes=routes)],
+        exception_handlers={InputError: answers.refused, ClientDisconnect: answers.gone},
         middleware=[Middleware(GZipMiddleware)],
     )
     return Guard(application, entrance=entrance, port=port)
@@ -272,18 +298,3 @@ async def _body(request: Request, most: int) -> bytes | None:
         if len(found) > most:
             return None
     return bytes(found)
-
-
-async def _answer(action: Callable[[], Any], opened: Opened) -> Response:
-    """What an action returns, or the sentence why it was refused; with the new state of the project if one is open."""
-    found: dict[str, Any] = {}
-    status = 200
-    try:
-        found = await run_in_threadpool(action) or {}
-    except InputError as error:
-        found = {"error": str(error), "sentence": error.sentence, "key": error.key}
-        found["versions"] = error.versions if isinstance(error, ChangedElsewhere) else None
-        status = REFUSED
-    if opened.has_project:
-        found["state"] = await run_in_threadpool(opened.session.state)
-    return JSONResponse(plain(found), status)

@@ -9,11 +9,15 @@ import zlib
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from threading import Thread
+from typing import TYPE_CHECKING
 
 import click
 
 from mffit import viewer
 from mffit.errors import InputError
+
+if TYPE_CHECKING:
+    from mffit.window.app import Opened
 
 ADDRESS = "127.0.0.1"
 FREE_PORTS = range(49_152, 65_536)
@@ -35,26 +39,11 @@ def open_path(
     """
     import uvicorn
 
-    from mffit.window.app import Opened, window_app
+    from mffit.window.app import window_app
     from mffit.window.guard import Entrance
-    from mffit.window.reading import ReadingProcess
-    from mffit.window.recordings_folder import PROJECT, RecordingsFolder
-    from mffit.window.session import Session
 
-    first = paths[0]
-    if all(path.suffix.lower() == ".tir" for path in paths):
-        shown = Opened(html=viewer.show(paths).html)
-    elif len(paths) > 1:
-        raise InputError(
-            "opens one project at a time; give this file alone, or property files only", file=first
-        )
-    elif first.is_dir() and not (first / PROJECT).exists():
-        shown = Opened(folder=RecordingsFolder(first), reading=ReadingProcess())
-    else:
-        session = Session(first / PROJECT if first.is_dir() else first)
-        session.file.config()
-        shown = Opened(session, reading=ReadingProcess())
-    with _listening(port) if port else _usual(first) as listening:
+    shown = _opened(paths)
+    with _listening(port) if port else _usual(paths[0]) as listening:
         port = listening.getsockname()[1]
         said: list[str] = []
 
@@ -71,14 +60,34 @@ def open_path(
             shown.session.run("fit")
         said.append(entrance.new_address())
         opened(f"http://{ADDRESS}:{port}{said[-1]}")
+        # a browser in the terminal would wait
         with _leading_to(f"http://{ADDRESS}:{port}{entrance.new_address()}", port) as page:
             if launch is not None and page is not None:
-                Thread(
-                    target=launch, args=(page,), daemon=True
-                ).start()  # a browser in the terminal would wait
+                Thread(target=launch, args=(page,), daemon=True).start()
             with contextlib.suppress(KeyboardInterrupt):  # the usual end
                 server.run(sockets=[listening])
         shown.stop()
+
+
+def _opened(paths: Sequence[Path]) -> Opened:
+    """What is at these paths; raises as :func:`open_path`."""
+    from mffit.window.app import Opened
+    from mffit.window.reading import ReadingProcess
+    from mffit.window.recordings_folder import PROJECT, RecordingsFolder
+    from mffit.window.session import Session
+
+    first = paths[0]
+    if all(path.suffix.lower() == ".tir" for path in paths):
+        return Opened(html=viewer.show(paths).html)
+    if len(paths) > 1:
+        raise InputError(
+            "opens one project at a time; give this file alone, or property files only", file=first
+        )
+    if first.is_dir() and not (first / PROJECT).exists():
+        return Opened(folder=RecordingsFolder(first), reading=ReadingProcess())
+    session = Session(first / PROJECT if first.is_dir() else first)
+    session.file.config()
+    return Opened(session, reading=ReadingProcess())
 
 
 @contextlib.contextmanager
