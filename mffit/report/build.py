@@ -11,15 +11,13 @@ import numpy as np
 
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, words
+from mffit.report import page
 from mffit.report.build_view import BuildView, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import bands, decomposition, fit, missed, radii, residuals, slip, spin
 from mffit.report.text.direct import PER_LOAD
 from mffit.report.verdict import headlines, purposes, verdict
 from mffit.results import BuildResult
-from mffit.rig_errors import MEANINGS, UNITS
 
 OTHERS = "EVERYTHING_ELSE"
 """The section of dimensions, ranges and nominal conditions."""
@@ -48,8 +46,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         folder / "report.html",
         BUILD,
         view,
-        build=result,
-        fit=result.fit,
         paired={
             kind: int(np.sum(result.parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")
         },
@@ -58,17 +54,10 @@ def write_build(result: BuildResult, folder: Path) -> None:
         headlines=headlines(result),
         purposes=purposes(result),
         sections=groupby(sorted(view.rows, key=lambda row: _section(row) == OTHERS), key=_section),
-        channels=CHANNELS,
-        of_number=words.of_number,
         of_spin=wording,
         of_residuals=of_residuals,
-        conditions=CONDITIONS,
-        direct=DIRECT,
         per_load=PER_LOAD,
         degrees=math.degrees(1.0),
-        of_setups=wording.setup_scatter,
-        meanings=MEANINGS,
-        units=UNITS,
         published=spin.SOURCE,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,23 +21,13 @@ NOT_DECIDED = ("base", "converted", "default", "given", "range")
 """Statuses of values that neither the data nor a model of them decided."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class ChannelRow(ReadOnlyArrays):
-    """One measured channel and what is drawn with it; arrays (n,) in its unit, NaN where unknown."""
+    """One measured channel; arrays (n,) in its unit, NaN where unknown."""
 
     name: str
     measured: np.ndarray
     u: np.ndarray
-    model: np.ndarray
-    odd: np.ndarray
-    even: np.ndarray
-    u_odd: np.ndarray
-
-    @classmethod
-    def of_readings(cls, name: str, measured: np.ndarray, u: np.ndarray) -> ChannelRow:
-        """A channel of which only the readings are known."""
-        none = np.full(len(measured), np.nan)
-        return cls(name=name, measured=measured, u=u, model=none, odd=none, even=none, u_odd=none)
 
     @property
     def known(self) -> QuantityName:
@@ -47,6 +37,12 @@ class ChannelRow(ReadOnlyArrays):
     def noise(self) -> float:
         """Median standard uncertainty of a point; NaN if none is known."""
         return finite_median(self.u)
+
+
+def channel_rows(points: Points, names: Iterable[str]) -> tuple[ChannelRow, ...]:
+    """Those of the channels that have a reading."""
+    rows = (ChannelRow(name, points.channel(name), points.u(name)) for name in names)
+    return tuple(row for row in rows if np.isfinite(row.measured).any())
 
 
 class CoefficientRow(NamedTuple):
@@ -120,7 +116,16 @@ class BuildView(Overlay):
         for c in self.channels:
             u = np.where(np.isfinite(c.u), c.u, c.noise)
             scale = u if self.residual_unit == "u" else self.build.fit.channels[c.name].rmse
-            found.append((c.known.mathtext, (c.measured - c.model) / scale))
+            found.append((c.known.mathtext, (c.measured - self.build.fit.model[c.name]) / scale))
+        return found
+
+    def nearest(self, curves: Iterable[Curve], *names: str) -> list[Curve]:
+        """Those of the curves that are nearest to the nominal ``load`` or ``pressure``, one after the other."""
+        found = list(curves)
+        for name in names:
+            nominal = getattr(self.build.config.tyre, f"nominal_{name}")
+            distance = {c: abs(getattr(c, name) - nominal) for c in found}
+            found = [c for c in found if distance[c] == min(distance.values())]
         return found
 
     @property
@@ -134,25 +139,13 @@ class BuildView(Overlay):
 
 def view_of(result: BuildResult) -> BuildView:
     """The view of a build."""
-    points, parts, fit = result.points, result.parts, result.fit
-    found, unknown = tuple(curves(points)), np.full(len(points), np.nan)
-    channels = [
-        ChannelRow(
-            name=name,
-            measured=points.channel(name),
-            u=points.u(name),
-            model=model,
-            odd=getattr(parts, f"{name}_odd", unknown),
-            even=getattr(parts, f"{name}_even", unknown),
-            u_odd=getattr(parts, f"u_{name}_odd", unknown),
-        )
-        for name, model in fit.model.items()
-    ]
+    points, fit = result.points, result.fit
+    found = tuple(curves(points))
     return BuildView(
         build=result,
         points=points,
         felt=points if np.all(points.free_rolling) else fit.simulation.felt(points),
-        channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
+        channels=channel_rows(points, fit.model),
         curves=found,
         lines=model_lines(fit.simulation, points, found, fit.model),
         conditions=tuple(conditions(points)),

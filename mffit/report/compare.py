@@ -13,18 +13,17 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.plan import channels_of
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, page, style
-from mffit.report.build_view import ChannelRow, Overlay
+from mffit.report.build_view import Overlay, channel_rows
 from mffit.report.curves import curves, model_lines
 from mffit.report.drawing.records import (
     NOTHING,
-    ZERO,
     Axis,
     Bars,
-    Guide,
     Look,
     Panel,
     Sheet,
     Trace,
+    both_sides,
     in_rows,
     listed,
 )
@@ -45,17 +44,12 @@ def curves_of_both(found: Comparison, channel: str) -> Sheet:
 
 def _panel(found: Comparison, gap: CurveGap) -> Panel:
     x = gap.x if gap.over == "kappa" else np.degrees(gap.x)
-    known = CHANNELS[gap.channel]
-    return Panel(
-        title=f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {known.unit} rms",
-        x=labels.angle_axis(gap.over),
-        y=Axis(label=known.short_axis),
-        series=[
-            Trace(name=found.first, x=x, y=gap.first, half=gap.half_first, look=FIRST),
-            Trace(name=found.second, x=x, y=gap.second, half=gap.half_second, look=SECOND),
-        ],
-        guides=[ZERO],
-    )
+    series = [
+        Trace(name=found.first, x=x, y=gap.first, half=gap.half_first, look=FIRST),
+        Trace(name=found.second, x=x, y=gap.second, half=gap.half_second, look=SECOND),
+    ]
+    title = f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {CHANNELS[gap.channel].unit} rms"
+    return labels.over_angle(gap.over, gap.channel, title, series)
 
 
 def differences(found: Comparison) -> Sheet:
@@ -65,17 +59,12 @@ def differences(found: Comparison) -> Sheet:
         return NOTHING
     z = np.array([float(row.z or 0.0) for row in rows])
     edge = Look(colour=style.MUTED, line="--", width=0.8)
-    bars = Bars(
-        name="difference",
-        lengths=z,
-        places=np.arange(len(rows)),
-        colours=[style.CONTRAST if abs(value) > COVERAGE_FACTOR_95 else style.FAINT for value in z],
-    )
+    colours = [style.CONTRAST if abs(value) > COVERAGE_FACTOR_95 else style.FAINT for value in z]
     panel = Panel(
         x=Axis(label="difference in standard uncertainties"),
         y=listed([f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows]),
-        series=[bars],
-        guides=[Guide(axis="x", at=side * COVERAGE_FACTOR_95, look=edge) for side in (-1.0, 1.0)],
+        series=[Bars(name="difference", lengths=z, colours=colours)],
+        guides=both_sides("x", COVERAGE_FACTOR_95, edge),
     )
     return Sheet(rows=[[panel]], height=0.20 * len(rows) + 0.3)
 
@@ -99,10 +88,7 @@ def write_comparison(found: Comparison, folder: Path) -> None:
         folder / "compare.html",
         drawn,
         found,
-        found=found,
         say=wording,
-        channels=CHANNELS,
-        most=constants.MOST_ROWS,
     )
 
 
@@ -120,7 +106,5 @@ def _overlay(found: Comparison) -> Overlay | None:
         points=points,
         curves=tuple(members),
         lines=model_lines(found.simulation, points, members, measured),
-        channels=tuple(
-            ChannelRow.of_readings(name, points.channel(name), points.u(name)) for name in measured
-        ),
+        channels=channel_rows(points, measured),
     )

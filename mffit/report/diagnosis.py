@@ -8,11 +8,9 @@ from pathlib import Path
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.rest import Answer
-from mffit.quantities import CHANNELS
-from mffit.report import page, words
+from mffit.report import page
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import gap
-from tir.parameters import BY_NAME
 
 DIAGNOSIS: Mapping[str, Callable[[Diagnosis], Sheet]] = {
     "gap_by_effect": gap.gap_by_effect,
@@ -37,13 +35,8 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         folder / "diagnosis.html",
         DIAGNOSIS,
         diagnosis,
-        d=diagnosis,
         first=FIRST[diagnosis.answer],
         measured=[channel.name for channel in gap.gap_channels(diagnosis)],
         say=wording,
         tied=f"{TIED_EVIDENCE:g}",
-        channels=CHANNELS,
-        coefficients=BY_NAME,
-        of_number=words.of_number,
-        in_unit=words.in_unit,
     )

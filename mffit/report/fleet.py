@@ -14,7 +14,6 @@ from mffit.quantities import COMPARED, DIRECT
 from mffit.report import constants, labels, page, style
 from mffit.report.drawing.records import NOTHING, Axis, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.text.many import misfit_channels
-from mffit.rig_errors import meaning_of, unit_of, words_of
 from tir.errors import listed
 
 if TYPE_CHECKING:
@@ -100,21 +99,13 @@ def headline(found: Fleet) -> str:
 
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
     """Write ``plots/*.png`` and ``fleet.html`` to an existing folder; ``priors``: whether it holds ``priors.json``."""
-    estimates = found.estimates
     page.write(
         "fleet.html.j2",
         folder / "fleet.html",
         FLEET,
         found,
-        fleet=found,
         headline=headline(found),
-        epsilon=DIRECT["epsilon_gamma"],
-        estimates=estimates,
-        compared=COMPARED,
-        channels=misfit_channels(found),
-        units=unit_of,
-        meanings=meaning_of,
-        words=words_of,
+        misfits=misfit_channels(found),
         enough=FEWEST_TYRES_FOR_SCATTER,
         spin=SPIN,
         priors=priors,

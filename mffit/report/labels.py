@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 
-from mffit.constants import UPRIGHT
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, MODEL
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis
+from mffit.report.drawing.records import ZERO, Axis, DataSeries, Panel
 from mffit.rounding import number
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
@@ -25,14 +24,15 @@ def angle_axis(over: str) -> Axis:
     return Axis(label=SLIP.axis if over == "kappa" else ANGLES[over].axis)
 
 
+def over_angle(over: str, channel: str, title: str, series: Sequence[DataSeries]) -> Panel:
+    """A panel of a channel over a varied angle or longitudinal slip."""
+    y = Axis(label=CHANNELS[channel].short_axis)
+    return Panel(title=title, x=angle_axis(over), y=y, series=series, guides=[ZERO])
+
+
 def held(curve: Curve) -> str:
     """The angle that a curve holds, and its value."""
     return f"{ANGLES[OTHER[curve.over]].symbol} = {number(curve.held, 0)}°"
-
-
-def held_unless_zero(curve: Curve) -> str:
-    """The same behind a comma; empty for a curve that holds zero."""
-    return f", {held(curve)}" if abs(curve.held) >= UPRIGHT else ""
 
 
 def typeset(text: str) -> str:
@@ -43,8 +43,3 @@ def typeset(text: str) -> str:
 def plain(text: str) -> str:
     """The text with subscripts as a table shows them: ``F_y``."""
     return re.sub(r"\$_\{(\w+)\}\$", r"_\1", text)
-
-
-def places_of(angles: Iterable[float]) -> int:
-    """Decimals with which angles [deg] are written: none if all are whole."""
-    return 0 if all(round(x, 1) == round(x) for x in angles) else 1

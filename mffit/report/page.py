@@ -7,21 +7,16 @@ import io
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from mffit import rounding
-from mffit.constants import NAMED_IN_SENTENCE
-from mffit.errors import shortened
 from mffit.made import COMPUTING, libraries, made
-from mffit.points.left_out import together
 from mffit.report import constants, numbers, typeset
 from mffit.report.drawing.records import Sheet, with_fewer_rows
-from mffit.templates import environment
+from mffit.report.text.filling import templates
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
+    pass
 
 View = TypeVar("View")
 
@@ -52,7 +47,7 @@ def write(
     ``drawn`` has by name, the file stem of the PNG, what makes the sheet of a picture.
     """
     pictures = {name: picture(path.parent, name, sheet_of(view)) for name, sheet_of in drawn.items()}
-    filled = _environment().get_template(template)
+    filled = templates(escaped=True).get_template(template)
     known = made()
     foot = {
         "date": known.day,
@@ -77,20 +72,3 @@ def picture(folder: Path, name: str, whole: Sheet) -> PagePicture | None:
     drawing = pictures.draw(sheet)
     (folder / "plots" / f"{name}.png").write_bytes(drawing.png)
     return PagePicture(name=name, drawing=drawing.markup, table=numbers.table(whole), remark=sheet.remark)
-
-
-@cache
-def _environment() -> Environment:
-    found = environment("mffit.report", "mffit.viewer")
-    found.filters["shortened"] = shortened
-    found.filters["together"] = partial(together, most=int(NAMED_IN_SENTENCE))
-    for rounded in (
-        rounding.number,
-        rounding.with_u,
-        rounding.stated,
-        rounding.as_good_as,
-        rounding.times,
-        rounding.per_cent,
-    ):
-        found.filters[rounded.__name__] = rounded
-    return found

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
-from mffit.report import constants, page, style
+from mffit.report import page, style
 from mffit.report.drawing.records import NOTHING, Axis, Bars, Note, Panel, Sheet, listed
 
 
@@ -21,6 +21,7 @@ def u_against_runs(plan: Plan) -> Sheet:
     values = [plan.now, *(step.after for step in plan.steps)]
     names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
     known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
+    lengths = np.where(np.isfinite(values), values, np.nan)
     epsilon = DIRECT["epsilon_gamma"]
     unit = "" if plan.goal.unit in ("", "-") else f" [{plan.goal.unit}]"
     panel = Panel(
@@ -34,9 +35,8 @@ def u_against_runs(plan: Plan) -> Sheet:
         series=[
             Bars(
                 name=plan.goal.label,
-                lengths=np.array([u for _, u in known]),
-                places=np.array([float(k) for k, _ in known]),
-                colours=[style.FAINT if k == 0 else style.ACCENT for k, _ in known],
+                lengths=lengths,
+                colours=[style.ACCENT if k else style.FAINT for k in range(len(values))],
             )
         ],
         notes=[Note(x=u, y=k, text=wording.shown(plan, u)) for k, u in known],
@@ -55,8 +55,5 @@ def write_plan(plan: Plan, folder: Path) -> None:
         folder / "plan.html",
         PLAN,
         plan,
-        plan=plan,
         say=wording,
-        epsilon=DIRECT["epsilon_gamma"].html,
-        trials=plan.trials[: constants.MOST_ROWS],
     )

@@ -168,7 +168,7 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, scale: ColourScale | Non
     for series in panel.series:
         if isinstance(series, Bars):
             begin = axes.get_xlim()[0] if axes.get_xscale() == "log" else 0.0
-            axes.barh(series.places, series.lengths - begin, 0.62, begin, color=series.colours)
+            axes.barh(series.columns()["y"], series.lengths - begin, 0.62, begin, color=series.colours)
         else:
             _draw_trace(axes, series, size, scale)
     for name in "xy":

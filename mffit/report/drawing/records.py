@@ -53,16 +53,12 @@ class Bars(ReadOnlyArrays):
     """Horizontal bars (n,) from zero, or from the left end of a logarithmic axis."""
 
     name: str
-    lengths: np.ndarray
-    places: np.ndarray  #: on the vertical axis
+    lengths: np.ndarray  #: at 0, 1, ... on the vertical axis; NaN for no bar
     colours: Sequence[str]
 
     def columns(self) -> dict[str, np.ndarray]:
         """Columns (n,) of the table behind the picture."""
-        return {"x": self.lengths, "y": self.places}
-
-    def __len__(self) -> int:
-        return len(self.lengths)
+        return {"x": self.lengths, "y": np.arange(len(self.lengths), dtype=float)}
 
 
 DataSeries = Trace | Bars
@@ -78,6 +74,11 @@ class Guide:
 
 
 ZERO = Guide(axis="y", at=0.0)
+
+
+def both_sides(axis: str, distance: float, look: Look) -> list[Guide]:
+    """Lines at one distance to either side of zero."""
+    return [Guide(axis=axis, at=side * distance, look=look) for side in (-1.0, 1.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95, STEPS_OF_LINE
 from mffit.fit.written.files import Files
-from mffit.points import make_points
+from mffit.points import Points, make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace
+from mffit.report.curves import shown_values
+from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace, both_sides
 from mffit.rig import Simulation
 from mffit.rounding import number
 
@@ -22,17 +24,13 @@ SLIP_LIMITS = ("KPUMIN", "KPUMAX")
 DOTTED = Look(colour=style.FAINT, line=":", width=0.8)
 
 
-def tested_edges(tested: float) -> list[Guide]:
-    """Dotted lines at both ends of the tested range [rad]."""
-    return [Guide(axis="x", at=side * float(np.degrees(tested)), look=DOTTED) for side in (-1.0, 1.0)]
-
-
 def bands(view: BuildView) -> Sheet:
     """The channels with 95 % bands over camber, over sideslip and over slip if it was run, at three loads."""
     files = view.build.fit.files
     if files is None:
         return NOTHING
-    colours = three_loads(view)
+    loads = files.written["FZMIN"], float(view.build.fit.tyre["FNOMIN"]), files.written["FZMAX"]
+    colours = style.ramp(loads)
     sideways = [
         name for name in CHANNELS if name in SIDEWAYS or (name == "Mx" and name in view.points.measured)
     ]
@@ -46,18 +44,22 @@ def bands(view: BuildView) -> Sheet:
     return Sheet(rows=rows, height=2.1, key=key)
 
 
-def three_loads(view: BuildView) -> dict[float, str]:
-    """Colours of the smallest, the nominal and the largest load of the file."""
-    assert view.build.fit.files is not None
-    written = view.build.fit.files.written
-    return style.ramp([written["FZMIN"], float(view.build.fit.tyre["FNOMIN"]), written["FZMAX"]])
-
-
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
-    assert view.build.fit.files is not None
-    x, guides = _ends(view.build.fit.files, over)
-    at = x if over == "kappa" else np.degrees(x)
-    series = [model_curve(view, name, at, load, colour, **{over: x}) for load, colour in colours.items()]
+    files, tyre = view.build.fit.files, view.build.fit.tyre
+    assert files is not None
+    x, guides = _ends(files, over)
+    inputs: dict[str, Any] = {
+        "alpha": np.zeros_like(x),
+        "gamma": np.zeros_like(x),
+        "kappa": np.zeros_like(x),
+        over: x,
+    }
+    series = []
+    for load, colour in colours.items():
+        where = make_points(**inputs, Fz=load, p=float(tyre["NOMPRES"]), V=10.0, phi_t=0.0)
+        y, half = _model(view, name, where)
+        at, look = shown_values(where, over), Look(colour=colour, line="-", width=1.0)
+        series.append(Trace(name=labels.LOAD.of(load), x=at, y=y, half=half, look=look))
     return Panel(title=CHANNELS[name].short_axis, x=labels.angle_axis(over), series=series, guides=guides)
 
 
@@ -65,40 +67,25 @@ def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
     """Values [rad, -] (m,) over the range of the file, and the ends of the tested range."""
     if over != "kappa":
         end = files.written[LIMITS[over]]
-        return np.linspace(-end, end, STEPS_OF_LINE), tested_edges(files.tested[LIMITS[over]])
+        return np.linspace(-end, end, STEPS_OF_LINE), both_sides(
+            "x", float(np.degrees(files.tested[LIMITS[over]])), DOTTED
+        )
     low, high = (files.written.get(key, files.tested[key]) for key in SLIP_LIMITS)
     guides = [Guide(axis="x", at=files.tested[key], look=DOTTED) for key in SLIP_LIMITS]
     return np.linspace(low, high, STEPS_OF_LINE), guides
 
 
-def model_curve(
-    view: BuildView,
-    channel: str,
-    at: np.ndarray,
-    load: float,
-    colour: str,
-    *,
-    alpha: np.ndarray | float = 0.0,
-    gamma: np.ndarray | float = 0.0,
-    kappa: np.ndarray | float = 0.0,
-) -> Trace:
-    """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
+def _model(view: BuildView, channel: str, where: Points) -> tuple[np.ndarray, np.ndarray]:
+    """A channel (m,) of the model at points, and half the height of its band."""
     tyre = Simulation.of(view.build.fit.tyre, turn_slip=view.on_disc)
-    alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
-    where = make_points(
-        alpha, gamma, load, kappa=kappa, p=float(view.build.fit.tyre["NOMPRES"]), V=10.0, phi_t=0.0
-    )
     line = tyre.readings(where, (channel,))[channel]
     known = view.build.prediction
     if known is not None and channel in known.channels:
-        half = known.band(tyre, tyre, where, (channel,))[channel]
-    else:  # not measured: nothing but its coefficients is known
-        posterior = view.build.fit.posterior
-        names = [name for name in posterior.names if name in tyre.values]
-        slopes = tyre.sensitivities(where, names, (channel,))[1][channel]
-        half = COVERAGE_FACTOR_95 * posterior.spread_of(slopes, names)
-    look = Look(colour=colour, line="-", width=1.0)
-    return Trace(name=labels.LOAD.of(load), x=at, y=line, half=half, look=look)
+        return line, known.band(tyre, tyre, where, (channel,))[channel]
+    posterior = view.build.fit.posterior  # not measured: nothing but its coefficients is known
+    names = [name for name in posterior.names if name in tyre.values]
+    slopes = tyre.sensitivities(where, names, (channel,))[1][channel]
+    return line, COVERAGE_FACTOR_95 * posterior.spread_of(slopes, names)
 
 
 LOOKS = {
@@ -139,5 +126,5 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
         title=f"{CHANNELS[channel].short_axis}, {labels.LOAD.of(load)}",
         x=labels.angle_axis(over),
         series=series,
-        guides=tested_edges(files.tested[end]),
+        guides=both_sides("x", float(np.degrees(files.tested[end])), DOTTED),
     )

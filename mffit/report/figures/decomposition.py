@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from mffit.constants import UPRIGHT
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Panel, Sheet, Trace, of_one_range
+from mffit.report.drawing.records import NOTHING, Look, Panel, Sheet, Trace, of_one_range
 
 RAW = "raw reading"
 ODD = "odd part: response to sideslip and camber"
@@ -37,21 +39,15 @@ def parts(view: BuildView) -> Sheet:
 
 
 def _row(view: BuildView, channel: ChannelRow, curves: Sequence[Curve]) -> list[Panel]:
-    nominal, over = view.build.config.tyre.nominal_load, curves[0].over
-    loads = sorted({c.load for c in curves})
-    nearest = min(loads, key=lambda load: abs(load - nominal))
+    symbol = channel.known.mathtext
 
     def panel(load: float, label: str, names: Sequence[str]) -> Panel:
-        return Panel(
-            title=f"{label}, {labels.LOAD.of(load)}",
-            x=labels.angle_axis(over),
-            y=Axis(label=channel.known.short_axis),
-            series=[_trace(view, channel, c, name) for c in curves if c.load == load for name in names],
-            guides=[ZERO],
-        )
+        series = [_trace(view, channel, c, name) for c in curves if c.load == load for name in names]
+        title = f"{label}, {labels.LOAD.of(load)}"
+        return labels.over_angle(curves[0].over, channel.name, title, series)
 
-    symbol = channel.known.mathtext
-    even = [panel(load, f"{symbol}, even", (EVEN, MODEL)) for load in loads]
+    even = [panel(load, f"{symbol}, even", (EVEN, MODEL)) for load in sorted({c.load for c in curves})]
+    nearest = min(c.load for c in view.nearest(curves, "load"))
     return [panel(nearest, symbol, (RAW, ODD, EVEN)), *of_one_range(even)]
 
 
@@ -59,14 +55,18 @@ def _trace(view: BuildView, channel: ChannelRow, curve: Curve, name: str) -> Tra
     if name == MODEL:
         line = view.lines[curve]
         return Trace(name=name, x=line.x, y=line.even[channel.name], look=LOOKS[name])
-    values = {RAW: channel.measured, ODD: channel.odd, EVEN: channel.even}[name][curve.index]
-    half = channel.u_odd[curve.index] if name == EVEN else None
+
+    def part(of: str) -> np.ndarray:
+        unknown = np.full(len(view.points), np.nan)
+        values: np.ndarray = getattr(view.build.parts, of.format(channel.name), unknown)[curve.index]
+        return values
+
+    values = channel.measured[curve.index] if name == RAW else part("{}_odd" if name == ODD else "{}_even")
+    half = part("u_{}_odd") if name == EVEN else None
     return Trace(name=name, x=curve.varied(view.points), y=values, half=half, look=LOOKS[name])
 
 
 def pure_curves(view: BuildView) -> list[Curve]:
     """Forward sweeps over one angle with the other at zero, at the pressure nearest to the nominal one."""
-    nominal = view.build.config.tyre.nominal_pressure
-    pressure = min((c.pressure for c in view.curves), key=lambda value: abs(value - nominal), default=0.0)
-    pure = [c for c in view.curves if c.forward and c.over != "kappa" and abs(c.held) < UPRIGHT]
-    return [c for c in pure if c.pressure == pressure]
+    free = view.nearest((c for c in view.curves if c.over != "kappa"), "pressure")
+    return [c for c in free if c.forward and abs(c.held) < UPRIGHT]

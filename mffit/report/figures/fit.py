@@ -12,7 +12,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow, Overlay
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import NOTHING, Look, Panel, Sheet, Trace, in_rows
 from mffit.rounding import number
 
 MARKS = {
@@ -67,9 +67,9 @@ OF_CHANNELS: Mapping[str, Callable[[Overlay], Sheet]] = {
 
 def held_key(held: str, colours: Mapping[float, str]) -> dict[str, Look]:
     """A colour for every angle that is held."""
-    symbol, places = labels.ANGLES[held].symbol, labels.places_of(colours)
+    symbol, whole = labels.ANGLES[held].symbol, all(round(x, 1) == round(x) for x in colours)
     return {
-        f"{symbol} = {number(angle, places)}°": Look(colour=colour, line="-", width=3.0)
+        f"{symbol} = {number(angle, 0 if whole else 1)}°": Look(colour=colour, line="-", width=3.0)
         for angle, colour in colours.items()
     }
 
@@ -78,13 +78,8 @@ def _panel(
     view: Overlay, channel: ChannelRow, members: Sequence[Curve], colours: Mapping[float, str], cambers: bool
 ) -> Panel:
     at = f", {labels.ANGLES['gamma'].symbol} = {number(members[0].camber, 0)}°" if cambers else ""
-    return Panel(
-        title=f"{members[0].condition}{at}",
-        x=labels.angle_axis(members[0].over),
-        y=Axis(label=channel.known.short_axis),
-        series=[s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])],
-        guides=[ZERO],
-    )
+    series = [s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])]
+    return labels.over_angle(members[0].over, channel.name, f"{members[0].condition}{at}", series)
 
 
 def curve_traces(view: Overlay, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
@@ -103,7 +98,11 @@ def curve_traces(view: Overlay, channel: ChannelRow, curve: Curve, colour: str) 
 
 def overview(view: BuildView) -> Sheet:
     """Readings and model of each channel over what was varied most, coloured by the angle that is held."""
-    chosen = {over: _nearest(view, over) for over in labels.OTHER}
+    forward = [c for c in view.curves if c.forward and not c.camber]
+    chosen = {
+        over: view.nearest((c for c in forward if c.over == over), "load", "pressure")
+        for over in labels.OTHER
+    }
     panels = []
     for channel in view.channels:
         first = ("kappa", "alpha", "gamma") if channel.name == "Fx" else ("alpha", "gamma", "kappa")
@@ -111,18 +110,6 @@ def overview(view: BuildView) -> Sheet:
     if len(panels) < len(chosen) and chosen["gamma"] and chosen["alpha"]:
         panels += [_glance(view, channel, chosen["gamma"]) for channel in view.channels[:1]]
     return Sheet(rows=in_rows(panels, columns=4), height=2.2, key={"measured": READINGS, "model": MODEL})
-
-
-def _nearest(view: BuildView, over: str) -> list[Curve]:
-    """Forward curves over an angle or slip at the load and pressure nearest to the nominal ones."""
-    tyre, upright = (
-        view.build.config.tyre,
-        [c for c in view.curves if c.over == over and c.forward and not c.camber],
-    )
-    for name, nominal in (("load", tyre.nominal_load), ("pressure", tyre.nominal_pressure)):
-        nearest: Mapping[Curve, float] = {c: abs(getattr(c, name) - nominal) for c in upright}
-        upright = [c for c in upright if nearest[c] == min(nearest.values())]
-    return upright
 
 
 def _glance(view: BuildView, channel: ChannelRow, members: list[Curve]) -> Panel:

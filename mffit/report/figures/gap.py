@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95, NAMED_IN_SENTENCE
+from mffit.constants import COVERAGE_FACTOR_95, NAMED_IN_SENTENCE, UPRIGHT
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.selection import Contest
@@ -18,7 +18,6 @@ from mffit.report import constants, labels, style
 from mffit.report.curves import Curve, CurveLine, conditions, curves, model_lines
 from mffit.report.drawing.records import (
     NOTHING,
-    ZERO,
     Axis,
     Bars,
     ColourScale,
@@ -83,26 +82,22 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
         labels.typeset(textwrap.shorten(f"{'' if k == 0 else '+ '}{one.name}", 34, placeholder="…"))
         for k, one in enumerate(steps)
     ]
+    kinds = {one.effect.id: one.effect.kind for one in diagnosis.repaired}
+    colours = [KIND_COLOURS.get(kinds.get(one.id, ""), style.MUTED) for one in steps]
     panels = []
     for channel in gap_channels(diagnosis):
         name, noise = channel.name, diagnosis.noise.typical(channel.name)
         sizes = np.array([one.gap.rms(name) for one in steps])
         left_out = np.array([one.held_out.rms(name) for one in steps])
         low, high = 0.5 * min(noise, *sizes), 2.0 * max(noise, *sizes, *left_out)
-        places = np.arange(len(steps), dtype=float)
         panels.append(
             Panel(
                 title=channel.known.mathtext,
                 x=Axis(label=f"rms misfit [{channel.known.unit}]", low=low, high=high, logarithmic=True),
                 y=listed(names),
                 series=[
-                    Bars(
-                        name="all readings",
-                        lengths=sizes,
-                        places=places,
-                        colours=[_colour_of(diagnosis, one.id) for one in steps],
-                    ),
-                    Trace(name="left-out sweeps", x=left_out, y=places, look=LEFT_OUT),
+                    Bars(name="all readings", lengths=sizes, colours=colours),
+                    Trace(name="left-out sweeps", x=left_out, y=np.arange(float(len(steps))), look=LEFT_OUT),
                 ],
                 guides=[Guide(axis="x", at=noise, look=THRESHOLD)],
                 notes=[
@@ -114,7 +109,7 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
     key = {
         kind: Look(colour=colour, opacity=1.0)
         for kind, colour in KIND_COLOURS.items()
-        if any(one.effect.kind == kind for one in diagnosis.repaired)
+        if kind in kinds.values()
     }
     return Sheet(
         rows=in_rows(panels, columns=2),
@@ -123,34 +118,24 @@ def gap_by_effect(diagnosis: Diagnosis) -> Sheet:
     )
 
 
-def _colour_of(diagnosis: Diagnosis, step: str) -> str:
-    """The colour of a step's bar, by the kind of its effect."""
-    kinds = {one.effect.id: one.effect.kind for one in diagnosis.repaired}
-    return KIND_COLOURS.get(kinds.get(step, ""), style.MUTED)
-
-
 def curves_before_after(diagnosis: Diagnosis) -> Sheet:
     """The worst and the typical sweep: readings, the simulation as given and with what was added, a panel per channel."""
     channels = gap_channels(diagnosis)
     shown = _worst_and_typical(diagnosis, channels)
-    lines = {"simulated as given": (diagnosis.given, GIVEN), "with what was found": (diagnosis.state, FOUND)}
-    if not diagnosis.repaired:
-        lines.pop("with what was found")
-    drawn = {
-        name: (
-            model_lines(simulation, diagnosis.points, list(shown.values()), diagnosis.noise.channels),
-            look,
-        )
-        for name, (simulation, look) in lines.items()
+    simulated = {"simulated as given": (diagnosis.given, GIVEN)}
+    if diagnosis.repaired:
+        simulated["with what was found"] = diagnosis.state, FOUND
+    points, names = diagnosis.points, diagnosis.noise.channels
+    lines = {
+        said: (model_lines(simulation, points, list(shown.values()), names), look)
+        for said, (simulation, look) in simulated.items()
     }
     panels = [
-        _sweep(
-            diagnosis, word, curve, channel, {name: (of[curve], look) for name, (of, look) in drawn.items()}
-        )
+        _sweep(diagnosis, word, curve, channel.name, lines)
         for word, curve in shown.items()
         for channel in channels
     ]
-    key = {"measured": MEASURED, **{name: look for name, (_, look) in lines.items()}}
+    key = {"measured": MEASURED, **{said: look for said, (_, look) in lines.items()}}
     remark = (
         "Blue lines include the effects below, errors of the rig among them." if diagnosis.repaired else ""
     )
@@ -172,25 +157,19 @@ def _sweep(
     diagnosis: Diagnosis,
     word: str,
     curve: Curve,
-    channel: GapChannel,
-    lines: Mapping[str, tuple[CurveLine, Look]],
+    name: str,
+    lines: Mapping[str, tuple[Mapping[Curve, CurveLine], Look]],
 ) -> Panel:
-    name, points = channel.name, diagnosis.points
+    points = diagnosis.points
+    held = f", {labels.held(curve)}" if abs(curve.held) >= UPRIGHT else ""
     backward = "" if curve.forward else ", backward"
-    read = points.channel(name)[curve.index]
-    return Panel(
-        title=f"{word}: {labels.LOAD.of(curve.load)}{labels.held_unless_zero(curve)}{backward}",
-        x=labels.angle_axis(curve.over),
-        y=Axis(label=channel.known.short_axis),
-        series=[
-            Trace(name="measured", x=curve.varied(points), y=read, look=MEASURED),
-            *(
-                Trace(name=said, x=line.x, y=line.raw[name], look=look)
-                for said, (line, look) in lines.items()
-            ),
-        ],
-        guides=[ZERO],
-    )
+    title = f"{word}: {labels.LOAD.of(curve.load)}{held}{backward}"
+    read = Trace(name="measured", x=curve.varied(points), y=points.channel(name)[curve.index], look=MEASURED)
+    drawn = [
+        Trace(name=said, x=of[curve].x, y=of[curve].raw[name], look=look)
+        for said, (of, look) in lines.items()
+    ]
+    return labels.over_angle(curve.over, name, title, [read, *drawn])
 
 
 def residuals_before_after(diagnosis: Diagnosis) -> Sheet:
@@ -249,17 +228,12 @@ def _candidates(step: Contest, named: str) -> Panel:
     passed = rows[0][0] > step.threshold
     title = f"In the place of {named}" if named else "One effect alone"
     title += "" if passed else ": nothing passes"
-    bars = Bars(
-        name="gain",
-        lengths=gains,
-        places=np.arange(len(rows)),
-        colours=[KIND_COLOURS.get(effect.kind, style.MUTED) for _, effect in rows],
-    )
+    colours = [KIND_COLOURS.get(effect.kind, style.MUTED) for _, effect in rows]
     return Panel(
         title=labels.typeset(textwrap.shorten(title, 52, placeholder="…")),
         x=Axis(label="gain in log evidence", low=LEAST_GAIN, high=12.0 * max(10.0, *gains), logarithmic=True),
         y=listed([labels.typeset(textwrap.shorten(effect.name, 31, placeholder="…")) for _, effect in rows]),
-        series=[bars],
+        series=[Bars(name="gain", lengths=gains, colours=colours)],
         guides=[Guide(axis="x", at=step.threshold, look=THRESHOLD)],
         notes=_distances([gain for gain, _ in rows], gains) if passed else [],
     )

@@ -14,7 +14,7 @@ from mffit.prediction.conditions import UNITS
 from mffit.quantities import CHANNELS, CONDITIONS, column
 from mffit.report import style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import NOTHING, ZERO, Axis, Guide, Look, Note, Panel, Sheet, Trace
+from mffit.report.drawing.records import NOTHING, ZERO, Axis, Look, Note, Panel, Sheet, Trace, both_sides
 from mffit.results import BuildResult
 
 SHARES = (0.1, 0.5, 0.9)
@@ -74,7 +74,7 @@ def _panel(build: BuildResult, channel: LinearisedChannel, over: str, by: str, *
         x=Axis(label=CONDITIONS[over].axis, low=float(along[0]), high=_beyond(along, ROOM)),
         y=Axis(label=size if is_first else ""),
         series=series,
-        guides=[ZERO, *(Guide(axis="y", at=side * channel.noise, look=NOISE) for side in (-1.0, 1.0))],
+        guides=[ZERO, *both_sides("y", channel.noise, NOISE)],
         notes=list(_names(series)),
     )
 

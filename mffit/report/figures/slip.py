@@ -20,27 +20,16 @@ EDGE_NAME = "limit of the model"
 ZEROS = (Guide(axis="x", at=0.0), ZERO)
 
 
-def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
-    """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
-    upright = [c for c in view.curves if c.over == "kappa" and c.forward and abs(c.camber) < UPRIGHT]
-    nominal = view.build.config.tyre.nominal_pressure
-    nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
-    found: dict[float, list[Curve]] = {}
-    for curve in upright:
-        if curve.pressure == nearest:
-            found.setdefault(curve.load, []).append(curve)
-    return found
-
-
 def friction_ellipse(view: BuildView) -> Sheet:
-    """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, if both were run together."""
-    groups = main_slip_curves(view)
-    members = [c for curves in groups.values() for c in curves]
+    """Fx over Fy at each load, sideslip as parameter, at nearly nominal pressure; points less the errors of the rig."""
+    upright = [c for c in view.curves if c.over == "kappa" and c.forward and abs(c.camber) < UPRIGHT]
+    members = view.nearest(upright, "pressure")
     both = {"Fx", "Fy"} <= {channel.name for channel in view.channels}
     if not both or all(abs(c.held) < UPRIGHT for c in members):
         return NOTHING
     colours = style.ramp({curve.held for curve in members})
-    panels = [_ellipse(view, load, curves, colours) for load, curves in sorted(groups.items())]
+    loads = sorted({curve.load for curve in members})
+    panels = [_ellipse(view, load, [c for c in members if c.load == load], colours) for load in loads]
     key = {"measured": READINGS, "model": LINE, EDGE_NAME: EDGE, **held_key("alpha", colours)}
     return Sheet(rows=in_rows(panels, columns=3), height=2.6, key=key)
 

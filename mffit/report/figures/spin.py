@@ -110,14 +110,7 @@ def _budget(measured: Measured) -> Panel:
             high=1.25 * max([total, *widths]),
         ),
         y=listed([line.source for line in lines]),
-        series=[
-            Bars(
-                name="contribution",
-                lengths=widths,
-                places=np.arange(len(lines)),
-                colours=[style.ACCENT] * len(lines),
-            )
-        ],
+        series=[Bars(name="contribution", lengths=widths, colours=[style.ACCENT] * len(lines))],
         guides=[Guide(axis="x", at=total, look=COMBINED)],
         notes=[Note(x=total, y=len(lines) - 1.0, text=f"{total:.3f}", colour=style.CONTRAST)],
     )

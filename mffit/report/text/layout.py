@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from mffit.constants import TERMINAL_LINES, TERMINAL_WIDTH
 from mffit.rounding import ascii_only
+
+BLANK = re.compile(r"\n\s*\n")
+"""What parts of a text have between them."""
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> str:
@@ -23,7 +27,14 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) 
     return "\n".join(line.rstrip() for line in lines)
 
 
-def blocks(parts: Sequence[str]) -> str:
+def columns(text: str, left: int = 1) -> str:
+    """Lines of cells between ``¦`` as a table, the first its headings; empty without rows."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    head, *rows = ([cell.strip() for cell in line.split("¦")] for line in lines)
+    return f"{table(head, rows, left=left)}\n" if rows else ""
+
+
+def blocks(parts: Iterable[str]) -> str:
     """The parts that are not empty, with a blank line between them."""
     return ascii_only("\n\n".join(part for part in parts if part))
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mffit.fleet import Fleet
-from mffit.quantities import CHANNELS, COMPARED, DIRECT, SIDEWAYS, QuantityName
-from mffit.report.text.layout import blocks, paragraphs, table
+from mffit.quantities import CHANNELS, DIRECT, SIDEWAYS, QuantityName
+from mffit.report.text import filling
+from mffit.report.text.layout import blocks, table
 from mffit.results import BuildOutcome
-from mffit.rig_errors import unit_of, words_of
-from mffit.rounding import as_good_as, ascii_only, number, stated, with_u
+from mffit.rounding import ascii_only, number, stated
 
 
 def misfit_channels(found: Fleet) -> dict[str, QuantityName]:
@@ -20,42 +20,7 @@ def misfit_channels(found: Fleet) -> dict[str, QuantityName]:
 
 def fleet_summary(found: Fleet) -> str:
     """The text that ``mffit fleet`` prints: eps_gamma of every tyre, scatter between tyres, errors of the rig."""
-    known = found.estimates
-    channels = misfit_channels(found)
-    misfits = [channel.column(name) for name, channel in channels.items()]
-    head = ("tyre", *known.values(), *misfits)
-    rows = [
-        (
-            row.specimen.name,
-            *(stated(getattr(row, key)) for key in known),
-            *(number(row.specimen.misfit.get(name), digits=3) for name in channels),
-        )
-        for row in found.rows
-    ]
-    words = {**{key: f"{DIRECT['epsilon_gamma'].ascii}, {said}" for key, said in known.items()}}
-    words |= {key: quantity.column(quantity.ascii) for key, quantity in COMPARED.items()}
-    scatters = [
-        (label, as_good_as(s.mean, s.u), number(s.sd, digits=2), number(s.u, digits=2))
-        for key, label in words.items()
-        if (s := found.scatter(key)) is not None
-    ]
-    rigs = [
-        (
-            f"rig {i}: {words_of(name)}" if len(found.rigs) > 1 else words_of(name),
-            with_u(value, u, unit_of(name)),
-        )
-        for i, rig in enumerate(found.rigs, 1)
-        if rig is not None
-        for name, (value, u) in rig.rig.items()
-    ]
-    return blocks(
-        [
-            table(head, rows),
-            table(("number", "mean", "scatter", "uncertainty"), scatters),
-            table(("error of the rig", "all tyres together"), rigs) if rigs else "",
-            paragraphs(found.notes),
-        ]
-    )
+    return filling.text("fleet", fleet=found, misfits=misfit_channels(found))
 
 
 def many_line(outcome: BuildOutcome, number_of: int, total: int) -> str:

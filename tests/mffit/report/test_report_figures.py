@@ -101,7 +101,8 @@ def test_fit_marks_readings_without_weight_and_doubtful_sweeps(view):
 def missing_by(view, values):
     """The view of a build whose model misses the side force by so much [standard uncertainties]."""
     fy = view.channels[0]
-    return dataclasses.replace(view, channels=(dataclasses.replace(fy, model=fy.measured - values * fy.u),))
+    fitted = dataclasses.replace(view.build.fit, model={"Fy": fy.measured - values * fy.u})
+    return dataclasses.replace(view, channels=(fy,), build=dataclasses.replace(view.build, fit=fitted))
 
 
 def test_residual_maps_share_one_scale_that_is_symmetric(view):
@@ -300,7 +301,7 @@ def outside(found, left, right):
 
 
 def test_a_logarithmic_bar_begins_at_the_left_end():
-    bars = Bars(name="gain", lengths=np.array([100.0]), places=np.array([0.0]), colours=[style.ACCENT])
+    bars = Bars(name="gain", lengths=np.array([100.0]), colours=[style.ACCENT])
     axis = Axis(low=1.0, high=1e4, logarithmic=True)
     (axes,) = axes_of(panel_of([1], [0], Look(), x=axis, series=[bars]))
     (bar,) = axes.patches

@@ -16,6 +16,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import build, constants, page
 from mffit.report.build_view import view_of
 from mffit.report.figures import fit, residuals, slip
+from mffit.report.text import filling
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from tests.mffit.fit import combined_programme as belt
@@ -121,7 +122,7 @@ def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
     said = f"{len(sheet.panels) - 5} more panels are not drawn, for lack of room; the numbers have them."
     assert said in picture.remark
     assert picture.table.count("sweep") == sum(len(c.index) for c in view.curves)
-    macro = page._environment().get_template("macros.html.j2").module
+    macro = filling.templates(escaped=True).get_template("macros.html.j2").module
     assert said in macro.fit_of_every_channel({"fit_Fx": picture}, CHANNELS)
 
 
