@@ -29,8 +29,9 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) 
 
 def columns(text: str, left: int = 1) -> str:
     """Lines of cells between ``¦`` as a table, the first its headings; empty without rows."""
-    lines = [line for line in text.splitlines() if line.strip()]
-    head, *rows = ([cell.strip() for cell in line.split("¦")] for line in lines)
+    head, *rows = ([cell.strip() for cell in line.split("¦")] for line in text.split("\n") if line.strip())
+    n = len(head)  # a name may have the mark, too
+    rows = [[*row, *[""] * n][:n] for row in rows]
     return f"{table(head, rows, left=left)}\n" if rows else ""
 
 

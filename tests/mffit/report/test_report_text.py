@@ -8,6 +8,7 @@ from dataclasses import replace
 from mffit.measured import Contribution, align
 from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
+from mffit.report.text.layout import columns
 from mffit.rounding import ascii_only, decimals_of, stated
 from mffit.suspicion import Trust
 from tir import Quantity
@@ -114,3 +115,8 @@ def test_estimates_without_an_uncertainty_have_the_digits_of_the_measured_one(re
     assert f"secant {measured.nominal.epsilon_secant:.{digits}f}" in estimates.split(", ")
     assert f"Mz (informational) {measured.nominal.epsilon_moment:.{digits}f}" in estimates.split(", ")
     assert f"debiased {ascii_only(stated(measured.epsilon_gamma_debiased))}" in estimates.split(", ")
+
+
+def test_a_name_with_the_mark_of_columns_costs_no_table():
+    found = columns("tyre ¦ rms\na ¦ b ¦ 1.5\nc\n").splitlines()
+    assert found == ["tyre  rms", "----  ---", "a       b", "c"]
