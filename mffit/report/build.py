@@ -7,8 +7,6 @@ from collections.abc import Callable, Mapping
 from itertools import groupby
 from pathlib import Path
 
-import numpy as np
-
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import wording
 from mffit.report import page
@@ -46,10 +44,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         folder / "report.html",
         BUILD,
         view,
-        paired={
-            kind: int(np.sum(result.parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")
-        },
-        radii_agreement=result.fit.radii.agreement(result.fit.tyre.values),
         verdict=verdict(result),
         headlines=headlines(result),
         purposes=purposes(result),

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
-from mffit.diagnosis.rest import Answer
 from mffit.report import page
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import gap
@@ -19,13 +18,6 @@ DIAGNOSIS: Mapping[str, Callable[[Diagnosis], Sheet]] = {
     "gap_maps": gap.residuals_before_after,
 }
 """Every picture of the page."""
-FIRST = {
-    Answer.NOTHING: "curves",
-    Answer.FOUND: "gap_by_effect",
-    Answer.UNDECIDED: "evidence",
-    Answer.UNKNOWN: "gap_maps",
-}
-"""By answer, the picture that the page shows first."""
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
@@ -35,7 +27,6 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         folder / "diagnosis.html",
         DIAGNOSIS,
         diagnosis,
-        first=FIRST[diagnosis.answer],
         measured=[channel.name for channel in gap.gap_channels(diagnosis)],
         say=wording,
         tied=f"{TIED_EVIDENCE:g}",

@@ -10,9 +10,8 @@ from mffit.report.curves import Curve
 from mffit.report.drawing.records import ZERO, Axis, DataSeries, Panel
 from mffit.rounding import number
 
-ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
+ANGLES = ("alpha", "gamma")
 """The angles that are varied, by the attribute of the points."""
-SLIP = MODEL["kappa"]
 OTHER = {"alpha": "gamma", "gamma": "alpha", "kappa": "alpha"}
 """The angle that is held while another one, or longitudinal slip, is varied."""
 LOAD = CONDITIONS["Fz_N"]
@@ -21,7 +20,7 @@ EPSILON = DIRECT["epsilon_gamma"]
 
 def angle_axis(over: str) -> Axis:
     """The axis of a varied angle [deg], or of longitudinal slip [-]."""
-    return Axis(label=SLIP.axis if over == "kappa" else ANGLES[over].axis)
+    return Axis(label=MODEL[over].axis)
 
 
 def over_angle(over: str, channel: str, title: str, series: Sequence[DataSeries]) -> Panel:
@@ -30,9 +29,14 @@ def over_angle(over: str, channel: str, title: str, series: Sequence[DataSeries]
     return Panel(title=title, x=angle_axis(over), y=y, series=series, guides=[ZERO])
 
 
+def angle(name: str, degrees: float, digits: int = 0) -> str:
+    """An angle and its value: ``γ = 20°``."""
+    return f"{MODEL[name].symbol} = {number(degrees, digits)}°"
+
+
 def held(curve: Curve) -> str:
     """The angle that a curve holds, and its value."""
-    return f"{ANGLES[OTHER[curve.over]].symbol} = {number(curve.held, 0)}°"
+    return angle(OTHER[curve.over], curve.held)
 
 
 def typeset(text: str) -> str:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-import numpy as np
 import pandas as pd
 
 from mffit.report import constants
-from mffit.report.drawing.records import Axis, Sheet
+from mffit.report.drawing.records import Axis, DataSeries, Panel, Sheet
 from mffit.report.labels import plain
 
-WORDS = ("panel", "series", "x axis", "y axis")
-NUMBERS = ("x", "y", "lower", "upper", "value")
+COLUMNS = ("panel", "series", "x axis", "y axis", "x", "y", "lower", "upper", "value")
 
 
 def table(sheet: Sheet) -> str:
@@ -20,28 +16,21 @@ def table(sheet: Sheet) -> str:
 
     Guides across a whole panel are left out, and columns that are empty. Of a long series every so many points are listed.
     """
-    found = [(panel, series, _thinned(series.columns())) for panel in sheet.panels for series in panel.series]
-    lengths = [len(columns["x"]) for *_, columns in found]
-    words = [(panel.title, one.name, panel.x.label, panel.y.label) for panel, one, _ in found]
-    table: dict[str, np.ndarray] = {}
-    for name, texts in zip(WORDS, zip(*words, strict=True), strict=True):
-        if any(texts):
-            table[name] = np.repeat([plain(text) for text in texts], lengths)
-    for name in NUMBERS:
-        if any(name in columns for *_, columns in found):
-            parts = [
-                columns.get(name, np.full(n, np.nan)) for (*_, columns), n in zip(found, lengths, strict=True)
-            ]
-            table[name] = np.concatenate(parts)
-    if any(panel.y.words for panel in sheet.panels):
-        at = zip(np.repeat(np.arange(len(found)), lengths), table["y"], strict=True)
-        table["y"] = np.array([plain(_word(found[k][0].y, y)) or f"{y:.6g}" for k, y in at])
-    return pd.DataFrame(table).to_csv(index=False, float_format="%.6g", lineterminator="\n")
+    has_words = any(panel.y.words for panel in sheet.panels)
+    parts = [_rows(panel, one, has_words) for panel in sheet.panels for one in panel.series]
+    found = pd.concat(parts, ignore_index=True)
+    kept = [name for name in COLUMNS if name in found and not (found[name] == "").all()]
+    return found[kept].to_csv(index=False, float_format="%.6g", lineterminator="\n")
 
 
-def _thinned(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _rows(panel: Panel, series: DataSeries, has_words: bool) -> pd.DataFrame:
+    columns = series.columns()
     every = max(1, -(-len(columns["x"]) // int(constants.POINTS_PER_SERIES)))
-    return {name: values[::every] for name, values in columns.items()}
+    found = pd.DataFrame({name: values[::every] for name, values in columns.items()})
+    if has_words:
+        found["y"] = [plain(_word(panel.y, y)) or f"{y:.6g}" for y in found["y"]]
+    texts = {"panel": panel.title, "series": series.name, "x axis": panel.x.label, "y axis": panel.y.label}
+    return found.assign(**{name: plain(text) for name, text in texts.items()})
 
 
 def _word(axis: Axis, y: float) -> str:

@@ -48,16 +48,8 @@ def write(
     """
     pictures = {name: picture(path.parent, name, sheet_of(view)) for name, sheet_of in drawn.items()}
     filled = templates(escaped=True).get_template(template)
-    known = made()
-    foot = {
-        "date": known.day,
-        "version": known.version,
-        "method": known.method,
-        "with": ", ".join(
-            f"{name} {number}" for name, number in libraries((*COMPUTING, "matplotlib")).items()
-        ),
-    }
-    html = filled.render(made=foot, pictures=pictures, view=view, **content)
+    libraries_used = libraries((*COMPUTING, "matplotlib"))
+    html = filled.render(made=made(), used=libraries_used, pictures=pictures, view=view, **content)
     path.write_text(typeset.page(html), encoding="utf-8")
 
 

@@ -16,9 +16,7 @@ from mffit.config.loading import STAND_IN, checked
 from mffit.errors import InputError, shortened
 from mffit.output import digest, new_files
 from mffit.pipeline.intake import STRETCHES, project_of, written_project
-from mffit.points import Points, levels
 from mffit.points.loading import read
-from mffit.quantities import CONDITIONS
 from mffit.recordings.disc import DiscPath, disc_signs, files_of_folder
 from mffit.recordings.guess import ColumnChoice, guesses
 from mffit.recordings.project_file import Stated, relative, slug, sweeps_text, tyre_found
@@ -30,14 +28,14 @@ from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
-from mffit.viewer.controls import in_si
+from mffit.viewer.project_points import facets
 from mffit.window.edits import add_recordings
 
 PROJECT = "tyre.toml"
 NOT_READABLE_HERE = (PROJECT, STRETCHES)
 SEPARATORS = frozenset('/\\:*?"<>|')
 """Characters that separate folders on some system, or that no file there may have."""
-SETTINGS = ("Fz_N", "gamma_deg", "kappa", "p_kPa", "V_mps")
+SETTINGS = ("Fz", "gamma", "kappa", "pressure", "Vx")
 """Conditions whose levels are shown."""
 
 
@@ -121,12 +119,14 @@ class RecordingsFolder:
         warnings = [*reading.notes, *reading.warnings]
         axes: tuple[str, ...] = ()
         wrong: tuple[str, ...] = ()
+        conditions: list[dict[str, object]] = []
         if len(reading.points):
+            conditions = [facet for facet in facets(reading.points)[0] if facet["name"] in SETTINGS]
             axes, wrong = axes_of(reading.points, chosen.rig.axes, load_falls=False)
             warnings += before_the_fit(reading.points, chosen)
         return {
             "points": len(reading.points),
-            "conditions": _conditions(reading.points) if len(reading.points) else [],
+            "conditions": conditions,
             "axes": list(axes),
             "wrong": list(wrong),
             "warnings": warnings,
@@ -281,16 +281,3 @@ def _choice(row: Mapping[str, Any]) -> ColumnChoice:
     return ColumnChoice(
         str(row["heading"]), str(row.get("channel") or ""), str(row.get("unit") or ""), bool(row.get("minus"))
     )
-
-
-def _conditions(points: Points) -> list[dict[str, Any]]:
-    """The levels of the settings, in the units of the page."""
-    found = []
-    for column in SETTINGS:
-        quantity = CONDITIONS[column]
-        values = getattr(points, column.partition("_")[0])
-        meant = levels.labels_of_setting(values, points.sweep, levels.KINDS[quantity.word])
-        at_levels = np.unique(levels.median_of_labels(values, meant)) / in_si(quantity.unit)
-        shown = {float(f"{round(x, 3):.4g}") + 0.0 for x in at_levels.tolist()}
-        found.append({"name": quantity.word, "unit": quantity.unit_behind, "levels": sorted(shown)})
-    return found

@@ -16,7 +16,6 @@ from mffit.report.build_view import BuildView
 from mffit.report.curves import shown_values
 from mffit.report.drawing.records import NOTHING, Guide, Look, Panel, Sheet, Trace, both_sides
 from mffit.rig import Simulation
-from mffit.rounding import number
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
 """The file's key for the end of an angle's range."""
@@ -115,7 +114,7 @@ def _panel_of_files(view: BuildView, channel: str, over: str) -> Panel:
     for share in constants.HELD_SHARES[:2] if over == "gamma" else constants.HELD_SHARES:
         held = np.full_like(x, share * files.tested[LIMITS[other]])
         alpha, gamma = (held, x) if over == "gamma" else (x, held)
-        at = f"{labels.ANGLES[other].symbol} = {number(np.degrees(held[0]), 1)}°"
+        at = labels.angle(other, float(np.degrees(held[0])), 1)
         for use, file in files.by_use.items():
             force = getattr(file.tyre(load, alpha, gamma, turn_slip=use == "turn-slip"), channel)
             name = f"{view.file_names[use]}, {at}"

@@ -13,7 +13,6 @@ from mffit.report import labels, style
 from mffit.report.build_view import BuildView, ChannelRow, Overlay
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import NOTHING, Look, Panel, Sheet, Trace, in_rows
-from mffit.rounding import number
 
 MARKS = {
     "no weight": Look(colour=style.CONTRAST, marker="x", size=5.0),
@@ -67,9 +66,9 @@ OF_CHANNELS: Mapping[str, Callable[[Overlay], Sheet]] = {
 
 def held_key(held: str, colours: Mapping[float, str]) -> dict[str, Look]:
     """A colour for every angle that is held."""
-    symbol, whole = labels.ANGLES[held].symbol, all(round(x, 1) == round(x) for x in colours)
+    digits = 0 if all(round(x, 1) == round(x) for x in colours) else 1
     return {
-        f"{symbol} = {number(angle, 0 if whole else 1)}°": Look(colour=colour, line="-", width=3.0)
+        labels.angle(held, angle, digits): Look(colour=colour, line="-", width=3.0)
         for angle, colour in colours.items()
     }
 
@@ -77,7 +76,7 @@ def held_key(held: str, colours: Mapping[float, str]) -> dict[str, Look]:
 def _panel(
     view: Overlay, channel: ChannelRow, members: Sequence[Curve], colours: Mapping[float, str], cambers: bool
 ) -> Panel:
-    at = f", {labels.ANGLES['gamma'].symbol} = {number(members[0].camber, 0)}°" if cambers else ""
+    at = f", {labels.angle('gamma', members[0].camber)}" if cambers else ""
     series = [s for curve in members for s in curve_traces(view, channel, curve, colours[curve.held])]
     return labels.over_angle(members[0].over, channel.name, f"{members[0].condition}{at}", series)
 

@@ -30,7 +30,7 @@ from mffit.report.drawing.records import (
     in_rows,
     listed,
 )
-from mffit.report.figures.residuals import ANGLES, SLIPS, Framed, driven, residual_map, rolling
+from mffit.report.figures.residuals import SLIPS, Framed, of_wheel, residual_map
 from mffit.rounding import number
 from mffit.scatter import rms
 from tir.frozen import ReadOnlyArrays
@@ -179,11 +179,13 @@ def residuals_before_after(diagnosis: Diagnosis) -> Sheet:
         return NOTHING
     whens = ("before", "after") if diagnosis.repaired else ("before",)
     rows = []
-    for which, over in ((rolling, ANGLES), (driven, SLIPS)):
-        for condition in which(points, conditions(points)):
+    for over in (labels.ANGLES, SLIPS):
+        for condition in of_wheel(points, conditions(points), over):
             maps = []
             for channel in channels:
-                frames = _frames(framed(diagnosis, channel.name), condition.load) if over == ANGLES else []
+                frames = (
+                    _frames(framed(diagnosis, channel.name), condition.load) if over == labels.ANGLES else []
+                )
                 for when in whens:
                     title = f"{channel.known.mathtext}{' ' + when if diagnosis.repaired else ''}, {condition.title}"
                     values = getattr(channel, when)

@@ -13,7 +13,6 @@ from mffit.report.build_view import BuildView
 from mffit.report.curves import CurveCondition, shown_values
 from mffit.report.drawing.records import Axis, ColourScale, Look, Panel, Sheet, Trace, in_rows
 
-ANGLES = ("alpha", "gamma")
 SLIPS = ("kappa", "alpha")
 Framed = tuple[tuple[float, float] | None, tuple[float, float] | None]
 """A region of a map by its ranges along both axes; None reaches to the ends of the axis."""
@@ -22,17 +21,11 @@ READING = Look(marker="s", size=4.0)
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
-def rolling(points: Points, conditions: Sequence[CurveCondition]) -> list[CurveCondition]:
-    """The points of each condition at which the wheel rolls freely, for maps over sideslip and camber."""
-    return _kept(conditions, points.free_rolling)
-
-
-def driven(points: Points, conditions: Sequence[CurveCondition]) -> list[CurveCondition]:
-    """The points of each condition at which the wheel is driven or braked, for maps over slip and sideslip."""
-    return _kept(conditions, ~points.free_rolling)
-
-
-def _kept(conditions: Sequence[CurveCondition], which: np.ndarray) -> list[CurveCondition]:
+def of_wheel(
+    points: Points, conditions: Sequence[CurveCondition], over: tuple[str, str]
+) -> list[CurveCondition]:
+    """The points of each condition where the wheel rolls freely, for maps over both angles, or else is driven or braked."""
+    which = points.free_rolling if over == labels.ANGLES else ~points.free_rolling
     found = [replace(c, index=c.index[which[c.index]]) for c in conditions]
     return [c for c in found if len(c.index)]
 
@@ -42,9 +35,9 @@ def residual_maps(view: BuildView) -> Sheet:
     groups = [
         [
             residual_map(view.points, values, condition, f"{name}: {condition.title}", over=over)
-            for condition in which(view.points, view.conditions)
+            for condition in of_wheel(view.points, view.conditions, over)
         ]
-        for which, over in ((rolling, ANGLES), (driven, SLIPS))
+        for over in (labels.ANGLES, SLIPS)
         for name, values in view.scaled
     ]
     return Sheet(
@@ -60,7 +53,7 @@ def residual_map(
     condition: CurveCondition,
     title: str,
     frames: Sequence[Framed] = (),
-    over: tuple[str, str] = ANGLES,
+    over: tuple[str, str] = labels.ANGLES,
 ) -> Panel:
     """One map with the axes of all points; a dot marks a point that was run backwards."""
     rows = condition.index[np.isfinite(values[condition.index])]

@@ -200,7 +200,7 @@ byId("check").addEventListener("click", async () => {
   const found = await post("check");
   if (!found) return;
   const said = [`${found.points} points`,
-    ...found.conditions.map(one => `${one.name}: ${one.levels.join(", ")} ${one.unit}`),
+    ...found.conditions.map(one => `${one.word}: ${one.labels.join(", ")}`),
     found.axes.length ? `the signs agree with ${found.axes.join(" and ")} axes`
       : `the signs agree with no axes: in those chosen ${found.wrong.join(" and ")}`, ...found.warnings];
   byId("conditions").replaceChildren(...said.map(one => element("li", "", one)));

@@ -66,7 +66,9 @@ def test_the_corrected_project_reads_the_true_points(folder, original):
     found = RecordingsFolder(folder)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     choice = corrected(found.table())
-    assert found.check(choice)["axes"] == ["iso"]
+    checked = found.check(choice)
+    assert checked["axes"] == ["iso"]
+    assert {one["word"]: one["labels"] for one in checked["conditions"]}["load"] == ["1400 N"]
     path = found.make(choice)
     after = {path.name: path.read_bytes() for path in folder.iterdir()}
     assert set(after) - set(before) == {"tyre.toml"}
