@@ -31,7 +31,9 @@ class Brief:
         if len(lines) > TERMINAL_LINES:
             shown = TERMINAL_LINES - 1
             lines = [*lines[:shown], f" and {len(lines) - shown} fields more"]
-        return "\n".join(_cut(line, TERMINAL_WIDTH - 1) for line in lines) + ">"
+        longest = TERMINAL_WIDTH - 1
+        cut = (line if len(line) <= longest else f"{line[: longest - 3]}..." for line in lines)
+        return "\n".join(cut) + ">"
 
     def _repr_html_(self) -> str:
         """For notebooks: the same as a table, with a picture of the tyre if the record has one."""
@@ -101,7 +103,3 @@ def _array(x: np.ndarray) -> str:
         if low == high and known.size == x.size
         else f"{size}, {low:.6g} to {high:.6g}"
     )
-
-
-def _cut(text: str, longest: int) -> str:
-    return text if len(text) <= longest else f"{text[: longest - 3]}..."

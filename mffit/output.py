@@ -90,7 +90,9 @@ def _publish(
     temporary: Path, out: Path, by: str, protected: Iterable[Path], outdated: Collection[str]
 ) -> None:
     """Move the finished files to their places, or raise and leave the output as it was."""
-    written, recorded = _digests(temporary), _recorded(out)
+    files = sorted(path for path in temporary.rglob("*") if path.is_file())
+    written = {path.relative_to(temporary).as_posix(): digest(path) for path in files}
+    recorded = _recorded(out)
     _refuse(out, written, recorded, protected)
     stale = _stale(out, by, written, recorded, outdated)
     kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
@@ -167,12 +169,6 @@ def written_by(out: Path, by: str) -> frozenset[str]:
 def digest(path: Path) -> str:
     """SHA-256 of a file, in hex."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def _digests(folder: Path) -> dict[str, str]:
-    """SHA-256 of every file in a folder, by its relative name."""
-    files = sorted(path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder).as_posix(): digest(path) for path in files}
 
 
 def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:

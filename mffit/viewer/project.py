@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 from mffit.as_json import Json, document
-from mffit.fit import name_at_temperature
+from mffit.config.by_hand import may_be_free, unsettable
+from mffit.fit import Coefficient, FitResult, name_at_temperature
 from mffit.fit.agreement import with_points
 from mffit.fit.influences.modelled import without_runs
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.rig import SIMULATED
+from mffit.viewer import constants
 from mffit.viewer.page import Page, on_page, rendered
-from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import axis_quantities, columns, delivered, differing
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, LOADED, Switches, trace
 from tir.evaluate import CONICITY
+from tir.parameters import TABLE, Parameter
+
+FOUND = frozenset({"fitted", "regularised", "measured"})
+"""Status of coefficients that the data determine."""
 
 
 def project_data(result: BuildResult) -> dict[str, Json]:
@@ -153,3 +160,40 @@ def _misfits(result: BuildResult) -> dict[str, float]:
     readings = delivered(fitted).readings(result.points, others)
     found = {**with_points(readings, result.points), **fitted.channels, **apart}
     return {name: found[name].rmse for name in measured if found[name].n}
+
+
+def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str, object]]:
+    """The coefficients on which the page's curves depend (``used`` by its model), in the order of a property file."""
+    names = set(used)
+    rows = [row for row in TABLE if row.name in names and not unsettable(row.name)]
+    return [_row(row, result.fit) for row in rows]
+
+
+def _row(row: Parameter, fitted: FitResult) -> dict[str, object]:
+    record = fitted.coefficients[row.name]
+    value = float(fitted.tyre[row.name])
+    lower, upper = record.bounds or row.bounds
+    low, high = _reach(value, record, lower, upper)
+    return {
+        "name": row.name,
+        "group": row.section.removesuffix("_COEFFICIENTS").replace("_", " ").capitalize(),
+        "about": row.description,
+        "unit": "" if row.unit == "-" else row.unit,
+        "value": value,
+        "stderr": record.stderr,
+        "status": record.status,
+        "found": record.status in FOUND or bool(record.by_hand),
+        "at_bound": record.at_bound,
+        "may_be_free": may_be_free(row),
+        "bounds": [x if math.isfinite(x) else None for x in (lower, upper)],
+        "divisor": row.divisor,
+        "slider": [low, high],
+        "partner": [record.correlated_with, record.correlation] if record.correlated_with else None,
+    }
+
+
+def _reach(value: float, record: Coefficient, lower: float, upper: float) -> tuple[float, float]:
+    """Ends of the slider, within the bounds."""
+    least = constants.SLIDER_LEAST * (1.0 + abs(value))
+    reach = max(constants.SLIDER_REACH * (record.stderr or 0.0), least)
+    return min(max(value - reach, lower), value), max(min(value + reach, upper), value)

@@ -10,8 +10,7 @@ import pytest
 import mffit
 from mffit.points import make_points
 from mffit.quantities import CONDITIONS
-from mffit.viewer.project import project_data
-from mffit.viewer.project_coefficients import coefficient_rows
+from mffit.viewer.project import coefficient_rows, project_data
 from mffit.viewer.project_points import facets
 
 
