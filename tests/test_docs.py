@@ -21,7 +21,7 @@ from mffit.cli import commands
 from mffit.config import Config
 from mffit.config.problems import known_keys
 from mffit.virtual_rig import plan
-from tir import differences
+from tir import targets
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -206,7 +206,7 @@ def test_what_programs_compute_otherwise_is_computed():
     """The numbers of the page are those of the sample, whatever becomes of either."""
     front = tir.read(ROOT / "samples" / "front-120-70" / "true.tir")
     text = " ".join(text_of(ROOT / "docs" / "property-files.md").split())
-    for words in (differences.chrono_in_words(front), differences.mbsim_in_words(front)):
+    for words in (targets.chrono_in_words(front), targets.mbsim_in_words(front)):
         assert words in text
 
 

@@ -7,7 +7,7 @@ need, use :func:`tir.evaluate.evaluate`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from operator import itemgetter
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -142,19 +142,17 @@ def _plain(x: Any) -> Any:
 
 def function_of(tyre: TyreRecord, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Function | None:
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
-    key = switches if outputs is FORCES and tyre.correction is None else (outputs, switches)
-    if key not in tyre.prepared:
-        values = _values(tyre, switches, outputs)
-        if values is None:
-            return None
-        loaded = kernels.meter("one", switches).kernel() if key is switches else None
+
+    def made(values: dict[str, float]) -> Function:
+        if key is not switches:
+            return single.run_of(values, switches, outputs)
+        loaded = kernels.meter("one", switches).kernel()
         if loaded is not None:
-            tyre.prepared[key] = loaded.run_of(values)
-        else:
-            run = single.run_of(values, switches, outputs)
-            tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if key is switches else run
-    found: Function | None = tyre.prepared[key]
-    return found
+            return loaded.run_of(values)
+        return _counted(tyre.prepared, single.run_of(values, switches, outputs), values, switches)
+
+    key = switches if outputs is FORCES and tyre.correction is None else (outputs, switches)
+    return _prepared(tyre, key, switches, outputs, made)
 
 
 def _counted(
@@ -189,7 +187,7 @@ def _kernel_for(tyre: TyreRecord, n: int, switches: Switches) -> Function | None
     if meter.loaded is None:
         meter.left -= n + PER_CALL
     loaded = meter.kernel()
-    return None if loaded is None else _prepared(tyre, "batch", switches, FORCES, loaded.run_of)
+    return None if loaded is None else _prepared(tyre, ("batch", switches), switches, FORCES, loaded.run_of)
 
 
 def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
@@ -208,7 +206,7 @@ def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
 
     if ("lag", switches) not in tyre.prepared:
         tyre.leave_correction("the lag of the contact")
-    found = _prepared(tyre, "lag", switches, (*FORCES, *OF_CONTACT), lag)
+    found = _prepared(tyre, ("lag", switches), switches, (*FORCES, *OF_CONTACT), lag)
     if found is None:
         raise TirError("the lag of the contact is computed for real parameters only")
     return found
@@ -216,16 +214,16 @@ def lag_of(tyre: TyreRecord, switches: Switches) -> ContactLag:
 
 def _prepared(
     tyre: TyreRecord,
-    kind: str,
+    key: Hashable,
     switches: Switches,
     outputs: tuple[str, ...],
     made: Callable[[dict[str, float]], Made],
 ) -> Made | None:
     """What is made of the parameters as floats, cached in the tyre; None if one is not a real number."""
-    if (kind, switches) not in tyre.prepared:
+    if key not in tyre.prepared:
         values = _values(tyre, switches, outputs)
-        tyre.prepared[kind, switches] = None if values is None else made(values)
-    found: Made | None = tyre.prepared[kind, switches]
+        tyre.prepared[key] = None if values is None else made(values)
+    found: Made | None = tyre.prepared[key]
     return found
 
 
@@ -243,7 +241,7 @@ def _many(tyre: TyreRecord, inputs: Sequence[np.ndarray], n: int, switches: Swit
     run = _kernel_for(tyre, n, switches)
     if run is not None:
         return _in_vectors(run, inputs, n)
-    values = _prepared(tyre, "values", switches, FORCES, dict)
+    values = _prepared(tyre, ("values", switches), switches, FORCES, dict)
     return None if values is None else _in_numpy(replay(switches, FORCES), values, inputs, n)
 
 

@@ -13,6 +13,8 @@ from tir.constants import MARGIN_INSIDE_RANGE
 REGULAR = ("", "motorcycle", "62")
 """Words of the column ``files``: a file with all keys of these rows is complete for every program."""
 TURN_SLIP = "TURNSLIP_COEFFICIENTS"
+AS_WRITTEN = ("name", "section", "kind", "unit", "stage", "channel", "files", "equation", "description")
+"""Columns that are fields of a record as they stand."""
 NORMAL_MODE = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS")
 
 
@@ -124,28 +126,20 @@ def _parameter(order: int, row: dict[str, str]) -> Parameter:
     (lower, least), (upper, most) = (_end(row[side]) for side in ("lower", "upper"))
     tied = dict(word.split(":") for word in row["tied"].split())
     return Parameter(
-        name=row["name"],
-        section=row["section"],
+        **{column: row[column] for column in AS_WRITTEN},
         order=order,
-        kind=row["kind"],
-        unit=row["unit"],
         default=float(row["default"]) if number else row["default"],
         lower=lower,
         upper=upper,
         least=least,
         most=most,
         divisor=row["divisor"] == "yes",
-        stage=row["stage"],
-        channel=row["channel"],
         symmetry=frozenset(row["symmetry"].split()),
         disc_spread=float(tied["disc"]) if "disc" in tied else None,
         side_spread=float(tied["side"]) if "side" in tied else None,
         tyres_spread=float(tied["tyres"].partition("/")[0]) if "tyres" in tied else None,
         tyres=int(tied.get("tyres", "/0").partition("/")[2]),
         needs=tuple(_need(word) for word in row["needs"].split()),
-        files=row["files"],
-        equation=row["equation"],
-        description=row["description"],
     )
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tir.differences import CHRONO_HOLDS, chrono_in_words, mbsim_in_words
+from tir import calls
+from tir.constants import NEGLIGIBLE_SHARE, SIDESLIP_BEYOND_PEAK, SLIP_BEYOND_PEAK, SMALL_TURN_SLIP
+from tir.equations.normalise import OperatingCondition, Switches
 from tir.errors import TirError, listed
 from tir.mode import asks_for_turn_slip
 from tir.parameters import TABLE
@@ -46,6 +49,71 @@ class Target:
     siemens: bool = False  #: whether it runs Siemens' solver, MF-Tyre/MF-Swift
     known: str = "documentation"  #: how the profile is known: one of :data:`KNOWN`
     verified: str = ""  #: what that rests on, if it is not the program's source
+
+
+CHRONO_HOLDS = 0.5 * math.pi - 0.01
+"""Largest B x of a curve in Chrono's PAC2002: beyond this slip its pure forces stay constant."""
+
+
+def beyond_the_peak_in_chrono(tyre: TyreRecord) -> dict[str, float]:
+    """Share by which Chrono's pure Fx and Fy exceed those of the formula beyond the peak; upright, at nominal load and pressure.
+
+    At SLIP_BEYOND_PEAK of longitudinal slip, and at SIDESLIP_BEYOND_PEAK. A force that the tyre does not have is left out.
+    """
+    Fz, off = float(tyre["FNOMIN"]), Switches(False)
+    state = calls.state(tyre, _straight(tyre), off)
+    shares = {}
+    for channel, shape, friction, stiffness, shift, slip in (
+        ("Fx", "PCX1", state.mu_x, state.K_xk, 0.0, float(SLIP_BEYOND_PEAK)),
+        ("Fy", "PCY1", state.mu_y, state.K_ya, float(state.S_Hy), SIDESLIP_BEYOND_PEAK.rad),
+    ):
+        scale = tyre["LCX" if channel == "Fx" else "LCY"]
+        per_slip = abs(float(stiffness)) / abs(float(tyre[shape] * scale * friction) * Fz or math.inf)
+        held = min(slip, CHRONO_HOLDS / per_slip - shift) if per_slip else slip
+        over = "kappa" if channel == "Fx" else "alpha"
+        forces = (calls.forces(tyre, _straight(tyre, **{over: x}), off) for x in (slip, held))
+        by_formula, by_program = (float(getattr(force, channel)) for force in forces)
+        if by_formula:
+            shares[channel] = by_program / by_formula - 1.0
+    return shares
+
+
+def chrono_in_words(tyre: TyreRecord) -> str:
+    """The forces of :func:`beyond_the_peak_in_chrono` that differ, for a sentence; empty if none does."""
+    places = {"Fx": f"slip {SLIP_BEYOND_PEAK:g}", "Fy": f"{SIDESLIP_BEYOND_PEAK:g} deg of sideslip"}
+    shares = beyond_the_peak_in_chrono(tyre)
+    return " and ".join(
+        f"{channel} by {100.0 * share:+.0f} % at {places[channel]}"
+        for channel, share in shares.items()
+        if abs(share) > float(NEGLIGIBLE_SHARE)
+    )
+
+
+def spin_without_moment_in_mbsim(tyre: TyreRecord) -> float:
+    """Total spin over turn slip below which MBSim's Mz is NaN, about, at nominal load; 1 if it is NaN upright on gentle curves.
+
+    Its moment takes the arc cosine of the moment at 90 deg over that of spin (4.E102), which exceeds 1 where the spin of camber
+    cancels most of the path's. The latter moment grows with the spin, the former with the turn slip.
+    """
+    state = calls.state(tyre, _straight(tyre, phi_t=float(SMALL_TURN_SLIP)), Switches(True))
+    return math.cos(0.5 * math.pi * float(state.zeta7))
+
+
+def mbsim_in_words(tyre: TyreRecord) -> str:
+    """Where MBSim's Mz is NaN, for a sentence."""
+    share = spin_without_moment_in_mbsim(tyre)
+    if share >= 1.0:
+        return "on every gentle curve"
+    return (
+        f"wherever the total spin is within about {share:.2g} of the turn slip, as where a leaning wheel runs nearly straight: "
+        f"within {share / 5.0:.2g} 1/m on a circle of 5 m"
+    )
+
+
+def _straight(tyre: TyreRecord, **changes: float) -> OperatingCondition:
+    """The upright wheel at the nominal condition of its file, with changes."""
+    nominal = OperatingCondition(float(tyre["FNOMIN"]), Vx=tyre["LONGVL"], pressure=tyre["NOMPRES"])
+    return nominal._replace(**changes)
 
 
 def _if_turn_slip(then: str) -> TargetRule:
@@ -133,38 +201,48 @@ OF_CHRONO = (
         "PAC2002 file of this tyre differs in {said}",
     ),
 )
-OF_ANSYS = (_if_turn_slip("for which PROPERTY_FILE_FORMAT has to be 'SWIFT'"),)
 ASSUMED = "no public manual was found that names its keys, so this is the file for MF-Tyre/MF-Swift itself"
-HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ...] = (
-    ("carsim", "CarSim and BikeSim", {}, (), ASSUMED),
-    ("simpack", "Simpack", {}, (), ASSUMED),
-    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, (), ASSUMED),
-    (
+
+
+def _host(name: str, program: str, verified: str = ASSUMED, **more: Any) -> Target:
+    """A program that has MF-Tyre/MF-Swift built in."""
+    return Target(
+        name,
+        f"{program} with MF-Tyre/MF-Swift",
+        (62, 61, 60),
+        tuple(key for key in ADAMS if key not in more.get("values", ())),
+        siemens=True,
+        known="assumed" if "assumed" in verified or verified == ASSUMED else "documentation",
+        verified=f"{verified}; nothing was run",
+        **more,
+    )
+
+
+HOSTS = (
+    _host("carsim", "CarSim and BikeSim"),
+    _host("simpack", "Simpack"),
+    _host("vigrade", "VI-CarRealTime and VI-BikeRealTime"),
+    _host(
         "motionview",
         "MotionView and MotionSolve",
-        {},
-        (),
         "its public manual names MF-Tyre/MF-Swift and lets [MODEL] select it; take PROPERTY_FILE_FORMAT and FUNCTION_NAME from "
         "the sample file of the installation",
     ),
-    (
+    _host(
         "ansysmotion",
         "Ansys Motion",
-        {"PROPERTY_FILE_FORMAT": "MF"},
-        OF_ANSYS,
         "its public manual lists MF-Tyre and MF-Swift and their PROPERTY_FILE_FORMAT",
+        values={"PROPERTY_FILE_FORMAT": "MF"},
+        rules=(_if_turn_slip("for which PROPERTY_FILE_FORMAT has to be 'SWIFT'"),),
     ),
-    ("asm", "dSPACE ASM", {}, (), ASSUMED),
-    (
+    _host("asm", "dSPACE ASM"),
+    _host(
         "carmaker-mftyre",
         "CarMaker",
-        {},
-        (),
         "its public forum says that an info file names the model and the property file; that this file is the one for "
         "MF-Tyre/MF-Swift itself is assumed",
     ),
 )
-"""Programs that have MF-Tyre/MF-Swift built in: name, program, fixed values, rules, and how that is known."""
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
@@ -220,20 +298,7 @@ TARGETS: dict[str, Target] = {
             rules=OF_MBSIM,
             known="source read",
         ),
-        *(
-            Target(
-                name,
-                f"{program} with MF-Tyre/MF-Swift",
-                (62, 61, 60),
-                tuple(key for key in ADAMS if key not in values),
-                values=values,
-                rules=rules,
-                siemens=True,
-                known="assumed" if "assumed" in verified or verified == ASSUMED else "documentation",
-                verified=f"{verified}; nothing was run",
-            )
-            for name, program, values, rules, verified in HOSTS
-        ),
+        *HOSTS,
         Target(
             "mfeval",
             "MFeval and its relatives",
@@ -317,35 +382,33 @@ def known_target(name: str) -> Target:
     return TARGETS[name]
 
 
-UNITS_DIGIT = {
-    0: "Fz only",
-    1: "Fx and My only",
-    2: "Fy, Mx and Mz only",
-    3: "slips apart",
-    4: "combined slip",
-    5: "combined and turn slip",
+DIGITS: Mapping[int, Sequence[str]] = {
+    100: (
+        "road contact by default",
+        "smooth road",
+        "smooth road, round cross-section",
+        "moving road",
+        "2D road",
+        "3D road",
+    ),
+    10: ("steady state", "linear relaxation", "nonlinear relaxation", "rigid ring"),
+    1: (
+        "Fz only",
+        "Fx and My only",
+        "Fy, Mx and Mz only",
+        "slips apart",
+        "combined slip",
+        "combined and turn slip",
+    ),
 }
-TENS_DIGIT = {0: "steady state", 1: "linear relaxation", 2: "nonlinear relaxation", 3: "rigid ring"}
-HUNDREDS_DIGIT = {
-    0: "road contact by default",
-    1: "smooth road",
-    2: "smooth road, round cross-section",
-    3: "moving road",
-    4: "2D road",
-    5: "3D road",
-}
+"""Words for the digits of USE_MODE, by the place of the digit."""
 UNKNOWN_DIGIT = "unknown digit"
 
 
 def use_mode_words(mode: float) -> str:
     """Meaning of a USE_MODE for MF-Tyre/MF-Swift, digit by digit; the thousands are ignored."""
-    number = abs(int(mode))
-    parts = (
-        HUNDREDS_DIGIT.get(number // 100 % 10),
-        TENS_DIGIT.get(number // 10 % 10),
-        UNITS_DIGIT.get(number % 10),
-    )
-    return ", ".join(part or UNKNOWN_DIGIT for part in parts)
+    digits = ((abs(int(mode)) // place % 10, words) for place, words in DIGITS.items())
+    return ", ".join(words[k] if k < len(words) else UNKNOWN_DIGIT for k, words in digits)
 
 
 def vendor(mode: float) -> str:

@@ -10,6 +10,10 @@ state. With its deflections against the wheel, u forwards and v to the right [m]
 sigma_x and sigma_y are the slip stiffness over the carcass stiffness (A8, A9). At standstill du/dt = -Vsx, and a spring of
 the carcass stiffness remains. Each step solves the equations exactly for speeds that are constant within it, so steps of any
 length are stable.
+
+Below VXLOW deflections do not grow beyond those at which the whole contact slides, ``3 mu Fz`` over the carcass stiffness: a
+wheel pushed sideways at standstill slides, and springs back when it is released. It does not stick to the road: under a constant
+push it creeps.
 """
 
 from __future__ import annotations
@@ -76,16 +80,10 @@ def step(
     ------
     TirError
         If ``dt`` is negative or NaN, or a parameter is no real number.
-
-    Notes
-    -----
-    Below VXLOW deflections do not grow beyond those at which the whole contact slides, ``3 mu Fz`` over the carcass stiffness:
-    a wheel pushed sideways at standstill slides, and springs back when it is released. It does not stick to the road: under a
-    constant push it creeps.
     """
     if not dt >= 0.0:
         raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
-    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma), phi_t, p, damping, turn_slip, limits)
+    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
     after = Contact(*lag.after(*contact, *inputs, dt))
     return after, _forces(lag, after, inputs)
 
@@ -106,20 +104,15 @@ def forces(
     limits: bool = False,
 ) -> Forces:
     """The forces of a deflected contact; arguments as in :func:`step`."""
-    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma), phi_t, p, damping, turn_slip, limits)
+    lag, inputs = _lag(tyre, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
     return _forces(lag, contact, inputs)
 
 
 def _lag(
-    tyre: Tyre,
-    moving: tuple[Any, ...],
-    phi_t: Any,
-    p: Any,
-    damping: float,
-    turn_slip: bool | None,
-    limits: bool,
+    tyre: Tyre, given: tuple[Any, ...], turn_slip: bool | None, limits: bool
 ) -> tuple[ContactLag, tuple[Any, ...]]:
     """The functions of the tyre's lag, and their inputs without the deflection."""
+    *moving, phi_t, p, damping = given
     lag = lag_of(tyre, Switches(tyre.turns(turn_slip, phi_t), False, bool(limits)))
     return lag, (*moving, 0.0 if phi_t is None else phi_t, tyre["INFLPRES"] if p is None else p, damping)
 

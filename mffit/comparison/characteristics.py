@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -21,6 +21,7 @@ from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 
 OUTPUTS = ("Fx", "Fy", "Mz", "Re")
+SETTINGS = ("alpha", "gamma", "Fz", "kappa", "phi_t", "pressure")
 STEP = 1e-3
 """Step of central differences for slopes at zero [rad, -, 1/m]."""
 PLACES = 201
@@ -131,58 +132,58 @@ def with_slopes(
     """
     uncertain = traced({name: float(tyre[name]) for name in names})
     values: dict[str, Any] = {**vars(tyre.p), **uncertain}
-    p = SimpleNamespace(**values)
-    still = {"alpha": 0.0, "gamma": 0.0, "kappa": 0.0, "phi_t": 0.0}
-    still |= {"Fz": load, "pressure": float(tyre["INFLPRES"])}
-
-    def at(over: str, x: Any) -> dict[str, Any]:
-        where = {**still, over: x}
-        found = dict(zip(OUTPUTS, outputs_of(OUTPUTS, p, where, turn_slip=turn_slip), strict=True))
-        if predictor is not None:
-            missed = _missed(predictor, where, float(tyre["LONGVL"]), found.keys())
-            found |= {name: found[name] + own for name, own in missed.items()}
-        return found
-
-    def slopes(over: str) -> dict[str, Any]:
-        below, above = at(over, -STEP), at(over, STEP)
-        return {name: (above[name] - below[name]) / (2.0 * STEP) for name in OUTPUTS}
-
-    def largest(by: Decided) -> tuple[Any, Any]:
-        """The largest force over the tested range, and its fall up to the end."""
-        x = np.linspace(0.0, getattr(tested, by.over), PLACES)
-        place = int(np.argmax(np.abs(plain(at(by.over, x)[by.channel]))))
-        value, end = (at(by.over, float(x[i]))[by.channel] for i in (place, -1))
-        sign = 1.0 if plain(value) >= 0.0 else -1.0
-        return sign * value, sign * (value - end)
-
-    by_slip = slopes("alpha")
+    wheel = _Wheel(SimpleNamespace(**values), load, turn_slip, predictor)
+    by_slip = wheel.slopes("alpha")
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
     found = {
         "epsilon_gamma": values["PECP1"] * (1.0 + values["PECP2"] * dfz),
         "C_alpha_N_per_rad": by_slip["Fy"],
-        "C_gamma_N_per_rad": slopes("gamma")["Fy"],
+        "C_gamma_N_per_rad": wheel.slopes("gamma")["Fy"],
         "C_Mz_alpha_Nm_per_rad": by_slip["Mz"],
-        "K_xk_N": slopes("kappa")["Fx"],
+        "K_xk_N": wheel.slopes("kappa")["Fx"],
         "trail_m": -by_slip["Mz"] / by_slip["Fy"] if plain(by_slip["Fy"]) else math.nan,
-        "r_e_m": at("alpha", 0.0)["Re"],
+        "r_e_m": wheel.at("alpha", 0.0)["Re"],
     }
     if turn_slip:
-        found["C_phit_Nm"] = slopes("phi_t")["Fy"]
+        found["C_phit_Nm"] = wheel.slopes("phi_t")["Fy"]
     for key in filter(tested.varied, PEAKS):
         of_load = load if CHARACTERISTICS[key].unit == "-" else 1.0
-        found[key], found[FALL + key] = (x / of_load for x in largest(DECIDED_BY[key]))
+        found[key], found[FALL + key] = (x / of_load for x in wheel.largest(DECIDED_BY[key], tested))
     jacobian = np.array([gradient(x, list(uncertain.values())) for x in found.values()], dtype=float)
     return {key: float(plain(x)) for key, x in found.items()}, jacobian.reshape(len(found), -1)
 
 
-def _missed(
-    predictor: Predictor, where: Mapping[str, Any], V: float, names: Collection[str]
-) -> dict[str, np.ndarray]:
-    """The model error of some channels at conditions of a number or of a curve (n,)."""
-    settings = ("alpha", "gamma", "Fz", "kappa", "phi_t", "pressure")
-    alpha, gamma, Fz, kappa, phi_t, p = (
-        np.atleast_1d(x) for x in np.broadcast_arrays(*(where[name] for name in settings))
-    )
-    points = make_points(alpha, gamma, Fz, kappa=kappa, p=p, V=V, phi_t=phi_t)
-    shape = np.broadcast_shapes(*(np.shape(where[name]) for name in settings))
-    return {n: predictor.missed(n, points).reshape(shape) for n in predictor.channels if n in names}
+class _Wheel(NamedTuple):
+    """A tyre at a load on a straight path, its coefficients plain or traced."""
+
+    p: SimpleNamespace
+    load: float
+    turn_slip: bool
+    predictor: Predictor | None  #: adds the model error
+
+    def at(self, over: str, x: Any) -> dict[str, Any]:
+        """The outputs at values of one angle or slip, the others zero."""
+        pressure, still = float(self.p.INFLPRES), dict.fromkeys(("alpha", "gamma", "kappa", "phi_t"), 0.0)
+        where = {**still, "Fz": self.load, "pressure": pressure, over: x}
+        found = dict(zip(OUTPUTS, outputs_of(OUTPUTS, self.p, where, turn_slip=self.turn_slip), strict=True))
+        if self.predictor is None:
+            return found
+        given = np.broadcast_arrays(*(where[name] for name in SETTINGS))
+        alpha, gamma, Fz, kappa, phi_t, p = (np.atleast_1d(values) for values in given)
+        points = make_points(alpha, gamma, Fz, kappa=kappa, p=p, V=float(self.p.LONGVL), phi_t=phi_t)
+        missed = [name for name in self.predictor.channels if name in found]
+        shape = given[0].shape
+        return found | {n: found[n] + self.predictor.missed(n, points).reshape(shape) for n in missed}
+
+    def slopes(self, over: str) -> dict[str, Any]:
+        """The slopes of the outputs at zero."""
+        below, above = self.at(over, -STEP), self.at(over, STEP)
+        return {name: (above[name] - below[name]) / (2.0 * STEP) for name in OUTPUTS}
+
+    def largest(self, by: Decided, tested: Tested) -> tuple[Any, Any]:
+        """The largest force over the tested range, and its fall up to the end."""
+        x = np.linspace(0.0, getattr(tested, by.over), PLACES)
+        place = int(np.argmax(np.abs(plain(self.at(by.over, x)[by.channel]))))
+        value, end = (self.at(by.over, float(x[i]))[by.channel] for i in (place, -1))
+        sign = 1.0 if plain(value) >= 0.0 else -1.0
+        return sign * value, sign * (value - end)

@@ -92,8 +92,8 @@ def _numbers(
         if key in b:
             # To first order, the effect of rig errors may exceed the stated uncertainty; then it replaces it.
             u = [
-                max(x.u, float(np.hypot.reduce(by, initial=0.0)))
-                for x, by in ((a[key], moved[0][key]), (b[key], moved[1][key]))
+                max(one[key].u, float(np.hypot.reduce(by[key], initial=0.0)))
+                for one, by in zip(found, moved, strict=True)
             ]
             yield Difference(
                 key=key,
@@ -136,22 +136,20 @@ def _curves(
                 x=x,
                 first=a[channel],
                 second=b[channel],
-                half_first=None if half_a is None else half_a.get(channel),
-                half_second=None if half_b is None else half_b.get(channel),
+                half_first=half_a.get(channel),
+                half_second=half_b.get(channel),
             )
 
 
 def _curve(
     side: ComparedSubject, at: tuple[Any, Any, Any, Any], channels: Sequence[str]
-) -> tuple[Readings, Readings | None]:
-    """Forces of a file at a load, sideslip, camber and slip, at its own pressure and speed, and the half widths of their bands;
-    None without a predictor.
-    """
+) -> tuple[Readings, Mapping[str, np.ndarray]]:
+    """Forces of a file at a load, sideslip, camber and slip, at its own pressure and speed, and half widths of known bands."""
     Fz, alpha, gamma, kappa = at
     pressure, speed = float(side.tyre["INFLPRES"]), float(side.tyre["LONGVL"])
     where = make_points(alpha, gamma, Fz, kappa=kappa, p=pressure, V=speed, phi_t=0.0)
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
-    band = None
+    band: Mapping[str, np.ndarray] = {}
     if side.foretold is not None:
         known, fitted = side.foretold
         band = known.band(simulation, Simulation.of(fitted, turn_slip=known.curved), where, channels)

@@ -76,9 +76,9 @@ def convert(
     found = refit(start, at, goal, reach)
     values = {**start, **found, **camber_range(old, reach)}
     tyre = Tyre.from_values(values)
-    channels = mf52.OldForces._fields
-    new = dict(zip(channels, outputs_of(channels, tyre.p, at._asdict()), strict=True))
-    misfit = tuple(misfits(new, at, goal))
+    misfit = tuple(
+        misfits(dict(zip(goal, outputs_of((*goal,), tyre.p, at._asdict()), strict=True)), at, goal)
+    )
     how = f"by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
     provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)

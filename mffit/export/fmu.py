@@ -7,9 +7,8 @@ import tempfile
 import uuid
 import zipfile
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mffit
 import tir
@@ -20,9 +19,6 @@ from mffit.output import output_folder
 from mffit.templates import environment
 from tir.codegen.c99 import taken
 from tir.mode import words
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 DEFINITIONS: dict[int, tuple[str, ...]] = {2: (), 3: ("FMI3_OVERRIDE_FUNCTION_PREFIX",)}
 """Preprocessor definitions for a shared library, by version of FMI."""
@@ -54,10 +50,7 @@ def write_fmu(
     path : the property file
     out : folder to write ``<name>.fmu`` to
     fmi : 2 or 3, for FMI 2.0 or 3.0
-    name : model identifier; by default made from the name of the property file, with ``_turn_slip`` or ``_normal`` behind it
-        if turn slip is not as its USE_MODE says
-    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
-    limits : as in a call of the tyre
+    name : model identifier; default, turn_slip and limits as in :func:`mffit.export.write_c`
     transient : with the lag of the contact (see :mod:`tir.transient`), for co-simulation: inputs are the slip speeds Vsx and Vsy
         instead of kappa and alpha, and damping; the deflections u and v are states, and outputs with kappa and alpha
     sources_only : without a binary; the program that imports the FMU compiles the sources
@@ -137,13 +130,5 @@ def _binary(files: Mapping[str, bytes], name: str, fmi: int) -> bytes:
 
 
 def _filled(template: str, content: Mapping[str, Any]) -> str:
-    return _environment().get_template(template).render(**content)
-
-
-def _is_markup(template: str | None) -> bool:
-    return template is not None and ".xml" in template
-
-
-@cache
-def _environment() -> Environment:
-    return environment("mffit.export", autoescape=_is_markup, keep_trailing_newline=True)
+    templates = environment("mffit.export", autoescape=".xml" in template, keep_trailing_newline=True)
+    return templates.get_template(template).render(**content)

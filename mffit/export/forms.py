@@ -5,25 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-import tir
 from mffit.csv_tables import csv_text
-from mffit.export.grid import Function, Grid, Ranges
-from mffit.quantities import column
-
-CONDITIONS = {"Fz_N": "FZM", "alpha_deg": "ALPM", "gamma_deg": "CAMM", "kappa": "KPUM"}
-"""Axes of the tables in the order of a call of the tyre, with the beginning of the keys of their ranges."""
-PURE = {
-    "Fx": ("Fz_N", "gamma_deg", "kappa"),
-    "Fy": ("Fz_N", "alpha_deg", "gamma_deg"),
-    "Mx": ("Fz_N", "alpha_deg", "gamma_deg"),
-    "Mz": ("Fz_N", "alpha_deg", "gamma_deg"),
-}
-"""Channels and the axes of their tables in pure slip. My is left out: it depends on speed and jumps where the wheel locks."""
+from mffit.export.grid import Grid
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,36 +45,6 @@ class LookupTable:
             "error": self.grid.error,
             "tested": self.grid.tested,
         }
-
-
-class Asked(NamedTuple):
-    """A table to make."""
-
-    function: Function
-    ranges: Ranges
-    held: dict[str, float]
-    heading: str
-
-
-def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
-    """The channel as a function of the conditions by their columns; those not given are zero."""
-
-    def force(Fz_N: Any, alpha_deg: Any = 0.0, gamma_deg: Any = 0.0, kappa: Any = 0.0) -> Any:
-        forces = tyre(Fz_N, np.radians(alpha_deg), np.radians(gamma_deg), kappa, turn_slip=on)
-        return getattr(forces, channel)
-
-    return force
-
-
-def asked(tyre: tir.Tyre, on: bool, inside: Ranges) -> dict[str, Asked]:
-    """The tables of a tyre by name, with spin by camber ``on`` or off: every channel in pure and in combined slip."""
-    found = {}
-    for end, axes in (("", PURE), ("_combined", dict.fromkeys(PURE, tuple(CONDITIONS)))):
-        for channel, names in axes.items():
-            held = {name: 0.0 for name in CONDITIONS if name not in names}
-            ranges = {name: inside[name] for name in names}
-            found[channel + end] = Asked(_force(tyre, channel, on), ranges, held, column(channel))
-    return found
 
 
 def _csv(folder: Path, stem: str, about: str, tables: list[LookupTable]) -> list[str]:

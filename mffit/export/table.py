@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,12 +12,20 @@ import tir
 from mffit.errors import InputError
 from mffit.export import constants
 from mffit.export.code import mode_suffix
-from mffit.export.forms import CONDITIONS, FORMS, LookupTable, asked
-from mffit.export.grid import Ranges, grid_of
+from mffit.export.forms import FORMS, LookupTable
+from mffit.export.grid import Function, Ranges, grid_of
 from mffit.output import output_folder
 from mffit.progress import Progress, silent
+from mffit.quantities import column
 from tir.envelope import RANGES, box
 from tir.mode import words
+
+CONDITIONS = {"Fz_N": "FZM", "alpha_deg": "ALPM", "gamma_deg": "CAMM", "kappa": "KPUM"}
+"""Axes of the tables in the order of a call of the tyre, with the beginning of the keys of their ranges."""
+SIDEWAYS = ("Fz_N", "alpha_deg", "gamma_deg")
+PURE = {"Fx": ("Fz_N", "gamma_deg", "kappa"), **dict.fromkeys(("Fy", "Mx", "Mz"), SIDEWAYS)}
+"""Channels and the axes of their tables in pure slip. My is left out: it depends on speed and jumps where the wheel locks."""
+COMBINED = dict.fromkeys(PURE, tuple(CONDITIONS))
 
 
 class LookupTables(NamedTuple):
@@ -64,37 +72,64 @@ def write_table(
         The file cannot be read.
     """
     path, out = Path(path), Path(out)
-    if form not in FORMS:
-        raise InputError(f"there are no tables for {form!r}, only for {', '.join(FORMS)}")
-    if not 0.0 < error < 1.0:
-        raise InputError(f"an error of {100.0 * error:g} % is not between 0 and 100 %", key="--error")
+    _refuse_unusable(form, error)
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
     inside = _ranges(tyre, path, ranges or {})
-    tables, warnings = [], []
-    for name, wanted in asked(tyre, on, inside).items():
-        progress(f"table of {name}")
-        grid = grid_of(wanted.function, wanted.ranges, error)
-        if not np.isfinite(grid.largest):
-            raise InputError(
-                f"{wanted.heading} is not a number everywhere in the ranges; see mffit check", file=path
-            )
-        if not grid.axes:
-            warnings.append(f"{name} does not depend on {', '.join(wanted.ranges)}: no table")
-            continue
-        tables.append(LookupTable(name, wanted.heading, grid, wanted.held | grid.held))
-        if grid.error > error:
-            warnings.append(
-                f"{name} misses {100.0 * grid.error:.3g} % instead of {100.0 * error:g} %, as a table has at "
-                f"most {constants.TABLE_NODES:d} nodes: narrow its ranges, for example --range alpha_deg=-12:12, "
-                "or allow a larger --error"
-            )
+    tables, warnings = _tables(tyre, on, inside, error, progress)
+    wrong = [table.heading for table in tables if not np.isfinite(table.grid.largest)]
+    if wrong:
+        raise InputError(f"{wrong[0]} is not a number everywhere in the ranges; see mffit check", file=path)
     at = f"straight path, {tyre['LONGVL']:g} m/s, {tyre['INFLPRES'] / 1e3:g} kPa"
     about = f"{path.name}, {words(on)}, {at}; ISO-W axes, degrees, N, Nm"
     stem = path.stem + mode_suffix(tyre, on)
     with output_folder(out, by="export", protected=[path]) as folder:
         names = FORMS[form](folder, stem, about, tables)
     return LookupTables([out / name for name in names], tables, warnings)
+
+
+def _refuse_unusable(form: str, error: float) -> None:
+    if form not in FORMS:
+        raise InputError(f"there are no tables for {form!r}, only for {', '.join(FORMS)}")
+    if not 0.0 < error < 1.0:
+        raise InputError(f"an error of {100.0 * error:g} % is not between 0 and 100 %", key="--error")
+
+
+def _force(tyre: tir.Tyre, channel: str, on: bool) -> Function:
+    """The channel as a function of the conditions by their columns; those not given are zero."""
+
+    def force(Fz_N: Any, alpha_deg: Any = 0.0, gamma_deg: Any = 0.0, kappa: Any = 0.0) -> Any:
+        forces = tyre(Fz_N, np.radians(alpha_deg), np.radians(gamma_deg), kappa, turn_slip=on)
+        return getattr(forces, channel)
+
+    return force
+
+
+def _tables(
+    tyre: tir.Tyre, on: bool, inside: Ranges, error: float, progress: Progress
+) -> tuple[list[LookupTable], list[str]]:
+    """The tables of a tyre, and sentences on those that miss the goal or are left out; they end at one that is no number."""
+    tables: list[LookupTable] = []
+    warnings = []
+    wanted = [*PURE.items(), *COMBINED.items()]
+    for k, (channel, axes) in enumerate(wanted):
+        name = channel + "_combined" * (k >= len(PURE))
+        progress(f"table of {name}")
+        grid = grid_of(_force(tyre, channel, on), {axis: inside[axis] for axis in axes}, error)
+        if not grid.axes and np.isfinite(grid.largest):
+            warnings.append(f"{name} does not depend on {', '.join(axes)}: no table")
+            continue
+        held = {axis: 0.0 for axis in CONDITIONS if axis not in axes}
+        tables.append(LookupTable(name, column(channel), grid, held | grid.held))
+        if not np.isfinite(grid.largest):
+            break
+        if grid.error > error:
+            warnings.append(
+                f"{name} misses {100.0 * grid.error:.3g} % instead of {100.0 * error:g} %, as a table has at "
+                f"most {constants.TABLE_NODES:d} nodes: narrow its ranges, for example --range alpha_deg=-12:12, "
+                "or allow a larger --error"
+            )
+    return tables, warnings
 
 
 def _ranges(tyre: tir.Tyre, path: Path, asked: Ranges) -> dict[str, tuple[float, float]]:

@@ -6,18 +6,24 @@ import json
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import tir
 from mffit.errors import InputError
-from mffit.fleet.information import MEASURED, freed
+from mffit.fit.priors import scatter
 from mffit.numbers import Numbers, from_json
-from mffit.rig_errors import DECLARED, OF_RUN, error_of, number_of
+from mffit.rig_errors import BESIDE, DECLARED, OF_RUN, error_of, number_of
 from tir import Quantity, Tyre
 
 RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
+MEASURED = ("PECP1",)
+"""Coefficients without a prior, because the uncertainty with which a build holds them comes from the same points."""
+HELD = "PECP2"
+"""A coefficient that most builds hold exactly at 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +91,30 @@ class Specimen:
             setup = self.setups[0]
         declared = self.rig.get("name") and setup in self.setups
         return number_of(name, setup if declared else " of ".join(filter(None, (setup, str(self.folder)))))
+
+
+def freed(numbers: Numbers) -> Numbers | None:
+    """The numbers of a build, also the coefficients that it held; None if its readings tell nothing.
+
+    A held number of the rig, or one of which they tell nothing, is left out. Effects of the tyre that are not coefficients
+    are left to readings and priors, as they are estimated anew in every build.
+    """
+    silent = {
+        name
+        for i, name in enumerate(numbers.names)
+        if name in numbers.held and (error_of(name) or not numbers.information[i, i] > 0.0)
+    }
+    known = numbers.given(silent)
+    if not known.names:
+        return None
+    spread = known.spread.copy()
+    for i, name in enumerate(known.names):
+        if name in MEASURED:
+            spread[i] = math.inf
+        elif name == HELD and spread[i] == 0.0:
+            spread[i] = scatter(HELD, 0.0, from_base=False, curved=False)
+    known = replace(known, spread=np.asarray(spread), held=frozenset())
+    return known.without({error.name for error in BESIDE})
 
 
 def read(folder: str | Path) -> Specimen:

@@ -98,19 +98,11 @@ def plan_of(
     progress: Progress = silent,
 ) -> Plan:
     """:func:`plan` for a finished build."""
-    config = result.config
+    direct = _direct_method(result)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        return planning.plan(
-            config,
-            result.points,
-            result.measured,
-            result.fit,
-            goal or _aim(config, None),
-            _direct_method(result),
-            most=runs,
-            without=without,
-            progress=progress,
-        )
+        prospect = Prospect(result.config, result.points, result.measured, result.fit, direct)
+        aim = goal or _aim(result.config, None)
+        return planning.plan(prospect, aim, most=runs, without=without, progress=progress)
 
 
 def next_run_of(config: Config, points: Points, measured: Measured) -> NextRun | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, NamedTuple
 
 from mffit.constants import CAMBER_OF_SLOPES
@@ -53,15 +54,17 @@ _CAMBER = (LineOfPoints("gamma", _SHARES),)
 _DRIVE = (LineOfPoints("kappa", _SHARES),)
 _DRIVE_TO_BOTH_SIDES = tuple(LineOfPoints("kappa", _SHARES, side=side) for side in (-1, 1))
 
+_on_disc = partial(Addition, rig="disc")
+_driven = partial(Addition, rig="belt", measures=("Fx",))
+
 ADDITIONS = (
-    Addition(
+    _on_disc(
         id="zeros",
         title="zeros both ways again",
         reason="More points at zero average the noise out of the turn-slip force.",
         lines=_ZEROS,
-        rig="disc",
     ),
-    Addition(
+    _on_disc(
         id="other-side",
         title="zeros both ways on the other side of the disc",
         reason=(
@@ -69,10 +72,9 @@ ADDITIONS = (
             f"in half the difference. {_NEW_SETUP}"
         ),
         lines=_ZEROS,
-        rig="disc",
         radius=-1.0,
     ),
-    Addition(
+    _on_disc(
         id="other-side-camber",
         title="small cambers on the other side of the disc",
         reason=(
@@ -80,25 +82,22 @@ ADDITIONS = (
             f"cambers include zero, so the run also measures the turn-slip force. {_NEW_SETUP}"
         ),
         lines=_SMALL_CAMBERS,
-        rig="disc",
         radius=-1.0,
     ),
-    Addition(
+    _on_disc(
         id="second-radius",
         title=f"zeros both ways at {constants.SECOND_RADIUS_FACTOR:g} of the path radius",
         reason=(f"Turn slip grows with the path's curvature; conicity does not depend on it. {_NEW_SETUP}"),
         lines=_ZEROS,
-        rig="disc",
         radius=constants.SECOND_RADIUS_FACTOR,
     ),
-    Addition(
+    _on_disc(
         id="small-camber",
         title="small cambers, closely spaced",
         reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
         lines=_SMALL_CAMBERS,
-        rig="disc",
     ),
-    Addition(
+    _on_disc(
         id="backward-camber",
         title="camber sweep rolled backwards",
         reason=(
@@ -107,7 +106,6 @@ ADDITIONS = (
         ),
         loads="nominal",
         lines=(LineOfPoints("gamma", _SHARES, direction=-1),),
-        rig="disc",
     ),
     Addition(
         id="flipped",
@@ -153,41 +151,33 @@ ADDITIONS = (
         loads="new",
         lines=(*_SIDESLIP, *_CAMBER),
     ),
-    Addition(
+    _driven(
         id="drive",
         title="sweep of longitudinal slip, drive and brake",
         reason="Slip stiffness, peak and shape of the longitudinal force are seen only under slip.",
         lines=_DRIVE,
-        rig="belt",
-        measures=("Fx",),
     ),
-    Addition(
+    _driven(
         id="combined",
         title="sweeps of longitudinal slip at sideslip to both sides",
         reason="How sideslip and slip take force from each other is seen only where both act together.",
         lines=_DRIVE_TO_BOTH_SIDES,
         held="alpha",
         held_deg=constants.COMBINED_SIDESLIPS,
-        rig="belt",
-        measures=("Fx",),
     ),
-    Addition(
+    _driven(
         id="drive-camber",
         title="sweeps of longitudinal slip at camber of both signs",
         reason="Camber changes the peak of the longitudinal force, and the moment of slip about the two other axes.",
         lines=_DRIVE_TO_BOTH_SIDES,
         held_deg=constants.LEANED_SLIP_CAMBERS,
-        rig="belt",
-        measures=("Fx",),
     ),
-    Addition(
+    _driven(
         id="drive-pressure",
         title="sweep of longitudinal slip at another pressure",
         reason="Slip stiffness and longitudinal friction change with pressure.",
         lines=_DRIVE,
         pressures=constants.NEW_PRESSURE_FACTORS,
-        rig="belt",
-        measures=("Fx",),
     ),
 )
 """In the order of trial; among equally good runs with equally many points the first is taken."""

@@ -15,7 +15,7 @@ from mffit.measured import Contribution, Measured, adding_to_camber
 from mffit.planning import constants
 from mffit.planning.additions import Addition
 from mffit.planning.goals import Goal
-from mffit.planning.prospect import Direct, Prospect
+from mffit.planning.prospect import Prospect
 from mffit.planning.runs import PlannedRun, candidates
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -88,25 +88,20 @@ keys(
 
 
 def plan(
-    config: Config,
-    points: Points,
-    measured: Measured,
-    found: FitResult,
+    prospect: Prospect,
     goal: Goal,
-    direct: Direct,
     *,
     most: int = 3,
     without: Collection[Addition] = (),
     progress: Progress = silent,
 ) -> Plan:
-    """Identifiability by these points, and the runs that lower the goal's uncertainty most.
+    """Identifiability by the points of a build, and the runs that lower the goal's uncertainty most.
 
-    ``measured`` and ``found`` are direct measurement and fit of the points; ``direct`` returns u(eps_gamma) of the direct
-    method for given points; the list has at most ``most`` runs, ``without`` the additions that this rig cannot run.
+    The list has at most ``most`` runs; ``without`` are the additions that this rig cannot run.
     """
-    prospect = Prospect(config, points, measured, found, direct)
+    config = prospect.config
     u = prospect.u_of(goal)
-    possible = [run for run in candidates(config, points) if most and run.addition not in without]
+    possible = [run for run in candidates(config, prospect.points) if most and run.addition not in without]
     progress(f"trying {len(possible)} runs one by one")
     trials = sorted((PlanStep(run, u([]), u([run])) for run in possible), key=lambda trial: trial.after)
     chosen = _without_superfluous(u, _chosen(u, possible, most, progress))
@@ -114,7 +109,7 @@ def plan(
     return Plan(
         config=config,
         goal=goal,
-        identified=_identified(found, measured),
+        identified=_identified(prospect.found, prospect.measured),
         now=u([]),
         steps=tuple(
             PlanStep(run, u(before), u(then))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from mffit.rig_errors import OF_RUN, ZEROS, error_of
 from mffit.scatter import rms
 
 PECP1 = "PECP1"
+Found = TypeVar("Found")
 
 
 class DirectU(NamedTuple):
@@ -55,17 +56,11 @@ class DirectProspect:
         self._nominal = nominal  #: load [N] at which eps_gamma is read
         self._pressure = float(np.median(points.p[main_pressure(points)]))
         self._near = points.select(self._decides(points) & ~np.isin(np.arange(len(points)), outliers))
-        self._predicted, self._direct = predicted, direct
-        self._known: dict[tuple[str, ...], DirectU | None] = {}
+        self._stated = _once(lambda runs: direct(concatenate([self._near, *map(predicted, runs)])))
 
     def __call__(self, runs: Sequence[PlannedRun]) -> DirectU | None:
         """What a build with these runs would state; None where the method fails."""
-        relevant = [r for r in runs if np.any(self._decides(r.points))]
-        key = _key(relevant)
-        if key not in self._known:
-            new = [self._predicted(run) for run in relevant]
-            self._known[key] = self._direct(concatenate([self._near, *new]))
-        return self._known[key]
+        return self._stated([run for run in runs if np.any(self._decides(run.points))])
 
     def u(self, runs: Sequence[PlannedRun]) -> float:
         """The stated uncertainty; infinite where the method fails."""
@@ -153,7 +148,6 @@ class Prospect:
     def u_of(self, goal: Goal) -> Callable[[Sequence[PlannedRun]], float]:
         """A function that returns the uncertainty of a goal, in its unit, after given runs; infinite if it is not measured."""
         curves = self._curves_of(goal) if goal.kind in (BANDS, FILE) else None
-        known: dict[tuple[str, ...], float] = {}
 
         def u(runs: Sequence[PlannedRun]) -> float:
             if goal.kind in (EPSILON, JOINT):
@@ -163,13 +157,7 @@ class Prospect:
                 found = curves.band(posterior) if curves else posterior.stderr.get(goal.name)
             return math.inf if found is None or not math.isfinite(found) else found
 
-        def once(runs: Sequence[PlannedRun]) -> float:
-            key = _key(runs)
-            if key not in known:
-                known[key] = u(runs)
-            return known[key]
-
-        return once
+        return _once(u)
 
     def joint(self, runs: Sequence[PlannedRun]) -> float | None:
         """u(PECP1) as a free coefficient of the joint fit of tyre and rig; None if held by hand, or without a measured force."""
@@ -290,8 +278,17 @@ def nominal_load(config: Config, measured: Measured) -> float:
     return measured.nominal.load if measured.nominal else config.tyre.nominal_load
 
 
-def _key(runs: Sequence[PlannedRun]) -> tuple[str, ...]:
-    return tuple(sorted(run.name for run in runs))
+def _once(of: Callable[[Sequence[PlannedRun]], Found]) -> Callable[[Sequence[PlannedRun]], Found]:
+    """The function, which computes only once for the same runs in any order."""
+    known: dict[tuple[str, ...], Found] = {}
+
+    def found(runs: Sequence[PlannedRun]) -> Found:
+        key = tuple(sorted(run.name for run in runs))
+        if key not in known:
+            known[key] = of(runs)
+        return known[key]
+
+    return found
 
 
 def _usual(sigma: np.ndarray) -> float:

@@ -21,7 +21,7 @@ from mffit.cli.building import _compare_built, _end
 from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
-from mffit.fleet.information import freed
+from mffit.fleet.specimen import freed
 from mffit.made import source
 from mffit.output import RECORD, digest
 from mffit.pipeline import many, workers

@@ -22,7 +22,7 @@ from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, STAGED, Draw, model_error, pla
 import mffit
 import tir
 from mffit import fleet, virtual_rig
-from mffit.fleet.information import freed
+from mffit.fleet.specimen import freed
 from mffit.pipeline.fleets import priors_of_rig
 from mffit.scatter import rms
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tir
-from tir.differences import beyond_the_peak_in_chrono, chrono_in_words, spin_without_moment_in_mbsim
+from tir.targets import beyond_the_peak_in_chrono, chrono_in_words, spin_without_moment_in_mbsim
 
 FRONT = Path(__file__).parent / "vectors" / "moto_front.tir"
 STEEP = {

@@ -19,7 +19,6 @@ JAVASCRIPT = SourceDialect(
     truth=("false", "true"),
     beyond=("Infinity", "NaN"),
     number="const {} = {};",
-    flag="const {} = {};",
 )
 
 

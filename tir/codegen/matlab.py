@@ -57,7 +57,6 @@ MATLAB = SourceDialect(
     },
     truth=("false", "true"),
     number="{} = {};",
-    flag="{} = {};",
     beyond=("Inf", "NaN"),
 )
 

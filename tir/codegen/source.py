@@ -23,7 +23,7 @@ class SourceDialect:
     templates: Mapping[str, str]
     truth: tuple[str, str] = ("False", "True")
     number: str = "{} = {}"  #: assignment of a number
-    flag: str = "{} = {}"  #: assignment of a truth value
+    flag: str = ""  #: assignment of a truth value, if it is another one
     beyond: tuple[str, str] = ("inf", "nan")  #: infinity and NaN
     inline: bool = True  #: whether an expression used once is written inside the expression that uses it
 
@@ -81,7 +81,7 @@ def assignments(
         if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST_INLINED_EXPRESSION:
             inside[node.number] = text
             continue
-        form = dialect.flag if node.operation in COMPARISONS else dialect.number
+        form = (dialect.flag if node.operation in COMPARISONS else "") or dialect.number
         lines.append(form.format(name_of(node), text))
     return lines, [written(x) for x in results]
 

@@ -20,7 +20,7 @@ from mffit.fit.known import known_before_fit
 from mffit.pipeline.inputs import base_warnings, read_base
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
-from tir import differences
+from tir import targets
 
 ROOT = Path(__file__).parents[3]
 OLD = Path(__file__).parent / "old_52.tir"
@@ -312,7 +312,7 @@ def test_an_old_file_is_checked_for_the_programs_that_read_it(tmp_path, capsys):
     said = capsys.readouterr().out
     assert "0 errors, 1 warning" in said
     of_source, of_file = (
-        differences.beyond_the_peak_in_chrono(tir.read(source)),
+        targets.beyond_the_peak_in_chrono(tir.read(source)),
         re.findall(r"by \+(\d+) %", said),
     )
     for percent, channel in zip(of_file, ("Fx", "Fy"), strict=True):

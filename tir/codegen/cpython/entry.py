@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from llvmlite import ir
 
@@ -174,7 +174,7 @@ def _batch(python: _Caller, program: Program, lanes: int) -> None:
     stride = builder.udiv(size, ir.Constant(INTEGER, 8 * len(program.outputs)))
     constants = python.constants()
     thread = python.call("PyEval_SaveThread")
-    _loop(builder, program, vector, constants, inputs, (forces, stride), (first, last))
+    _loop(builder, program, constants, _Conditions(vector, inputs, forces, stride, first, last))
     python.call("PyEval_RestoreThread", thread)
     release()
     builder.ret(python.call("PyLong_FromLong", ir.Constant(INTEGER, 0)))
@@ -198,18 +198,20 @@ def _input(builder: ir.IRBuilder, vector: ir.VectorType, view: ir.Value) -> tupl
     )
 
 
-def _loop(
-    builder: ir.IRBuilder,
-    program: Program,
-    vector: ir.VectorType,
-    constants: ir.Value,
-    inputs: Mapping[str, tuple[ir.Value, ir.Value]],
-    forces: tuple[ir.Value, ir.Value],
-    span: tuple[ir.Value, ir.Value],
-) -> None:
+class _Conditions(NamedTuple):
+    """Where the numbers of a loop are."""
+
+    vector: ir.VectorType
+    inputs: Mapping[str, tuple[ir.Value, ir.Value]]  #: address and step of each
+    forces: ir.Value  #: their address
+    stride: ir.Value  #: from one force to the next
+    first: ir.Value  #: condition
+    last: ir.Value  #: behind the last condition
+
+
+def _loop(builder: ir.IRBuilder, program: Program, constants: ir.Value, of: _Conditions) -> None:
     """Loop over vectors; the last one overlaps the one before, so that it is full."""
-    address, stride = forces
-    first, last = span
+    vector, inputs, address, stride, first, last = of
     before = builder.block
     loop, done = builder.append_basic_block("conditions"), builder.append_basic_block("done")
     lanes = ir.Constant(INTEGER, vector.count)
