@@ -146,14 +146,11 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
 
 def _with_line(problem: Problem, tyre: Tyre) -> Problem:
     """The problem with the line of the file that holds its key."""
-    if problem.line is not None or tyre.document is None:
-        return problem
-    lines = [
-        line.number for line in tyre.document.entries if line.key == problem.name and line.section != "UNITS"
-    ]
-    if not lines:
-        return problem
-    return replace(problem, sentence=f"line {lines[0]}: {problem.sentence}", line=lines[0])
+    lines = () if problem.line is not None or tyre.document is None else tyre.document.entries
+    for line in lines:
+        if line.key == problem.name and line.section != "UNITS":
+            return replace(problem, sentence=f"line {line.number}: {problem.sentence}", line=line.number)
+    return problem
 
 
 def _with_origin(problem: Problem, tyre: Tyre) -> Problem:
@@ -178,9 +175,8 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         hint = "it looks like millimetres" if millimetres else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
-        yield _warning(
-            "RIM_RADIUS", f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
-        )
+        said = f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
+        yield _warning("RIM_RADIUS", said)
     switches = Switches(tyre.turn_slip)
     for name in (*DIVISORS, "INFLPRES"):
         if tyre[name] == 0 and name in DIVISORS and not that_need(name, switches, Forces._fields):
@@ -200,9 +196,8 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         )
     scaled = [row.name for row in TABLE if row.scaling and tyre[row.name] != 1.0]
     if scaled:
-        yield _warning(
-            scaled[0], f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout"
-        )
+        said = f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout"
+        yield _warning(scaled[0], said)
     if str(tyre["TYRESIDE"]).upper() not in SIDES:
         yield _warning("TYRESIDE", f"TYRESIDE is '{tyre['TYRESIDE']}': write one of {', '.join(SIDES)}")
     odd = [row.name for row in TABLE if row.odd and tyre[row.name]]
@@ -213,10 +208,8 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
 def _ranges(tyre: Tyre) -> Iterator[Problem]:
     for low, high in RANGES:
         if tyre[low] >= tyre[high]:
-            yield _error(
-                low if low in tyre.present else high,
-                f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}",
-            )
+            at_fault = low if low in tyre.present else high
+            yield _error(at_fault, f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}")
     if 0 < tyre["CAMMAX"] < constants.NARROW_CAMBER_RANGE and tyre["MC_CONTOUR_A"] > 0:
         yield _warning(
             "CAMMAX",
@@ -277,10 +270,8 @@ def _radius(tyre: Tyre) -> Iterator[Problem]:
     ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
     smallest, largest = constants.EFFECTIVE_RADIUS_RANGE
     if not smallest < ratio < largest:
-        yield _warning(
-            "BREFF",
-            f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0",
-        )
+        said = f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0"
+        yield _warning("BREFF", said)
 
 
 def _mode(tyre: Tyre) -> Iterator[Problem]:
@@ -288,9 +279,8 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
     turn_slip, road = tyre.turn_slip, mode // 100 % 10
     if tyre["USE_MODE"] != mode:
-        yield _warning(
-            "USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, but only whole numbers are defined; write one"
-        )
+        said = f"USE_MODE is {tyre['USE_MODE']:g}, but only whole numbers are defined; write one"
+        yield _warning("USE_MODE", said)
     elif UNKNOWN_DIGIT in use_mode_words(mode):
         yield _warning("USE_MODE", f"USE_MODE {mode} means {use_mode_words(mode)}: see the program's manual")
     if given and turn_slip and not any(row.name in tyre.present for row in BLOCK):
@@ -308,22 +298,18 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
     if tyre["FITTYP"] not in FITTYPS:
         yield _error("FITTYP", f"FITTYP is {tyre['FITTYP']:g}, but only {fittyps_text()} are supported")
     if tyre["FITTYP"] in (60, 61):
-        newer = [
-            r.name for r in TABLE if r.files == "62" and r.name in tyre.present and tyre[r.name] != r.default
-        ]
+        of_62 = [row for row in TABLE if row.files == "62" and row.name in tyre.present]
+        newer = [row.name for row in of_62 if tyre[row.name] != row.default]
         if newer:
-            yield _warning(
-                "FITTYP", f"FITTYP {tyre['FITTYP']:g} has no {', '.join(newer)}; programs ignore them"
-            )
+            said = f"FITTYP {tyre['FITTYP']:g} has no {', '.join(newer)}; programs ignore them"
+            yield _warning("FITTYP", said)
 
 
 def _old_keys(tyre: Tyre) -> Iterator[Problem]:
-    old = [key.partition(".")[2] for key in tyre.extra]
-    old = [key for key in old if key in OLD_KEYS]
+    old = [key for key in (name.partition(".")[2] for name in tyre.extra) if key in OLD_KEYS]
     if old:
-        yield _warning(
-            old[0], f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?"
-        )
+        said = f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?"
+        yield _warning(old[0], said)
 
 
 def _spin(tyre: Tyre) -> Iterator[Problem]:
@@ -332,20 +318,15 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
     load = np.array([lowest, p.FZMAX])  # eps_gamma is linear between
     eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
     if np.any(np.abs(eps - 1.0) < constants.EPS_GAMMA_NEAR_ONE) or np.ptp(np.sign(eps - 1.0)) > 0:
-        yield _warning(
-            "PECP1",
-            "eps_gamma comes close to 1 within the load range; at 1 the turn-slip stiffness is infinite",
-        )
+        said = "eps_gamma comes close to 1 within the load range; at 1 the turn-slip stiffness is infinite"
+        yield _warning("PECP1", said)
     default = all(tyre[row.name] == row.default for row in BLOCK) and BLOCK[0].name in tyre.present
     if default and not _known_default(tyre, BLOCK[0].name):
-        yield _warning(
-            BLOCK[0].name,
-            f"the {len(BLOCK)} turn-slip coefficients are the common defaults, not measurements",
-        )
+        said = f"the {len(BLOCK)} turn-slip coefficients are the common defaults, not measurements"
+        yield _warning(BLOCK[0].name, said)
     if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0) and not _known_default(tyre, "PECP1"):
-        yield _warning(
-            "PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
-        )
+        said = "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
+        yield _warning("PECP1", said)
     gamma = np.array([-1e-4, 1e-4])
     Fz = float(p.FNOMIN)
     with_spin, without = (float(np.diff(tyre(Fz, gamma=gamma, turn_slip=on).Fy)[0]) for on in (True, False))
@@ -373,7 +354,5 @@ def _moments(tyre: Tyre) -> Iterator[Problem]:
         )
     step = np.array([-1e-3, 1e-3])
     if tyre["QDZ1"] and float(np.diff(tyre(float(p.FNOMIN), step, turn_slip=False).Mz)[0]) <= 0:
-        yield _warning(
-            "QDZ1",
-            "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)",
-        )
+        said = "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)"
+        yield _warning("QDZ1", said)

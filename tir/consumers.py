@@ -22,16 +22,20 @@ def target_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")
-        yield from rule_problems(tyre, target)
-        return
-    for problem in (*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())):
-        yield _named(problem, target)
+    else:
+        yield from (_named(problem, target) for problem in _content(tyre, target))
+    yield from rule_problems(tyre, target)
+    if tyre.document and not target.refusal:
+        yield from (_named(problem, target) for problem in _text(tyre, tyre.document, target))
 
 
 def rule_problems(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     """Problems of the tyre's values in a program, whatever the form of its file."""
-    for problem in _broken_rules(tyre, target):
-        yield _named(problem, target)
+    for rule in target.rules:
+        said = rule.concerns(tyre)
+        if said:
+            value = tyre[rule.name] if rule.name else ""
+            yield _named(Problem(rule.level, rule.sentence.format(value=value, said=said), rule.name), target)
 
 
 def _named(problem: Problem, target: Target) -> Problem:
@@ -42,29 +46,16 @@ def _content(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
     version = int(tyre["FITTYP"])
     if version not in target.fittyps:
         known = ", ".join(map(str, target.fittyps))
-        yield Problem(
-            "error", f"FITTYP {version} is not supported, only {known}: {_remedy(target)}", "FITTYP"
-        )
+        said = f"FITTYP {version} is not supported, only {known}: {_remedy(target)}"
+        yield Problem("error", said, "FITTYP")
     if target.complete and tyre.document is not None:
         missing = {r.name for r in TABLE if r.files in REGULAR} - {*tyre.present, *target.without}
         yield from _missing(missing, target.turn_slip and tyre.turn_slip)
     if not target.turn_slip and tyre.turn_slip:
-        yield Problem(
-            "warning",
-            "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off",
-            "USE_MODE",
-        )
+        said = "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off"
+        yield Problem("warning", said, "USE_MODE")
     if target.verified:
         yield Problem("note", f"how its demands are known: {target.known}; {target.verified}")
-    yield from _broken_rules(tyre, target)
-
-
-def _broken_rules(tyre: TyreRecord, target: Target) -> Iterator[Problem]:
-    for rule in target.rules:
-        said = rule.concerns(tyre)
-        if said:
-            value = tyre[rule.name] if rule.name else ""
-            yield Problem(rule.level, rule.sentence.format(value=value, said=said), rule.name)
 
 
 def _at(level: str, line: FileLine, sentence: str, name: str = "") -> Problem:
@@ -109,20 +100,16 @@ def _other_units(document: Document) -> Iterator[Problem]:
     for line in document.entries:
         kind = KINDS.get(line.key, {}) if line.section == "UNITS" else {}
         if kind and kind.get(known_word(line.key, line.value), 1.0) != 1.0:
-            yield _at(
-                "error", line, f": {line.key} in {line.value} is ignored, and every number is taken as SI"
-            )
+            said = f": {line.key} in {line.value} is ignored, and every number is taken as SI"
+            yield _at("error", line, said)
 
 
 def _out_of_place(tyre: TyreRecord, document: Document, target: Target) -> Iterator[Problem]:
     """For each section, the first key that a program which counts lines would read from a wrong line."""
     sections = dict.fromkeys(row.section for row in TABLE)
+    regular = [row for row in TABLE if row.files in REGULAR and row.name not in target.without]
     for section in sections:
-        rows = [
-            r.name
-            for r in TABLE
-            if r.section == section and r.files in REGULAR and r.name not in target.without
-        ]
+        rows = [row.name for row in regular if row.section == section]
         if section == "MODEL":
             rows = rows[:FIRST_OF_MODEL]
         body = [line for line in document.lines if line.section == section and not line.head]
@@ -136,9 +123,8 @@ def _out_of_place(tyre: TyreRecord, document: Document, target: Target) -> Itera
                 break
         else:
             if len(body) < len(rows):
-                yield Problem(
-                    "error", f"[{section}] has too few lines for a program that counts lines", rows[len(body)]
-                )
+                said = f"[{section}] has too few lines for a program that counts lines"
+                yield Problem("error", said, rows[len(body)])
 
 
 def _keys_of_its_own(keys: dict[str, FileLine], target: Target) -> Iterator[Problem]:

@@ -270,11 +270,8 @@ def split_comment(text: str) -> tuple[str, str]:
 def unquoted(text: str) -> str:
     """The text without the quotes around it."""
     text = text.strip()
-    return (
-        text[1:-1].strip()
-        if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\""
-        else text.strip("'\"")
-    )
+    whole = len(text) >= 2 and text[0] == text[-1] and text[0] in "'\""
+    return text[1:-1].strip() if whole else text.strip("'\"")
 
 
 def number_of(text: str) -> float | None:

@@ -83,11 +83,9 @@ def is_old(path: str | Path) -> bool:
 
 def _acting(group: Collection[str], stated: Mapping[str, str]) -> set[str]:
     """Keys of a group with values that act; files are completed with others for programs that ask for every key."""
-    return {key for key in group if key in stated and not _neutral(key, number_of(stated[key]))}
-
-
-def _neutral(key: str, value: float | None) -> bool:
-    return value is None or value == NEUTRAL.get(key, 1.0 if key.startswith("L") else 0.0)
+    values = {key: number_of(stated[key]) for key in group if key in stated}
+    neutral = {key: NEUTRAL.get(key, 1.0 if key.startswith("L") else 0.0) for key in values}
+    return {key for key, value in values.items() if value is not None and value != neutral[key]}
 
 
 def _of_fittyp(fittyp: float, stated: Mapping[str, str]) -> Formula:
@@ -109,9 +107,7 @@ def _of_keys(stated: Mapping[str, str], remark: str) -> Formula:
     tag, why = _plain(form), f"PROPERTY_FILE_FORMAT '{form}'"
     if tag in ANY_TAG and any(pattern.search(_plain(remark)) for pattern in KNOWN_TAGS):
         tag, why = _plain(remark), f"the remark TIRE_VERSION : {remark}"
-    old, new, motorcycle = (
-        set(group.intersection(stated)) for group in (OLD_KEYS, NEW_KEYS, MOTORCYCLE_KEYS)
-    )
+    old, new, motorcycle = ({*stated} & group for group in (OLD_KEYS, NEW_KEYS, MOTORCYCLE_KEYS))
     if old and new:
         old, new = _acting(old, stated), _acting(new, stated)
     magic = {key for key in stated if key in BY_NAME and BY_NAME[key].section.endswith("_COEFFICIENTS")}

@@ -38,7 +38,7 @@ class Meter:
         """The kernel if it is loaded or has become worth it; else None."""
         if self.loaded is None and self.left <= 0.0:
             self.left = math.inf  # there is one attempt
-            if kernel.available():
+            if kernel.obstacle() is None:
                 with contextlib.suppress(*WITHOUT_KERNEL):
                     self.load()
         return self.loaded

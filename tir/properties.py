@@ -32,6 +32,7 @@ LONG_NAME, LIKENESS = 6, 0.85
 LARGEST = float(np.finfo(np.float32).max)
 """Largest size of a value: simulation programs have no larger one in single precision, and squares of it are finite here."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
+OPTION = "; mffit check, show, compare and convert take --unloaded-radius"
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 QUANTITY = re.compile(r"^\s*!\s*(measured|fitted):\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
 PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
@@ -229,12 +230,11 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
     coefficients = any(name in values for name in ESSENTIAL_COEFFICIENTS)
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
-        homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
-        remedy = (
-            f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...){_option(missing)}"
-            if coefficients
-            else f"the file is truncated, is for another tyre model, or is not a property file{_otherwise(document)}"
-        )
+        remedy = f"the file is truncated, is for another tyre model, or is not a property file{_otherwise(document)}"
+        if coefficients:
+            homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
+            remedy = f"add {homes}, or give it in Python: tir.read(path, {missing[0]}=...)"
+            remedy += OPTION * (missing == ["UNLOADED_RADIUS"])
         raise TirError(
             f"lacks {' and '.join(missing)}, which every force needs: {remedy}",
             path=document.path,
@@ -246,14 +246,6 @@ def _refuse_truncated(values: Mapping[str, float | str], document: Document) -> 
             f"{_otherwise(document)}",
             path=document.path,
         )
-
-
-def _option(missing: Sequence[str]) -> str:
-    return (
-        "; mffit check, show, compare and convert take --unloaded-radius"
-        if missing == ["UNLOADED_RADIUS"]
-        else ""
-    )
 
 
 def _otherwise(document: Document) -> str:
@@ -269,15 +261,8 @@ def _otherwise(document: Document) -> str:
 def _about_values_below(document: Document) -> list[Problem]:
     """A problem if values are on other lines than their keys."""
     apart = [line for line in document.entries if line.apart]
-    if not apart:
-        return []
-    keys = some([line.key for line in apart])
-    return [
-        _warning(
-            f"the values of {keys} are on the lines below their keys; other programs may want one line",
-            apart[0],
-        )
-    ]
+    said = f"the values of {some([line.key for line in apart])} are on the lines below their keys"
+    return [_warning(f"{said}; other programs may want one line", line) for line in apart[:1]]
 
 
 def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -> list[Problem]:
@@ -293,9 +278,7 @@ def _about_a_cut_number(values: Mapping[str, float | str], document: Document) -
         f"the file ends with {line.key} = {line.value}, without a line end and without the keys that usually follow, "
         f"{behind[0].name} and more"
     )
-    if all(
-        other.section == TURN_SLIP != row.section for other in behind
-    ):  # many complete files lack this section
+    if all(x.section == TURN_SLIP != row.section for x in behind):  # many complete files lack this section
         return [_warning(f"{said}: check whether the file was truncated", line)]
     raise TirError(
         f"{said}: the file is truncated; use the complete one, or end the line if the number is right",
@@ -332,23 +315,14 @@ def _about_missing(
         if row.name not in stated and (row.files == "" or (row.files == "62" and version not in (60, 61)))
     ]
     names = _defaults_in_words(missing, complete)
+    mf, verbs = "6.1" if version in (60, 61) else "6.2", "is" if len(names) == 1 else "are"
+    lacking = f"{counted(len(names), f'key of MF {mf}')} {verbs} missing, defaults are taken: {some(names)}"
+    sentences = [lacking] if names else []
     if version == 60:
-        rest = (
-            f"; {counted(len(names), 'key')} of 6.1 are missing and take their defaults: {some(names)}"
-            if names
-            else ""
-        )
-        return [Problem("warning", f"FITTYP 60 is read as MF 6.1{rest}", "FITTYP")]
-    out = []
+        sentences = ["; ".join(["FITTYP 60 is read as MF 6.1", *sentences])]
     if version is None:
-        out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
-    if names:
-        mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(names) == 1 else "are"
-        sentence = (
-            f"{counted(len(names), f'key of MF {mf}')} {verbs} missing, defaults are taken: {some(names)}"
-        )
-        out.append(Problem("warning", sentence))
-    return out
+        sentences.insert(0, "FITTYP is missing; the file is read as MF 6.2")
+    return [Problem("warning", sentence, "FITTYP" * sentence.startswith("FITTYP")) for sentence in sentences]
 
 
 def _defaults_in_words(missing: Sequence[Parameter], complete: Mapping[str, Any]) -> list[str]:
@@ -374,19 +348,17 @@ def _about_unknown(extra: Mapping[str, str], given: Collection[str]) -> list[Pro
         if not key.startswith(("SHAPE.", "MDI_HEADER.")) and key.removeprefix("MODEL.") not in OF_PROGRAMS
     ]
     meant = {name: other for name in names if (other := _meant(name.rpartition(".")[2], given))}
+    others, sentences = [name for name in names if name not in meant], []
     if meant:
         said = some([f"{name} (is {other} meant?)" for name, other in meant.items()])
         verb = "is" if len(meant) == 1 else "are"
-        others = {name: extra[name] for name in names if name not in meant}
-        return [
-            Problem("warning", f"{said} {verb} not known and not used: correct the spelling"),
-            *_about_unknown(others, given),
-        ]
-    if not names:
-        return []
-    said = "is not an MF 6.2 parameter and is" if len(names) == 1 else "are not MF 6.2 parameters and are"
-    sentence = f"{counted(len(names), 'key')} {said} kept but not used: {some(names)}"
-    return [Problem("warning", sentence)]
+        sentences.append(f"{said} {verb} not known and not used: correct the spelling")
+    if others:
+        said = (
+            "is not an MF 6.2 parameter and is" if len(others) == 1 else "are not MF 6.2 parameters and are"
+        )
+        sentences.append(f"{counted(len(others), 'key')} {said} kept but not used: {some(others)}")
+    return [Problem("warning", sentence) for sentence in sentences]
 
 
 def _meant(key: str, given: Collection[str]) -> str:

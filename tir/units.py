@@ -5,43 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-LENGTH = {
-    "meter": 1.0, "metre": 1.0, "m": 1.0, "mm": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimeter": 1e-2, "km": 1e3,
-    "um": 1e-6, "inch": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
-}  # fmt: skip
-FORCE = {
-    "newton": 1.0, "n": 1.0, "kn": 1e3, "knewton": 1e3, "kilonewton": 1e3, "mn": 1e-3, "kg_force": 9.80665,
-    "kgf": 9.80665, "pound_force": 4.4482216152605, "lbf": 4.4482216152605, "dyne": 1e-5,
-}  # fmt: skip
-ANGLE = {
-    "radians": 1.0, "radian": 1.0, "rad": 1.0, "degrees": math.pi / 180, "degree": math.pi / 180, "deg": math.pi / 180,
-}  # fmt: skip
-MASS = {
-    "kg": 1.0, "kilogram": 1.0, "g": 1e-3, "gram": 1e-3, "mg": 1e-6, "ton": 1e3, "tonne": 1e3, "slug": 14.593902937,
-    "pound_mass": 0.45359237, "lbm": 0.45359237,
-}  # fmt: skip
-TIME = {
-    "second": 1.0,
-    "seconds": 1.0,
-    "sec": 1.0,
-    "s": 1.0,
-    "millisecond": 1e-3,
-    "ms": 1e-3,
-    "minute": 60.0,
-    "hour": 3600.0,
-}
-PRESSURE = {
-    "pascal": 1.0, "pa": 1.0, "kpascal": 1e3, "kpa": 1e3, "kilopascal": 1e3, "mpascal": 1e6, "mpa": 1e6, "megapascal": 1e6,
-    "bar": 1e5, "psi": 6894.757293168361,
-}  # fmt: skip
 KINDS: dict[str, dict[str, float]] = {
-    "LENGTH": LENGTH,
-    "FORCE": FORCE,
-    "ANGLE": ANGLE,
-    "MASS": MASS,
-    "TIME": TIME,
-    "PRESSURE": PRESSURE,
-}
+    "LENGTH": {
+        "meter": 1.0, "metre": 1.0, "m": 1.0, "mm": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimeter": 1e-2, "km": 1e3,
+        "um": 1e-6, "inch": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
+    },
+    "FORCE": {
+        "newton": 1.0, "n": 1.0, "kn": 1e3, "knewton": 1e3, "kilonewton": 1e3, "mn": 1e-3, "kg_force": 9.80665,
+        "kgf": 9.80665, "pound_force": 4.4482216152605, "lbf": 4.4482216152605, "dyne": 1e-5,
+    },
+    "ANGLE": {"radians": 1.0, "radian": 1.0, "rad": 1.0, **dict.fromkeys(("degrees", "degree", "deg"), math.pi / 180)},
+    "MASS": {
+        "kg": 1.0, "kilogram": 1.0, "g": 1e-3, "gram": 1e-3, "mg": 1e-6, "ton": 1e3, "tonne": 1e3, "slug": 14.593902937,
+        "pound_mass": 0.45359237, "lbm": 0.45359237,
+    },
+    "TIME": {
+        "second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "millisecond": 1e-3, "ms": 1e-3, "minute": 60.0, "hour": 3600.0,
+    },
+    "PRESSURE": {
+        "pascal": 1.0, "pa": 1.0, "kpascal": 1e3, "kpa": 1e3, "kilopascal": 1e3, "mpascal": 1e6, "mpa": 1e6, "megapascal": 1e6,
+        "bar": 1e5, "psi": 6894.757293168361,
+    },
+}  # fmt: skip
+"""By kind of quantity, the SI value of each word that a file may have for its unit."""
 SI = {"LENGTH": "meter", "FORCE": "newton", "ANGLE": "radians", "MASS": "kg", "TIME": "second"}
 
 PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {
@@ -65,9 +51,8 @@ PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {
 def known_word(kind: str, word: str) -> str:
     """The word of the table for a file's word, which may be in the plural; the word in lower case if it is unknown."""
     word = word.strip("'\" ").lower()
-    return (
-        word.removesuffix("s") if word not in KINDS[kind] and word.removesuffix("s") in KINDS[kind] else word
-    )
+    one = word.removesuffix("s")
+    return one if word not in KINDS[kind] and one in KINDS[kind] else word
 
 
 def factor(unit: str, words: Mapping[str, str]) -> float:
@@ -77,7 +62,7 @@ def factor(unit: str, words: Mapping[str, str]) -> float:
     the file's force per area.
     """
     if unit == "Pa" and "PRESSURE" in words:
-        return PRESSURE[words["PRESSURE"].lower()]
+        return KINDS["PRESSURE"][words["PRESSURE"].lower()]
     result = 1.0
     for kind, power in PRODUCTS.get(unit, ()):
         result *= KINDS[kind][words.get(kind, SI[kind]).lower()] ** power

@@ -116,10 +116,7 @@ def merged(tyre: TyreRecord, document: Document) -> Document:
 
     Raises TirError if a changed value is not finite.
     """
-    lines: dict[str, FileLine] = {}
-    for line in document.entries:
-        if parameter_of(line) is not None:
-            lines.setdefault(line.key, line)
+    lines = {line.key: line for line in reversed(document.entries) if parameter_of(line) is not None}
     given_on_reading = {name: tyre[name] for name in ESSENTIAL if name not in lines}
     before, words = described(TyreRecord, document, given_on_reading), units_of(document, [])
     added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
@@ -195,10 +192,8 @@ def _with_structured_comments(document: Document, tyre: TyreRecord) -> Document:
         if QUANTITY.match(text) or PROVENANCE.match(text)
         for number in numbers
     ]
-    header = [line.number for line in document.entries if line.section == "MDI_HEADER"]
-    place = max(header, default=0)
-    kept = document.without(old)
-    return kept.inserted({place: list(structured_comments(tyre))})
+    place = max((line.number for line in document.entries if line.section == "MDI_HEADER"), default=0)
+    return document.without(old).inserted({place: list(structured_comments(tyre))})
 
 
 def content(tyre: TyreRecord, target: str | None = None) -> tuple[str, str]:

@@ -159,23 +159,20 @@ def _curve(
 def _coefficients(first: ComparedSubject, second: ComparedSubject, shared: Shared) -> tuple[Difference, ...]:
     """Differences of the coefficients that are not equal."""
     u_first, u_second = ({} if side.known is None else side.known.stderr for side in (first, second))
-    rows = []
-    for row in TABLE:
-        if row.kind != "number" or not row.section.endswith("_COEFFICIENTS"):
-            continue
-        name, a, b = row.name, float(first.tyre[row.name]), float(second.tyre[row.name])
-        if a != b:
-            rows.append(
-                Difference(
-                    key=name,
-                    load=None,
-                    first=a,
-                    second=b,
-                    u_first=u_first.get(name),
-                    u_second=u_second.get(name),
-                    covariance=sum(x.get(name, 0.0) * y.get(name, 0.0) for x, y in shared.values()),
-                )
-            )
+    names = [row.name for row in TABLE if row.kind == "number" and row.section.endswith("_COEFFICIENTS")]
+    rows = [
+        Difference(
+            key=name,
+            load=None,
+            first=float(first.tyre[name]),
+            second=float(second.tyre[name]),
+            u_first=u_first.get(name),
+            u_second=u_second.get(name),
+            covariance=sum(x.get(name, 0.0) * y.get(name, 0.0) for x, y in shared.values()),
+        )
+        for name in names
+        if first.tyre[name] != second.tyre[name]
+    ]
     return ranked(rows)
 
 

@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
-from tir.units import FORCE, LENGTH, PRESSURE
+from tir.units import KINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +46,7 @@ def wrong(sentence: str, key: str = "") -> PydanticCustomError:
 
 TOO_MANY_DIGITS = "has more digits than a number can have; correct it"
 """The sentence about a whole number that no float can hold."""
+LENGTH, FORCE, PRESSURE = (KINDS[kind] for kind in ("LENGTH", "FORCE", "PRESSURE"))
 LENGTHS = {"inches": LENGTH["inch"], "centimetres": LENGTH["cm"], "millimetres": LENGTH["mm"]}
 PRESSURES = {
     word: PRESSURE[unit] / PRESSURE["kpa"]

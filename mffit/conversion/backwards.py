@@ -99,7 +99,7 @@ def to_old(path: str | Path, kind: str, given: Mapping[str, float] = MappingProx
         for fit in stages:
             values |= fit.solved(values, partial(_bounds, values))
         fitted += stages[-1].names if stages else []
-    misfit = tuple(misfits(_forces(at, values)._asdict(), at, goal))
+    misfit = tuple(misfits(_forces(at, values), at, goal))
     return Conversion(
         path=Path(path),
         problems=tyre.problems,

@@ -74,26 +74,16 @@ def convert(
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
     start |= in_one_form(start)
     found = refit(start, at, goal, reach)
-    values = {**start, **found, **camber_range(old, reach)}
+    values = start | found | camber_range(old, reach)
     tyre = Tyre.from_values(values)
-    misfit = tuple(
-        misfits(dict(zip(goal, outputs_of((*goal,), tyre.p, at._asdict()), strict=True)), at, goal)
-    )
+    misfit = tuple(misfits(outputs_of((*goal,), tyre.p, at._asdict()), at, goal))
     how = f"by a fit of the terms of {wording.refitted(found)}; see the table of mffit convert"
     provenance = {ORIGIN: f"{old.path.name}, {old.kind}, {how}", MISFIT: wording.worst(misfit)}
     tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
     return Conversion(
-        path=old.path,
-        problems=old.problems,
-        old=old,
-        tyre=tyre,
-        kind=old.kind,
-        text=tyre.text(),
-        reach=reach,
-        misfit=misfit,
-        fitted=tuple(found),
-        held=held(p, reach),
-    )
+        path=old.path, problems=old.problems, old=old, tyre=tyre, kind=old.kind, text=tyre.text(),
+        reach=reach, misfit=misfit, fitted=tuple(found), held=held(p, reach),
+    )  # fmt: skip
 
 
 def _upright(p: SimpleNamespace, reach: Reach) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,6 @@ from mffit.as_json import keys
 from mffit.brief import Brief
 from mffit.conversion import constants
 from mffit.conversion.grid import Conditions, Reach
-from mffit.conversion.mf52 import OldForces
 from mffit.conversion.old_files import OldFile
 from tir import Problem, Tyre
 
@@ -42,12 +41,12 @@ class RegionMisfit(NamedTuple):
         return self.largest / self.greatest_force
 
 
-def misfits(new: Mapping[str, Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> Iterator[RegionMisfit]:
+def misfits(new: Sequence[Any], at: Conditions, goal: Mapping[str, np.ndarray]) -> Iterator[RegionMisfit]:
     """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
     slipping = at.kappa != 0.0
-    for channel in OldForces._fields:
-        most = at.largest_alike(goal[channel])
-        off = np.abs(np.broadcast_to(new[channel], at.Fz.shape) - goal[channel])
+    for (channel, wanted), force in zip(goal.items(), new, strict=True):
+        most = at.largest_alike(wanted)
+        off = np.abs(np.broadcast_to(force, at.Fz.shape) - wanted)
         for region in ((True, False), (True, True), (False, False), (False, True)):
             chosen = (at.small_camber == region[0]) & (slipping == region[1]) & (most > 0.0)
             if not np.any(chosen):

@@ -97,9 +97,7 @@ class Fleet:
     def scatter(self, key: str) -> FleetScatter | None:
         """Scatter of one number over all specimens that have it; None for fewer than two."""
         found = [q for q in self.numbers(key) if q is not None]
-        if len(found) < 2:
-            return None
-        return scatter_of(found)
+        return scatter_of(found) if len(found) > 1 else None
 
 
 keys(Fleet, "tyres=rows scatter rigs notes", scatter=lambda found: _scatters(found))

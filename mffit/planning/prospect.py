@@ -123,13 +123,8 @@ class Prospect:
         """
         free, held, own = free or {}, held or {}, self._fitted
         new = {name: self._new_zeros[name] for name in self._new_of(runs)}
-        spread = {
-            **dict(zip(own.names, own.spread.tolist(), strict=True)),
-            **self._unseen,
-            **new,
-            **free,
-            **held,
-        }
+        fitted = dict(zip(own.names, own.spread.tolist(), strict=True))
+        spread = fitted | self._unseen | new | dict(free) | dict(held)
         beyond = self._shown(runs).keys() - self._shown_now.keys()
         unmoved = (own.held | self._unseen.keys()) - beyond - free.keys() | held.keys()
         expected = dict(zip(own.names, own.expected.tolist(), strict=True))

@@ -159,7 +159,7 @@ def test_a_file_of_mf60_gets_one_warning(tmp_path):
     text = re.sub(r"(?m)^FITTYP .*$", "FITTYP = 60", TEXT)
     text = re.sub(r"(?m)^(INFLPRES|NOMPRES) .*\n", "", text)
     (problem,) = read_text(tmp_path, text).problems
-    assert re.search(r"60.*2 keys of 6\.1", problem.sentence)
+    assert re.search(r"60.*2 keys of MF 6\.1", problem.sentence)
 
 
 @pytest.mark.parametrize(("shape", "told"), [(1.005, False), (1.05, True)])

@@ -28,7 +28,7 @@ ALL_SWITCHES = [Switches(*on) for on in itertools.product((False, True), repeat=
 TOLERANCE = 1e-12 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 3e-12
 """numpy 1 computes tan and arctan three units in the last place off, numpy 2 one; the edges magnify that."""
 """Of the value, or of 1e-3 of the channel's largest: hundreds of roundings in another order."""
-needs_llvm = pytest.mark.skipif(not kernel.available(), reason="llvmlite is not installed")
+needs_llvm = pytest.mark.skipif(kernel.obstacle() is not None, reason="llvmlite is not installed")
 
 
 @pytest.fixture(scope="module", params=["MagicFormula62", "moto_front"])
@@ -366,7 +366,7 @@ def test_machine_code_is_found_without_being_asked_for(monkeypatch, tmp_path, ki
 def test_where_nothing_can_be_compiled_the_calls_go_on(tyre, monkeypatch):
     as_at_start(monkeypatch)
     monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
-    monkeypatch.setattr(kernel, "available", lambda: False)
+    monkeypatch.setattr(kernel, "obstacle", lambda: "none here")
     found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
     assert found == pytest.approx([found[0]] * 8)
     assert_none_is_loaded()
@@ -379,7 +379,7 @@ def test_a_broken_llvmlite_stops_no_call(tyre, monkeypatch, broken):
 
     as_at_start(monkeypatch)
     monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
-    monkeypatch.setattr(kernel, "available", lambda: True)
+    monkeypatch.setattr(kernel, "obstacle", lambda: None)
     monkeypatch.setattr(kernel, "load", fail)
     found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
     assert found == pytest.approx([found[0]] * 8)
@@ -439,7 +439,7 @@ def test_without_llvm_the_message_names_the_package(monkeypatch):
 
 
 def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
-    monkeypatch.setattr(kernel, "available", lambda: False)
+    monkeypatch.setattr(kernel, "obstacle", lambda: "none here")
     as_at_start(monkeypatch)
     monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 1, "batch": 1})
     alpha = np.linspace(-0.1, 0.1, 7)

@@ -130,7 +130,7 @@ def _multiply(graph: Graph, a: Any, b: Any) -> Any:
     if (
         not isinstance(a, Node)
         and _made_by(b, "where")
-        and not any(isinstance(x, Node) for x in b.arguments[1:])
+        and level(b.arguments[1]) == level(b.arguments[2]) == CONSTANT
     ):
         return graph.apply("where", b.arguments[0], *(a * x for x in b.arguments[1:]))
     if _is_sign_of(a, b) or _is_sign_of(b, a):
@@ -162,12 +162,10 @@ def _power(graph: Graph, a: Any, b: Any) -> Any:
         return 1.0
     if _is(b, 1.0):
         return a
-    if not isinstance(b, Node) and b in INTEGER_POWERS:
-        square = graph.apply("multiply", a, a)
-        return {2: square, 3: graph.apply("multiply", square, a), 4: graph.apply("multiply", square, square)}[
-            int(b)
-        ]
-    return None
+    if isinstance(b, Node) or b not in INTEGER_POWERS:
+        return None
+    square = graph.apply("multiply", a, a)
+    return square if b == 2.0 else graph.apply("multiply", square, a if b == 3.0 else square)
 
 
 def _negative(graph: Graph, a: Any) -> Any:
@@ -203,13 +201,9 @@ def _is_sign_of(s: Any, x: Any) -> bool:
     if not _made_by(s, "where"):
         return False
     negative, minus, plus = s.arguments
-    return (
-        _is(minus, -1.0)
-        and _is(plus, 1.0)
-        and _made_by(negative, "less")
-        and negative.arguments[0] is x
-        and _is(negative.arguments[1], 0.0)
-    )
+    if not (_is(minus, -1.0) and _is(plus, 1.0) and _made_by(negative, "less")):
+        return False
+    return negative.arguments[0] is x and _is(negative.arguments[1], 0.0)
 
 
 def _number_of(x: Any) -> int:

@@ -13,8 +13,7 @@ from tir.codegen.cpython import SCALARS
 from tir.codegen.graph import INPUT, Graph
 from tir.codegen.program import INPUTS, Parameters, Program, Switches, program_of, symbols_of
 from tir.codegen.replay import Replay, replayed
-from tir.codegen.single import MATH, Run, constants, with_defaults
-from tir.codegen.source import conditions, preparation
+from tir.codegen.single import Run, compiled, constants, with_defaults
 from tir.equations import contact
 from tir.equations.normalise import OperatingCondition
 from tir.evaluate import either_way
@@ -53,9 +52,8 @@ def _compiled(switches: Switches) -> list[tuple[tuple[str, ...], Any, Any, Repla
     """Names of the inputs, straight-line code to prepare and to run, and the same for numpy, of both functions."""
     out = []
     for program, more in zip(lag_programs(symbols_of, switches), (("dt",), ()), strict=True):
-        names, namespace = (*LAGGING, *LAG_INPUTS, *more), dict[str, Any](MATH)
-        exec(preparation(program) + conditions(program, names), namespace)
-        out.append((names, namespace["prepare"], namespace["run"], replayed([*program.outputs.values()])))
+        names = (*LAGGING, *LAG_INPUTS, *more)
+        out.append((names, *compiled(program, names), replayed([*program.outputs.values()])))
     return out
 
 

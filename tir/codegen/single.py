@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from tir.codegen.program import Switches, trace
+from tir.codegen.program import INPUTS, Program, Switches, trace
 from tir.codegen.source import FUNCTIONS, conditions, preparation
 
 Run = Callable[..., tuple[float, ...]]
@@ -21,8 +21,13 @@ NUMPY = {name: getattr(np, name) for name in FUNCTIONS}
 
 @cache
 def _compiled(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
-    program, namespace = trace(switches, outputs), dict(MATH)
-    exec(preparation(program) + conditions(program), namespace)
+    return compiled(trace(switches, outputs))
+
+
+def compiled(program: Program, inputs: Sequence[str] = INPUTS) -> tuple[Any, Any]:
+    """The functions :func:`~tir.codegen.source.preparation` and :func:`~tir.codegen.source.conditions` of a program."""
+    namespace = dict(MATH)
+    exec(preparation(program) + conditions(program, inputs), namespace)
     return namespace["prepare"], namespace["run"]
 
 

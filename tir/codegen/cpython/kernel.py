@@ -89,11 +89,6 @@ def obstacle() -> str | None:
     return None
 
 
-def available() -> bool:
-    """Whether machine code can be compiled and called here."""
-    return obstacle() is None
-
-
 @cache
 def load(kind: str, switches: Switches) -> Kernel:
     """The kernel "batch" or "one", from the cache, or else compiled within a second or two.
@@ -185,13 +180,8 @@ def _fingerprint() -> str:
 
     from llvmlite import __version__, binding
 
-    here = (
-        __version__,
-        sys.version,
-        binding.get_process_triple(),
-        binding.get_host_cpu_name(),
-        binding.get_host_cpu_features().flatten(),
-    )
+    processor = (binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten())
+    here = (__version__, sys.version, binding.get_process_triple(), *processor)
     found = hashlib.sha256("\0".join(here).encode())
     for name in SOURCES:
         place = resources("tir") / name
