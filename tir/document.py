@@ -127,11 +127,6 @@ class Document:
         return "".join(line.text + line.end for line in self.lines)
 
     @property
-    def content(self) -> bytes:
-        """The bytes of the file."""
-        return encoded(self.text, self.encoding)
-
-    @property
     def line_end(self) -> str:
         """The most frequent line end; CR LF if there is none."""
         known = Counter(line.end for line in self.lines if line.end)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Never, Self
 
 from tir import calls
 from tir.codegen.program import Switches
-from tir.document import Document, read_document
+from tir.document import Document, encoded, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import counted
 from tir.parameters import BY_NAME, TABLE
@@ -20,7 +20,7 @@ from tir.properties import described
 from tir.record import TyreRecord
 from tir.targets import FITTYPS
 from tir.temperature import at_temperature
-from tir.writing import content, write
+from tir.writing import content, replace_file
 
 if TYPE_CHECKING:
     from tir.drawing import Figure
@@ -217,7 +217,8 @@ class Tyre(TyreRecord):
 
     def write(self, path: str | Path, target: str | None = None) -> None:
         """Write :meth:`text`; an existing file is replaced only when the new one is complete."""
-        write(self, path, target)
+        text, encoding = content(self, target)
+        replace_file(Path(path), encoded(text, encoding))
 
 
 def _unchanged(name: str = "", value: Any = None) -> str:

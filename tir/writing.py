@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tir.document import Document, FileLine, commented, encoded, folded, unquoted
+from tir.document import Document, FileLine, commented, folded, unquoted
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 from tir.properties import ESSENTIAL, PROVENANCE, QUANTITY, described, parameter_of, units_of
@@ -207,12 +207,6 @@ def content(tyre: TyreRecord, target: str | None = None) -> tuple[str, str]:
         own = {row.name for row in TABLE if tyre[row.name] != row.default}
         chosen = replace(chosen, without=tuple(name for name in chosen.without if name not in own))
     return render(tyre, chosen), "ascii"
-
-
-def write(tyre: TyreRecord, path: str | Path, target: str | None = None) -> None:
-    """Write :func:`content`; the file at ``path`` is replaced only once the new one is complete."""
-    text, encoding = content(tyre, target)
-    replace_file(Path(path), encoded(text, encoding))
 
 
 def replace_file(path: Path, content: bytes) -> None:

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 import tir
 from tir.checking import check
+from tir.document import encoded
 from tir.parameters import TABLE
 
 VECTORS = Path(__file__).parent / "vectors"
@@ -87,7 +88,7 @@ def test_values_on_the_line_below_their_keys_are_read(tmp_path, tyre):
     assert found == tyre
     (problem,) = (p for p in found.problems if "below their keys" in p.sentence)
     assert problem.line is not None
-    assert found.document.content == split(TEXT).encode()
+    assert encoded(found.document.text, found.document.encoding) == split(TEXT).encode()
     changed = found.replace(PDY1=1.375)
     assert changed.text() == split(TEXT).replace("PDY1 =\n  1.27", "PDY1 =\n  1.375")
     assert read_text(tmp_path, changed.text()) == tyre.replace(PDY1=1.375)

@@ -231,6 +231,11 @@ def test_a_name_that_matlab_cannot_have_is_refused(name, words):
         export_matlab(tir.Tyre.from_values({}), name=name)
 
 
+def test_a_value_that_is_not_finite_is_named():
+    with pytest.raises(tir.TirError, match="PKY1 is nan, which exported code cannot hold"):
+        export_matlab(tir.Tyre.from_values({"PKY1": float("nan")}))
+
+
 def test_a_divisor_that_is_zero_is_named():
     with pytest.raises(tir.TirError, match="LMUY is 0"):
         export_matlab(tir.Tyre.from_values({"LMUY": 0.0}))

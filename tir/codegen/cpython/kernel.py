@@ -104,7 +104,8 @@ def load(kind: str, switches: Switches) -> Kernel:
     from llvmlite import binding
 
     machine = _machine()
-    path = _place(kind, switches)
+    name = "_".join([kind, *(word for word, on in switches._asdict().items() if on)])
+    path = cache_folder() / f"{name}.o"
     code = _read(path)
     if code is None:
         from tir.codegen.cpython import entry
@@ -116,10 +117,6 @@ def load(kind: str, switches: Switches) -> Kernel:
     engine.finalize_object()
     definition = _Definition(kind.encode(), engine.get_function_address(kind), FASTCALL, None)
     return Kernel(definition, engine, preparation_of(switches, Forces._fields))
-
-
-def _place(kind: str, switches: Switches) -> Path:
-    return cache_folder() / f"{'_'.join([kind, *(word for word, on in switches._asdict().items() if on)])}.o"
 
 
 def _machine() -> Any:
@@ -141,7 +138,7 @@ def _machine() -> Any:
 def _lanes() -> int:
     from llvmlite import binding
 
-    return int(VECTOR_LANES if binding.get_host_cpu_features().get("avx512f") else VECTOR_LANES // 2)
+    return LANES if binding.get_host_cpu_features().get("avx512f") else LANES // 2
 
 
 def _compiled(text: str, machine: Any) -> bytes:
