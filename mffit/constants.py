@@ -50,9 +50,6 @@ LARGEST_CAMBER_REDUCTION = Real(
 VISIBLE_TEMPERATURE = Real(
     3.0, "K", "Smallest difference of temperature whose effect exceeds the noise: grip changes by 1 %."
 )
-SLIP_BEYOND_THE_PEAK = Real(
-    0.3, "-", "Longest slip at which files are compared or converted: well beyond the peak of every tyre."
-)
 STEPS_OF_LINE = Count(61, "-", "Points of a drawn or compared curve; it looks smooth.")
 ANGLES_OF_A_CURVE = Count(21, "-", "Angles of a curve over which a misfit or a band is averaged.")
 UPRIGHT = Real(

@@ -80,9 +80,13 @@ NEGLIGIBLE_SHARE = Real(
 CREDIBLE_FRICTION = Real(4.0, "-", "Larger friction coefficients are extrapolation, not a tyre.")
 
 SLIP_BEYOND_PEAK = Real(
-    0.3, "-", "Longitudinal slip beyond the peak of every tyre, at which programs differ."
+    0.3,
+    "-",
+    "Longitudinal slip beyond the peak of every tyre: programs differ there, comparisons and conversions end.",
 )
-SIDESLIP_BEYOND_PEAK = Real(20.0, "deg", "Sideslip beyond the peak of every tyre, at which programs differ.")
+SIDESLIP_BEYOND_PEAK = Real(
+    20.0, "deg", "Sideslip beyond the peak of every tyre: programs differ there, and conversions end."
+)
 SMALL_TURN_SLIP = Real(1e-3, "1/m", "Turn slip of a circle of 1 km: moments of spin are linear in it.")
 
 # Search for the worst point of a file's ranges

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.constants import COVERAGE_FACTOR_95, SLIP_BEYOND_THE_PEAK, UPRIGHT
+from mffit.constants import COVERAGE_FACTOR_95, UPRIGHT
 from mffit.numbers import Numbers
 from mffit.points import make_points
 from mffit.prediction import Predictor
@@ -17,6 +17,7 @@ from mffit.quantities import CHARACTERISTICS
 from mffit.rounding import AtLeast
 from mffit.tested import tested_limit
 from tir import Quantity, Tyre
+from tir.constants import SLIP_BEYOND_PEAK
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 
@@ -67,7 +68,7 @@ class Tested(NamedTuple):
         """
         braked = max(tested_limit(tyre, "KPUMIN") for tyre in tyres)
         driven = min(tested_limit(tyre, "KPUMAX") for tyre in tyres)
-        ends = max(braked, -float(SLIP_BEYOND_THE_PEAK)), min(driven, float(SLIP_BEYOND_THE_PEAK))
+        ends = max(braked, -float(SLIP_BEYOND_PEAK)), min(driven, float(SLIP_BEYOND_PEAK))
         alpha, gamma = (min(tested_limit(tyre, key) for tyre in tyres) for key in ("ALPMAX", "CAMMAX"))
         return cls(alpha, gamma, ends[0] if -ends[0] > ends[1] else ends[1])
 

@@ -9,9 +9,6 @@ CONVERTED_LOADS = Series(
     "-",
     "Loads over the nominal one (times LFZO) at most, even if the old file allows more: no car tyre carries more.",
 )
-CONVERTED_SIDESLIP = Real(
-    20.0, "deg", "Largest sideslip, even if the old file allows more: well beyond the peak."
-)
 CONVERTED_CAMBER = Real(
     15.0,
     "deg",

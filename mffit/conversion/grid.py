@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.constants import ANGLES_OF_A_CURVE, SLIP_BEYOND_THE_PEAK
+from mffit.constants import ANGLES_OF_A_CURVE
 from mffit.conversion import constants
+from tir.constants import SIDESLIP_BEYOND_PEAK, SLIP_BEYOND_PEAK
 
 
 class Reach(NamedTuple):
@@ -69,9 +70,9 @@ def reach_of(values: Mapping[str, Any], present: frozenset[str]) -> Reach:
 
     return Reach(
         (low, high if high > low else most),
-        side("ALPMAX", constants.CONVERTED_SIDESLIP.rad),
+        side("ALPMAX", SIDESLIP_BEYOND_PEAK.rad),
         side("CAMMAX", constants.CONVERTED_CAMBER.rad),
-        side("KPUMAX", float(SLIP_BEYOND_THE_PEAK)),
+        side("KPUMAX", float(SLIP_BEYOND_PEAK)),
     )
 
 

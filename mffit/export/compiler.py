@@ -20,10 +20,10 @@ SYSTEMS = {"linux": "linux", "darwin": "darwin", "win32": "windows"}
 OLD_NAMES = {
     "x86_64-linux": "linux64",
     "x86_64-windows": "win64",
-    "x86_64-darwin": "darwin64",
-    "aarch64-darwin": "darwin64",
+    **dict.fromkeys(("x86_64-darwin", "aarch64-darwin"), "darwin64"),
 }
 """Names of folders in FMI 2.0; for other machines the name of FMI 3.0 is usual."""
+REMEDY = "name another one in CC, or use --sources-only"
 
 
 def suffix() -> str:
@@ -60,23 +60,19 @@ def compile_shared(sources: Sequence[Path], library: Path, definitions: Sequence
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         why = getattr(error, "strerror", None) or error
-        raise InputError(
-            f"the C compiler {command[0]} did not run ({why}); name another one in CC, or use --sources-only"
-        ) from error
+        raise InputError(f"the C compiler {command[0]} did not run ({why}); {REMEDY}") from error
     if done.returncode:
         line = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
-        raise InputError(
-            f"the C compiler {command[0]} failed ({line}); name another one in CC, or use --sources-only"
-        )
+        raise InputError(f"the C compiler {command[0]} failed ({line}); {REMEDY}")
 
 
 def _compiler() -> list[str]:
     named = shlex.split(os.environ.get("CC", ""))
     if named:
         return named
-    for name in ("cc", "gcc", "clang"):
-        if shutil.which(name):
-            return [name]
+    found = [name for name in ("cc", "gcc", "clang") if shutil.which(name)]
+    if found:
+        return found[:1]
     raise InputError(
         "no C compiler (cc, gcc, clang) was found for the binary of this machine: install one, name it in CC, or use "
         "--sources-only, so that the program that imports the FMU compiles it"

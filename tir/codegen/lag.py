@@ -32,7 +32,7 @@ LAGGING = ("u", "v")
 
 
 class ContactLag(NamedTuple):
-    """The same two of a tyre, as functions of (u, v, *LAG_INPUTS): single numbers, or arrays that broadcast."""
+    """The programs of :func:`lag_programs` for a tyre, as functions of (u, v, *LAG_INPUTS): single numbers, or arrays."""
 
     after: Callable[..., tuple[Any, ...]]  #: takes dt behind them
     deflected: Callable[..., tuple[Any, ...]]  #: gives forces and the lagging slips
