@@ -22,20 +22,6 @@ from mffit.cli.options import (
 from mffit.errors import InputError
 
 
-def _folder(out: Path, ending: str, *, named: bool = True) -> Path:
-    """The folder to write to; refuses the name of a file, which would become a folder of that name.
-
-    ``named``: whether the command has ``--name``.
-    """
-    if out.suffix.lower() == ending:
-        name = f" --name {out.stem}" if named else ""
-        raise InputError(
-            f"is the name of a file, but --out names the folder: write --out {out.parent}{name}",
-            key=f"--out {out}",
-        )
-    return out
-
-
 def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | None, **more: object) -> None:
     import tir
     from tir.mode import words
@@ -48,10 +34,10 @@ def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | Non
     voice.give({"written": names, "turn_slip": on, **more})
 
 
-def _code(write: Callable[..., Any], ending: str, file: Path, out: Path, voice: Voice, **asked: Any) -> None:
+def _code(write: Callable[..., Any], file: Path, out: Path, voice: Voice, **asked: Any) -> None:
     """Write code by a function of :mod:`mffit.export`, with the options that were ``asked`` for, and say so."""
     with told(voice):
-        written = write(file, _folder(out, ending), **asked)
+        written = write(file, out, **asked)
     _report(voice, written if isinstance(written, list) else [written], file, asked["turn_slip"])
 
 
@@ -74,7 +60,7 @@ def c(**asked: Any) -> None:
     """
     from mffit.export import write_c
 
-    _code(write_c, ".c", **asked)
+    _code(write_c, **asked)
 
 
 @export.command()
@@ -100,7 +86,7 @@ def fmu(fmi: str, **asked: Any) -> None:
     """
     from mffit.export import write_fmu
 
-    _code(write_fmu, ".fmu", fmi=int(fmi), **asked)
+    _code(write_fmu, fmi=int(fmi), **asked)
 
 
 @export.command()
@@ -113,7 +99,7 @@ def matlab(**asked: Any) -> None:
     """
     from mffit.export import write_matlab
 
-    _code(write_matlab, ".m", **asked)
+    _code(write_matlab, **asked)
 
 
 @export.command("tir")
@@ -142,7 +128,7 @@ def property_file(file: Path, targets: list[str], out: Path, voice: Voice) -> No
     made = [interpret(parse_document(text)) for text in texts.values()]
     lacking = {key for other in made for key in other.present} - tyre.present
     shown = [row.name for row in TABLE if row.name in lacking]
-    with output_folder(_folder(out, ".tir", named=False), by="export", protected=[file]) as folder:
+    with output_folder(out, by="export", protected=[file]) as folder:
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="ascii", newline="")
     written = [str(out / name) for name in texts]
@@ -200,9 +186,8 @@ def table(file: Path, out: Path, error: float, voice: Voice, **asked: Any) -> No
     """
     from mffit.export import write_table
 
-    folder = _folder(out, f".{asked['form']}", named=False)
     with told(voice), voice.progress() as progress:
-        made = write_table(file, folder, error=error / 100.0, progress=progress, **asked)
+        made = write_table(file, out, error=error / 100.0, progress=progress, **asked)
     voice.warn(made.warnings)
     for one in made.tables:
         voice.say(one.sentence)

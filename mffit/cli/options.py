@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -68,18 +68,31 @@ turn_slip_option = click.option(
 
 
 def out_option(
-    help_text: str, *, beside: str = "", is_file: bool = False, **settings: Any
+    help_text: str,
+    *,
+    beside: str = "",
+    is_file: bool = False,
+    of_files: Collection[str] = (),
+    **settings: Any,
 ) -> Callable[[Command], Command]:
     """The option ``--out`` with the path of a folder, or of a file; one that cannot be written is refused before any work.
 
-    ``beside`` is the default, relative to the folder of TYRE_TOML.
+    ``beside`` is the default, relative to the folder of TYRE_TOML; names that end as those ``of_files`` are refused, because
+    they would become folders.
     """
 
     def usable(context: click.Context, option: click.Parameter, out: Path | None) -> Path | None:
+        from mffit.errors import InputError
         from mffit.output import refuse_unusable
 
         if context.resilient_parsing:
             return out
+        if out is not None and out.suffix.lower() in of_files:
+            name = f" --name {out.stem}" * any(one.name == "name" for one in context.command.params)
+            raise InputError(
+                f"is the name of a file, but --out names the folder: write --out {out.parent}{name}",
+                key=f"--out {out}",
+            )
         if out is not None:
             refuse_unusable(out, is_file=is_file)
         elif beside:
@@ -91,7 +104,8 @@ def out_option(
     return click.option("--out", type=PATH, help=help_text, callback=usable, **settings)
 
 
-export_folder = out_option("Folder to write to.", default="export", show_default=True)
+EXPORTED = (".c", ".h", ".fmu", ".m", ".tir", ".csv", ".mat")
+export_folder = out_option("Folder to write to.", of_files=EXPORTED, default="export", show_default=True)
 
 
 def code_options(command: Command) -> Command:
