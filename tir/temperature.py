@@ -95,9 +95,5 @@ def _beyond(tyre: TyreRecord, T_degC: float) -> Problem | None:
     if LOWEST not in tyre.measured or HIGHEST not in tyre.measured:
         return None
     low, high = tyre.measured[LOWEST].value, tyre.measured[HIGHEST].value
-    if low <= T_degC <= high:
-        return None
-    return Problem(
-        "warning",
-        f"{T_degC:g} degC is outside {low:g} to {high:g} degC, where the temperature terms were measured",
-    )
+    said = f"{T_degC:g} degC is outside {low:g} to {high:g} degC, where the temperature terms were measured"
+    return None if low <= T_degC <= high else Problem("warning", said)

@@ -130,13 +130,9 @@ def old_completed(given: Mapping[str, Any]) -> dict[str, Any]:
     are divided: it does not matter where there is no side force.
     """
     values = completed({name: x for name, x in given.items() if name in BY_NAME})
+    kept = {*given, "PKY2", *(row.name for row in TABLE if row.scaling or row.section == TURN_SLIP)}
     for row in TABLE:
-        if (
-            row.section.endswith("_COEFFICIENTS")
-            and not row.scaling
-            and row.section != TURN_SLIP
-            and row.name not in {*given, "PKY2"}
-        ):
+        if row.section.endswith("_COEFFICIENTS") and row.name not in kept:
             values[row.name] = OF_62.get(row.name, 0.0)
     return {**values, **{name: row.default for name, row in OWN.items()}, **given}
 

@@ -54,9 +54,7 @@ def curvature(found: Conversion) -> str:
 def refitted(names: Iterable[str]) -> str:
     """What the fitted coefficients describe."""
     curved = [factor.names[0][:-1] for factor in FACTORS if factor.names[0] in set(names)]
-    if not curved:
-        return "camber"
-    return f"camber and of curvature above 1 ({', '.join(curved)})"
+    return f"camber and of curvature above 1 ({', '.join(curved)})" if curved else "camber"
 
 
 def region(row: RegionMisfit) -> str:
@@ -68,10 +66,10 @@ def region(row: RegionMisfit) -> str:
 def worst(misfit: Iterable[RegionMisfit]) -> str:
     """The misfit of the channel that differs most, as a share of its largest value at the same load."""
     row = max(misfit, key=lambda row: row.share, default=None)
+    if row is None:
+        return "the original gives no force that could differ"
     return (
-        "the original gives no force that could differ"
-        if row is None
-        else f"{MODEL[row.channel].symbol} differs most from the original, by up to {size(row)}, at {region(row)}"
+        f"{MODEL[row.channel].symbol} differs most from the original, by up to {size(row)}, at {region(row)}"
     )
 
 
