@@ -17,7 +17,7 @@ from click.testing import CliRunner
 
 import tir
 from mffit.effects import NEEDS
-from mffit.effects.effect import Effect
+from mffit.effects.catalog import tyre_effect
 from mffit.errors import InputError
 from mffit.report import page
 from mffit.report.build_view import view_of
@@ -51,10 +51,14 @@ def test_every_file_of_the_tables_exists_unless_it_is_new():
     assert not missing, f"docs/contributing.md names {', '.join(missing)}"
 
 
-def test_the_records_are_complete(examples):
-    (block,) = re.findall(r"^```toml\n(\[Fz_0_N\]\n.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    effect, error = examples["CURVATURE_LOAD"], rig_error(*tomllib.loads(block).popitem())
-    assert isinstance(effect, Effect)
+def test_the_records_are_complete():
+    tables = re.findall(
+        r"^```toml\n(\[(?:Fz_0_N|curvature-load)\]\n.*?)^```$", PAGE, re.MULTILINE | re.DOTALL
+    )
+    effect, error = (
+        read(*tomllib.loads(table).popitem())
+        for read, table in zip((tyre_effect, rig_error), tables, strict=True)
+    )
     assert set(effect.parameters) <= set(BY_NAME)
     seen = (effect, error.seen_as)
     assert {word for one in seen for word in one.needs} <= set(NEEDS)

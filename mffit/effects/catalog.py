@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
+from importlib import resources
+from typing import Any
 
 from mffit.effects.effect import Effect, Free
-from mffit.effects.tyre import TYRE_EFFECTS
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, Appearance, RigError
+
+
+def tyre_effect(id: str, row: dict[str, Any]) -> Effect:
+    """The effect of a table of ``tyre_effects.toml``."""
+    free = tuple(Free(name=name, **_values(own)) for name, own in row["free"].items())
+    return Effect(id=id, kind="tyre", **{**_values(row), "free": free})
+
+
+def _values(row: dict[str, Any]) -> dict[str, Any]:
+    """The values of a table, with lists as tuples."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+
+
+def _tyre_effects() -> Iterator[Effect]:
+    text = resources.files(__package__).joinpath("tyre_effects.toml").read_text(encoding="utf-8")
+    return (tyre_effect(id, row) for id, row in tomllib.loads(text).items())
 
 
 def _effects(error: RigError) -> Iterator[Effect]:
@@ -44,7 +62,7 @@ def _free(error: RigError, seen: Appearance | None = None) -> Free:
 
 
 CATALOG: tuple[Effect, ...] = (
-    *TYRE_EFFECTS,
+    *_tyre_effects(),
     *(effect for error in RIG_ERRORS for effect in _effects(error)),
 )
 NAMES = {effect.id: effect.name for effect in CATALOG}

@@ -72,7 +72,7 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress(READING)
-    read = _Read(config, read_points(config), read_base(config), made(input_hashes(config)))
+    read = _BuildInputs(config, read_points(config), read_base(config), made(input_hashes(config)))
     progress(MEASURING)
     parts, before = measure(config, read.reading.points, read.base)
     if out is not None:
@@ -89,7 +89,7 @@ def build(
     return result
 
 
-class _Read(NamedTuple):
+class _BuildInputs(NamedTuple):
     """What a build reads."""
 
     config: Config
@@ -104,7 +104,9 @@ def _names(config: Config) -> dict[str, str]:
     return {**names, TEMPERATURE: fitting.name_at_temperature(config.tyre.name)}
 
 
-def _result(read: _Read, parts: Parts, measured: Measured, fitted: FitResult, ensemble: int) -> BuildResult:
+def _result(
+    read: _BuildInputs, parts: Parts, measured: Measured, fitted: FitResult, ensemble: int
+) -> BuildResult:
     """The result of a fit: its judgement, the proven model error, and the annotated tyres."""
     config, reading = read.config, read.reading
     assert fitted.files is not None
